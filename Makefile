@@ -1,0 +1,52 @@
+# make          install what is needed, configure, build: build/bin/drape
+# make setup    install what third_party/apt-packages.txt lists (Debian 12, asks apt-get)
+# make demo     run configs/pinned_square.yaml and say where its report is
+# make test     build and run every test
+# make bench    build and run the benchmarks
+# make format   check the layout of the sources;  make fix-format  rewrites them
+# make lint     static analysis of core and plugins (LINT= a regular expression of paths)
+# make clean    remove what was built
+#
+# PRESET=debug, asan or ci chooses another of CMakePresets.json.
+
+PRESET ?= release
+JOBS ?= $(shell nproc)
+LINT ?= (core|plugins)/
+BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
+SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
+
+.PHONY: all setup configure build demo test bench format fix-format lint clean
+all: build
+
+setup:
+	@third_party/setup
+
+configure: setup
+	@cmake --preset $(PRESET) --log-level=WARNING
+
+build: configure
+	@cmake --build $(BUILD) -j $(JOBS)
+
+demo: build
+	$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/pinned_square
+	@echo "Open results/pinned_square/report.html in a browser."
+
+test: build
+	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bench: build
+	$(BUILD)/bin/drape_bench
+
+format: setup
+	@clang-format --dry-run -Werror $(SOURCES)
+
+fix-format: setup
+	@clang-format -i $(SOURCES)
+
+# Without OpenMP, in which clang captures no structured bindings.
+lint: setup
+	@cmake --preset lint --log-level=ERROR
+	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-fno-openmp '$(LINT)'
+
+clean:
+	rm -rf build build-debug build-asan build-lint

@@ -1,0 +1,165 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/hierarchy/level.h"
+#include "core/mesh/generate.h"
+#include "core/numerics/element_energy.h"
+#include "plugins/energy/hinge/hinge_kernel.h"
+#include "plugins/energy/neo_hookean/neo_hookean_kernel.h"
+#include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
+#include "plugins/energy/stvk/stvk_kernel.h"
+
+// Elements of a square of 313² vertices, 195K triangles and 293K hinges, wrinkled and noisy enough that most of
+// their Hessians are indefinite. Arguments: threads. "per_element" is wall time over elements.
+
+using namespace drape;
+
+namespace {
+
+struct Cloth {
+  Level level;
+  Positions x;
+
+  explicit Cloth(int n) : level(Level::of(0, grid({1, 1}, n, n, Diagonals::one_way))), x(level.rest.vertices) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> noise(0, 0.15 / (n - 1));
+    for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += noise(random);
+    for (int i = 0; i < x.rows(); ++i) x(i, 2) += 0.05 * std::sin(8 * x(i, 0)) * std::cos(9 * x(i, 1));
+  }
+};
+
+const Cloth& cloth() {
+  static const Cloth made(313);
+  return made;
+}
+
+template <class Kernel>
+const BoundEnergy& energy() {
+  static const ElementEnergy<Kernel> made = [] {
+    const Positions& rest = cloth().level.rest.vertices;
+    const bool triangles = Kernel::vertices == 3;
+    const Stencils elements = triangles ? Stencils(cloth().level.rest.triangles)
+                                        : Stencils(cloth().level.topology.hinges(cloth().level.rest.triangles));
+    std::vector<typename Kernel::Rest> numbers;
+    for (Eigen::Index e = 0; e < elements.rows(); ++e) {
+      Eigen::Vector3d d[3];
+      for (int k = 1; k < Kernel::vertices; ++k) d[k - 1] = rest.row(elements(e, k)) - rest.row(elements(e, 0));
+      if constexpr (Kernel::vertices == 3)
+        numbers.push_back(Kernel::rest(d[0], d[1], 3.18e-4, 8e4, 0.243));
+      else
+        numbers.push_back(Kernel::rest(d, 1e-7));
+    }
+    return ElementEnergy<Kernel>(elements, numbers, rest);
+  }();
+  return made;
+}
+
+void finish(benchmark::State& state, double elements) {
+  set_thread_count(0);
+  state.counters["per_element"] =
+      benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+template <class Kernel>
+void value(benchmark::State& state) {
+  const BoundEnergy& e = energy<Kernel>();
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(e.value(cloth().x));
+  finish(state, e.stencils().rows());
+}
+
+template <class Kernel>
+void gradient(benchmark::State& state) {
+  const BoundEnergy& e = energy<Kernel>();
+  Positions g = Positions::Zero(cloth().x.rows(), 3);
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(e.add_gradient(cloth().x, g));
+  finish(state, e.stencils().rows());
+}
+
+template <class Kernel, Projection projection>
+void hessian(benchmark::State& state) {
+  const BoundEnergy& e = energy<Kernel>();
+  BlockMatrix matrix(BlockPattern::of(cloth().level.vertex_count(), {e.stencils()}));
+  const BlockSlots slots(*matrix.pattern, e.stencils());
+  BlockSink sink(slots, matrix);
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    e.add_hessian(cloth().x, projection, sink);
+    benchmark::ClobberMemory();
+  }
+  finish(state, e.stencils().rows());
+}
+
+void shell_gradient(benchmark::State& state) {
+  Positions g = Positions::Zero(cloth().x.rows(), 3);
+  const BoundEnergy &membrane = energy<NeoHookeanKernel>(), &bending = energy<HingeKernel>();
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    g.setZero();
+    benchmark::DoNotOptimize(membrane.add_gradient(cloth().x, g) + bending.add_gradient(cloth().x, g));
+  }
+  finish(state, cloth().level.vertex_count());
+}
+
+void shell_hessian(benchmark::State& state) {
+  const BoundEnergy &membrane = energy<NeoHookeanKernel>(), &bending = energy<HingeKernel>();
+  BlockMatrix matrix(BlockPattern::of(cloth().level.vertex_count(), {membrane.stencils(), bending.stencils()}));
+  const BlockSlots membrane_slots(*matrix.pattern, membrane.stencils());
+  const BlockSlots bending_slots(*matrix.pattern, bending.stencils());
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    matrix.set_zero();
+    BlockSink membrane_sink(membrane_slots, matrix), bending_sink(bending_slots, matrix);
+    membrane.add_hessian(cloth().x, Projection::clamp, membrane_sink);
+    bending.add_hessian(cloth().x, Projection::clamp, bending_sink);
+    benchmark::ClobberMemory();
+  }
+  finish(state, cloth().level.vertex_count());
+}
+
+void block_pattern(benchmark::State& state) {
+  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(), energy<HingeKernel>().stencils()};
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(BlockPattern::of(cloth().level.vertex_count(), stencils));
+  finish(state, cloth().level.vertex_count());
+}
+
+void block_slots(benchmark::State& state) {
+  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(), energy<HingeKernel>().stencils()};
+  const auto pattern = BlockPattern::of(cloth().level.vertex_count(), stencils);
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state)
+    for (const Stencils& s : stencils) benchmark::DoNotOptimize(BlockSlots(*pattern, s));
+  finish(state, cloth().level.vertex_count());
+}
+
+void parallel_launch(benchmark::State& state) {
+  set_thread_count(static_cast<int>(state.range(0)));
+  for (auto _ : state) parallel_for(8, 1, [](int begin, int) { benchmark::DoNotOptimize(begin); });
+  finish(state, 1);
+}
+
+}  // namespace
+
+#define DRAPE_THREADS Unit(benchmark::kMillisecond)->Arg(1)->Arg(2)->UseRealTime()
+
+BENCHMARK(shell_gradient)->DRAPE_THREADS;
+BENCHMARK(shell_hessian)->DRAPE_THREADS;
+#define DRAPE_KERNEL(Kernel)                                               \
+  BENCHMARK_TEMPLATE(value, Kernel)->DRAPE_THREADS;                        \
+  BENCHMARK_TEMPLATE(gradient, Kernel)->DRAPE_THREADS;                     \
+  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::none)->DRAPE_THREADS;    \
+  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::clamp)->DRAPE_THREADS;   \
+  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::absolute)->DRAPE_THREADS
+DRAPE_KERNEL(NeoHookeanKernel);
+DRAPE_KERNEL(StvkKernel);
+DRAPE_KERNEL(HingeKernel);
+DRAPE_KERNEL(QuadraticBendingKernel);
+BENCHMARK(block_pattern)->DRAPE_THREADS;
+BENCHMARK(block_slots)->DRAPE_THREADS;
+BENCHMARK(parallel_launch)->Unit(benchmark::kMicrosecond)->Arg(1)->Arg(2)->UseRealTime();
+
+BENCHMARK_MAIN();

@@ -1,0 +1,214 @@
+// The `drape` command. Exit codes: 0 done and converged, 1 a run that ended otherwise, 2 bad input.
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+
+#include "core/experiment/experiment.h"
+#include "core/experiment/machine.h"
+#include "core/experiment/runner.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/describe.h"
+#include "core/plugin/loader.h"
+#include "core/plugin/words.h"
+#include "core/report/report.h"
+#include "core/version.h"
+
+namespace {
+
+using namespace drape;
+
+constexpr int exit_not_converged = 1, exit_bad_input = 2;
+constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metric"};
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+void on_signal(int number) {
+  if (stop_signal) std::_Exit(128 + number);  // the second one does not wait
+  stop_signal = number;
+}
+
+struct ConfigArguments {
+  std::string config;
+  std::vector<std::string> sets;
+  int levels = 0;
+
+  void add_to(CLI::App& command) {
+    command.add_option("config", config, "experiment file (YAML)")->required();
+    command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
+        ->type_name("KEY=VALUE");
+    command.add_option("--levels", levels, "number of levels, in place of the experiment's")
+        ->check(CLI::PositiveNumber);
+  }
+
+  Overrides overrides() const {
+    Overrides all;
+    for (const std::string& set : sets) {
+      const std::size_t equals = set.find('=');
+      if (equals == std::string::npos || equals == 0)
+        throw std::runtime_error("--set " + set + ": write it as key=value, as in --set newton.step_size=0.1");
+      all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+    }
+    if (levels > 0) all.emplace_back("levels", std::to_string(levels));
+    return all;
+  }
+};
+
+int report_errors(const ConfigErrors& errors) {
+  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  return exit_bad_input;
+}
+
+/// An experiment and the scene built from it; errors are printed and leave both empty.
+struct Loaded {
+  std::optional<Experiment> experiment;
+  std::unique_ptr<Scene> scene;
+  int exit_code = 0;
+
+  Loaded(const ConfigArguments& arguments, const Registry& registry) {
+    ConfigErrors errors;
+    experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
+    if (errors.empty()) scene = build_scene(*experiment, errors);
+    if (!errors.empty()) exit_code = report_errors(errors);
+  }
+};
+
+int run(const ConfigArguments& arguments, RunOptions options, const Registry& registry) {
+  Loaded loaded(arguments, registry);
+  if (loaded.exit_code) return loaded.exit_code;
+  if (options.out.empty()) options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  options.stop = [] { return stop_signal != 0; };
+  const bool converged = run_experiment(*loaded.experiment, *loaded.scene, options);
+  if (options.report) std::cout << "report: " << (options.out / "report.html").string() << "\n";
+  else std::cout << "results: " << (options.out / "results.json").string() << "\n";
+  if (stop_signal) {
+    std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
+    return 128 + stop_signal;
+  }
+  return converged ? 0 : exit_not_converged;
+}
+
+int check(const ConfigArguments& arguments, const Registry& registry) {
+  Loaded loaded(arguments, registry);
+  if (loaded.exit_code) return loaded.exit_code;
+  std::cout << arguments.config << ": sound.";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
+  std::cout << "\n";
+  return 0;
+}
+
+int list(const std::string& kind, const Registry& registry) {
+  for (const char* k : kinds) {
+    if (!kind.empty() && kind != k) continue;
+    std::cout << k << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(k))
+      std::printf("  %-24s %s\n", entry->name.c_str(), entry->summary.c_str()), std::fflush(stdout);
+  }
+  return 0;
+}
+
+int describe_plugin(const std::string& name, const Registry& registry) {
+  if (name == "experiment") {
+    std::cout << describe(schema_of<ExperimentParameters>("experiment"));
+    return 0;
+  }
+  std::vector<std::string> names = {"experiment"};
+  bool found = false;
+  for (const auto& entry : registry.entries()) {
+    names.push_back(entry->name);
+    if (entry->name != name) continue;
+    std::cout << (found ? "\n" : "") << describe(*entry);
+    found = true;
+  }
+  if (found) return 0;
+  const std::string near = nearest_word(name, names);
+  std::cerr << "error: no plugin is called \"" << name << "\"; "
+            << (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?") << "\n";
+  return exit_bad_input;
+}
+
+int reference(const Registry& registry) {
+  std::cout << "# Configuration reference\n\nMade by `drape reference`; do not edit.\n\n## Experiment\n\n"
+            << describe_markdown(schema_of<ExperimentParameters>("experiment"));
+  for (const char* kind : kinds) {
+    std::cout << "\n## Kind: " << kind << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(kind)) std::cout << "\n" << describe_markdown(*entry);
+  }
+  return 0;
+}
+
+int main_checked(int argc, char** argv) {
+  CLI::App app("drape: progressive cloth quasistatics");
+  app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+
+  ConfigArguments arguments;
+  RunOptions options;
+  std::string methods, out;
+  int threads = 0;
+  CLI::App* run_command = app.add_subcommand("run", "run an experiment and write its results and report");
+  arguments.add_to(*run_command);
+  run_command->add_option("--out", out, "results folder (default: results/NAME)");
+  run_command->add_option("--method", options.methods, "only these of the experiment's methods")->delimiter(',');
+  run_command->add_option("--threads", threads, "threads (default: one a core)")->check(CLI::PositiveNumber);
+  run_command->add_flag("--overwrite", options.overwrite, "replace the results of an earlier run in the folder");
+  run_command->add_flag("--quiet", options.quiet, "no progress on standard error");
+  run_command->add_flag("!--no-report", options.report, "leave out report.html and its pictures");
+
+  ConfigArguments check_arguments;
+  CLI::App* check_command = app.add_subcommand("check", "check an experiment without running it");
+  check_arguments.add_to(*check_command);
+
+  std::string kind, plugin, run_folder;
+  CLI::App* list_command = app.add_subcommand("list", "list what experiments can choose by name");
+  list_command->add_option("kind", kind, "only this kind")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kinds), std::end(kinds))));
+  CLI::App* describe_command = app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s)");
+  describe_command->add_option("plugin", plugin, "name of the plugin")->required();
+  CLI::App* report_command = app.add_subcommand("report", "write the report of a results folder again");
+  report_command->add_option("folder", run_folder, "results folder")->required();
+  CLI::App* schema_command = app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
+  CLI::App* reference_command = app.add_subcommand("reference", "print the configuration reference (Markdown)");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : exit_bad_input;
+  }
+
+  set_thread_count(threads);
+  if (*report_command) {
+    write_report(run_folder);
+    std::cout << "report: " << (std::filesystem::path(run_folder) / "report.html").string() << "\n";
+    return 0;
+  }
+  Registry registry;
+  load_plugins(registry, plugin_directories());
+  options.out = out;
+  if (*run_command) return run(arguments, options, registry);
+  if (*check_command) return check(check_arguments, registry);
+  if (*list_command) return list(kind, registry);
+  if (*describe_command) return describe_plugin(plugin, registry);
+  if (*schema_command) {
+    std::cout << json_schema(schema_of<ExperimentParameters>("experiment"), &registry).dump(2) << "\n";
+    return 0;
+  }
+  if (*reference_command) return reference(registry);
+  return exit_bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return main_checked(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << "\n";
+    return exit_bad_input;
+  }
+}

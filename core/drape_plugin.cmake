@@ -1,0 +1,15 @@
+# Builds a plugin library that drape finds by its folder (DRAPE_PLUGIN_PATH, or lib/drape beside bin).
+#
+#   drape_add_plugin(<name> SOURCES <file>...)
+function(drape_add_plugin name)
+  cmake_parse_arguments(PARSE_ARGV 1 plugin "" "" "SOURCES")
+  if(NOT plugin_SOURCES OR plugin_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "drape_add_plugin(${name}): write drape_add_plugin(<name> SOURCES <file>...)")
+  endif()
+  add_library(${name} MODULE ${plugin_SOURCES})
+  target_link_libraries(${name} PRIVATE drape::drape)
+  set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX)
+  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)  # a missing symbol shows here, not when loading
+  endif()
+endfunction()

@@ -1,0 +1,225 @@
+#include "core/experiment/experiment.h"
+
+#include <set>
+
+#include "core/experiment/yaml_file.h"
+#include "core/plugin/make.h"
+
+namespace drape {
+
+void LoopParameters::declare(Declaration<LoopParameters>& d) {
+  d.add("points", &LoopParameters::points).unit("m").meaning("x0, y0, x1, y1, … around the outline").required();
+}
+
+void ClothParameters::declare(Declaration<ClothParameters>& d) {
+  d.add("shape", &ClothParameters::shape)
+      .choices({"square", "rectangle", "disc", "polygon", "file"})
+      .meaning("pattern, flat in z = 0 with a corner (a disc: its centre) at the origin, or a mesh file");
+  d.add("side", &ClothParameters::side).unit("m").above(0).meaning("side of a square");
+  d.add("size", &ClothParameters::size).unit("m").above(0).meaning("width and height of a rectangle");
+  d.add("radius", &ClothParameters::radius).unit("m").above(0).meaning("radius of a disc");
+  d.add_sections("loops", &ClothParameters::loops).meaning("a polygon's outline, then its holes");
+  d.add("file", &ClothParameters::file).meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
+  d.add("triangulation", &ClothParameters::triangulation)
+      .choices({"one_way", "criss_cross", "random"})
+      .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
+  d.add("vertices", &ClothParameters::vertices)
+      .at_least(3).at_most(1e7).meaning("about how many vertices the coarsest level has");
+  d.add("columns", &ClothParameters::columns)
+      .at_least(0).meaning("vertices along the width of a grid; 0 takes it from `vertices`");
+  d.add("rows", &ClothParameters::rows)
+      .at_least(0).meaning("vertices along the height of a grid; 0 takes it from `vertices`");
+  d.add("seed", &ClothParameters::seed).at_least(0).meaning("of a random triangulation");
+}
+
+void StartParameters::declare(Declaration<StartParameters>& d) {
+  d.add("scale", &StartParameters::scale).meaning("factors on the rest shape's x, y, z");
+  d.add("rotate", &StartParameters::rotate).unit("°").meaning("then turned about x, y, z, in this order");
+  d.add("translate", &StartParameters::translate).unit("m").meaning("then moved");
+  d.add("perturbation", &StartParameters::perturbation)
+      .unit("m").at_least(0)
+      .meaning("amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
+  d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
+      .unit("m").above(0).meaning("wavelength of the noise");
+  d.add("seed", &StartParameters::seed).at_least(0).meaning("of the noise");
+}
+
+void PinParameters::declare(Declaration<PinParameters>& d) {
+  d.add("region", &PinParameters::region)
+      .choices({"nearest", "ball", "box", "border", "vertices"})
+      .meaning("which vertices: the one nearest to `point`, those within `radius` of it, those in a box, the "
+               "border, or by index on the coarsest level");
+  d.add("point", &PinParameters::point).unit("m").meaning("of nearest and ball, in the rest shape");
+  d.add("radius", &PinParameters::radius).unit("m").at_least(0).meaning("of a ball");
+  d.add("lower", &PinParameters::lower).unit("m").meaning("corner of a box, in the rest shape");
+  d.add("upper", &PinParameters::upper).unit("m").meaning("opposite corner of a box");
+  d.add("vertices", &PinParameters::vertices).meaning("indices, from 0");
+}
+
+void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
+  d.add("name", &ExperimentParameters::name).required().meaning("names the results folder and the report");
+  d.add("description", &ExperimentParameters::description).meaning("one sentence for the report");
+  d.add("table1_scene", &ExperimentParameters::table1_scene)
+      .meaning("block of the supplement's Table 1 that the report sets beside the result");
+  d.add_section("cloth", &ExperimentParameters::cloth).meaning("the coarsest level");
+  d.add("levels", &ExperimentParameters::levels).at_least(1).at_most(10).meaning("each 1→4 finer than the last");
+  d.add_section("material", &ExperimentParameters::material).meaning("of the cloth");
+  d.add_section("start", &ExperimentParameters::start).meaning("where the cloth starts");
+  d.add_sections("pins", &ExperimentParameters::pins).meaning("vertices held where the start puts them");
+  d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
+  d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
+  d.add_node("contact", &ExperimentParameters::contact).plugin("contact").meaning("none if not given");
+  d.add_section("newton", &ExperimentParameters::newton).meaning("of every method, where it says nothing else");
+  d.add_node("methods", &ExperimentParameters::methods)
+      .required().meaning("a map: the method's name, then its solver; without `type`, the name is the solver's");
+  d.add_node("metrics", &ExperimentParameters::metrics).plugin("metric").meaning("all that there are if not given");
+  d.add("reference", &ExperimentParameters::reference)
+      .meaning("method whose finest state the others' are measured against");
+}
+
+namespace {
+
+ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
+
+/// Entries of `base` that `over` lacks are added to it, maps within maps likewise.
+void fill_in(ConfigNode& over, const ConfigNode& base) {
+  if (over.kind == ConfigNode::Kind::null) {
+    const Location where = over.where;
+    over = base;
+    if (where.line > 0) over.where = where;
+    return;
+  }
+  if (over.kind != ConfigNode::Kind::map || base.kind != ConfigNode::Kind::map) return;
+  for (std::size_t i = 0; i < base.entries.size(); ++i) {
+    const auto& [key, value] = base.entries[i];
+    bool there = false;
+    for (auto& [own_key, own_value] : over.entries)
+      if (own_key == key) fill_in(own_value, value), there = true;
+    if (!there) over.entries.emplace_back(key, value), over.key_places.push_back(base.key_places[i]);
+  }
+}
+
+/// What the plugins of one experiment are made with.
+class Maker {
+ public:
+  Maker(const Registry& registry, ConfigErrors& errors, Experiment& experiment)
+      : registry_(registry), errors_(errors), e_(experiment) {}
+
+  void make_all() {
+    ConfigNode energies, metrics;
+    energies.kind = metrics.kind = ConfigNode::Kind::list;
+    for (const ConfigNode& node : e_.parameters.energies)
+      if (auto energy = make<Energy>(node, energies)) e_.energies.push_back({name_of(node), energy});
+    set("energies", energies);
+
+    e_.refiner = make_one<Refiner>("refiner", e_.parameters.refiner, "loop");
+    e_.contact = make_one<ContactModel>("contact", e_.parameters.contact, "none");
+
+    if (!e_.source.find("metrics"))
+      for (const RegistryEntry* entry : registry_.of_kind("metric"))
+        e_.parameters.metrics.push_back(scalar_node(entry->name));
+    for (const ConfigNode& node : e_.parameters.metrics)
+      if (auto metric = make<Metric>(node, metrics)) e_.metrics.emplace_back(name_of(node), metric);
+    set("metrics", metrics);
+    make_methods();
+  }
+
+ private:
+  static std::string name_of(const ConfigNode& node) {
+    const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
+    return type ? type->scalar : "";
+  }
+
+  template <class Interface>
+  std::shared_ptr<Interface> make(const ConfigNode& node, ConfigNode& resolved_list) {
+    ConfigNode resolved;
+    auto object = make_from<Interface>(registry_, node, errors_, &resolved);
+    resolved_list.items.push_back(resolved);
+    return object;
+  }
+
+  template <class Interface>
+  std::shared_ptr<Interface> make_one(const std::string& key, const ConfigNode& node, const char* otherwise) {
+    ConfigNode resolved;
+    auto object = make_from<Interface>(
+        registry_, node.kind == ConfigNode::Kind::null ? scalar_node(otherwise) : node, errors_, &resolved);
+    set(key, resolved);
+    return object;
+  }
+
+  void make_methods() {
+    const ConfigNode& methods = e_.parameters.methods;
+    const ConfigNode* common = e_.source.find("newton");
+    if (methods.kind != ConfigNode::Kind::map || methods.entries.empty()) {
+      if (e_.source.find("methods"))
+        errors_.push_back({methods.where, "\"methods\" must be a map of at least one method, as in "
+                                          "\"methods: {pcs: {}, newton: {}}\""});
+      return;
+    }
+    ConfigNode resolved_map;
+    std::set<std::string> names;
+    for (const auto& [name, written] : methods.entries) {
+      ConfigNode node = written;
+      if (node.kind == ConfigNode::Kind::null) node.kind = ConfigNode::Kind::map;
+      if (node.kind == ConfigNode::Kind::map) {
+        if (!node.find("type")) {
+          ConfigNode type = scalar_node(name);
+          type.where = written.where;
+          node.add("type", type);
+        }
+        if (common && registry_.find("solver", name_of(node))) {
+          ConfigNode base;
+          base.add("newton", *common);
+          fill_in(node, base);
+        }
+      }
+      ConfigNode resolved;
+      if (!names.insert(name).second)
+        errors_.push_back({written.where, "method \"" + name + "\" is given twice; rename one of them"});
+      if (auto solver = make_from<Solver>(registry_, node, errors_, &resolved)) e_.methods.emplace_back(name, solver);
+      resolved_map.add(name, resolved);
+    }
+    set("methods", resolved_map);
+    const std::string& reference = e_.parameters.reference;
+    if (!reference.empty() && !names.count(reference))
+      errors_.push_back({e_.source.find("reference")->where,
+                         "\"reference\" must be one of the methods, not \"" + reference + "\""});
+  }
+
+  void set(const std::string& key, ConfigNode value) {
+    for (auto& [own, old] : e_.resolved.entries)
+      if (own == key) {
+        old = std::move(value);
+        return;
+      }
+    e_.resolved.add(key, std::move(value));
+  }
+
+  const Registry& registry_;
+  ConfigErrors& errors_;
+  Experiment& e_;
+};
+
+}  // namespace
+
+std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
+                                          const Registry& registry, ConfigErrors& errors) {
+  Experiment e;
+  e.source = read_yaml(file, errors);
+  if (!errors.empty()) return std::nullopt;
+  for (const auto& [key, value] : overrides) set_path(e.source, key, value, errors);
+  const Schema schema = schema_of<ExperimentParameters>();
+  schema.read(&e.parameters, e.source, errors);
+  e.resolved = schema.write(&e.parameters);
+  Maker(registry, errors, e).make_all();
+  // The common newton section is read once for itself and once in each method: say each fault once.
+  std::set<std::string> said;
+  ConfigErrors once;
+  for (const ConfigError& error : errors)
+    if (said.insert(error.text()).second) once.push_back(error);
+  errors = std::move(once);
+  if (!errors.empty()) return std::nullopt;
+  return e;
+}
+
+}  // namespace drape

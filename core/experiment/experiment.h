@@ -1,0 +1,115 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/model/contact_model.h"
+#include "core/model/level_model.h"
+#include "core/model/material.h"
+#include "core/model/metric.h"
+#include "core/model/refiner.h"
+#include "core/model/solver.h"
+#include "core/numerics/newton.h"
+#include "core/plugin/registry.h"
+
+namespace drape {
+
+/// One closed outline of a polygonal cloth.
+struct LoopParameters {
+  std::vector<double> points;  ///< x0, y0, x1, y1, … [m]
+  static void declare(Declaration<LoopParameters>& d);
+};
+
+/// The flat pattern, or the mesh file, that the coarsest level is.
+struct ClothParameters {
+  std::string shape = "square";
+  double side = 1;
+  Eigen::Vector2d size{1, 1};
+  double radius = 0.5;
+  std::vector<LoopParameters> loops;
+  std::string file;
+  std::string triangulation = "one_way";
+  int vertices = 1024;
+  int columns = 0, rows = 0;
+  int seed = 1;
+  static void declare(Declaration<ClothParameters>& d);
+};
+
+/// Where the cloth starts: rest → scaled → rotated → moved.
+struct StartParameters {
+  Eigen::Vector3d scale{1, 1, 1};
+  Eigen::Vector3d rotate{0, 0, 0};
+  Eigen::Vector3d translate{0, 0, 0};
+  double perturbation = 0;
+  double perturbation_wavelength = 0.25;
+  int seed = 1;
+  static void declare(Declaration<StartParameters>& d);
+};
+
+/// Vertices held where the start puts them, by region of the rest shape, on every level.
+struct PinParameters {
+  std::string region = "nearest";
+  Eigen::Vector3d point{0, 0, 0};
+  double radius = 0;
+  Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
+  std::vector<int> vertices;
+  static void declare(Declaration<PinParameters>& d);
+};
+
+/// A whole experiment file.
+struct ExperimentParameters {
+  std::string name;
+  std::string description;
+  std::string table1_scene;
+  ClothParameters cloth;
+  int levels = 4;
+  Material material;
+  StartParameters start;
+  std::vector<PinParameters> pins;
+  std::vector<ConfigNode> energies;
+  ConfigNode refiner, contact;
+  NewtonParameters newton;
+  ConfigNode methods;
+  std::vector<ConfigNode> metrics;
+  std::string reference;
+  static void declare(Declaration<ExperimentParameters>& d);
+};
+
+/// An experiment that has been read and checked, with its plugins made but nothing built yet.
+struct Experiment {
+  ExperimentParameters parameters;
+  ConfigNode source;    ///< as written, with places
+  ConfigNode resolved;  ///< with every parameter of every plugin in it
+  std::vector<NamedEnergy> energies;
+  std::shared_ptr<Refiner> refiner;
+  std::shared_ptr<ContactModel> contact;
+  std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
+  std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
+};
+
+/// Values given beside the file, `key.path=value`, in order.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+/// Reads an experiment, collecting everything that is wrong with it; empty if anything is.
+std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
+                                          const Registry& registry, ConfigErrors& errors);
+
+/// The levels, models and starts of an experiment. Not movable: models refer to the hierarchy.
+struct Scene {
+  Hierarchy hierarchy;
+  std::vector<std::unique_ptr<LevelModel>> models;
+  std::vector<Positions> starts;
+
+  Problem problem() const;
+};
+
+/// Builds the scene; null, with every fault of the mesh and every pin that holds nothing appended, if it
+/// cannot be built.
+std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors);
+
+}  // namespace drape

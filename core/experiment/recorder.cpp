@@ -1,0 +1,186 @@
+#include "core/experiment/recorder.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "core/experiment/machine.h"
+#include "core/mesh/io.h"
+#include "core/numerics/parallel.h"
+#include "core/version.h"
+
+namespace drape {
+
+namespace {
+
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+/// The member of an object that a metric's name stands for; "a.b" is member b of member a.
+nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot == std::string::npos ? object[name] : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
+}
+
+}  // namespace
+
+Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
+    : folder_(folder), experiment_(experiment), scene_(scene) {
+  steps_.open(folder.file("steps.csv"));
+  steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_size\n";
+  log_.open(folder.file("log.jsonl"));
+  const ExperimentParameters& p = experiment.parameters;
+  results_["experiment"] = p.name;
+  results_["description"] = p.description;
+  results_["complete"] = false;
+  results_["version"] = std::string("drape ") + version();
+  results_["commit"] = commit();
+  results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
+  results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
+  results_["table1_scene"] = p.table1_scene;
+  results_["methods"] = Json::object();
+  for (const Level& level : scene.hierarchy.levels)
+    write_ply(folder.file("rest/l" + std::to_string(level.index) + ".ply"), level.rest);
+  save();
+  log({{"event", "run_started"}, {"experiment", p.name}});
+}
+
+void Recorder::log(Json entry) {
+  const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  entry["time"] = now;
+  log_ << entry.dump() << std::endl;
+}
+
+void Recorder::save() const { folder_.write_text("results.json", results_.dump(1) + "\n"); }
+
+std::string Recorder::file_of(const std::string& method, int level, const char* extension) const {
+  return "levels/" + method + "_l" + std::to_string(level) + extension;
+}
+
+void Recorder::method_started(const std::string& method) {
+  method_ = method;
+  reset_peak_memory();
+  method_entry() = {{"status", "running"}, {"seconds", 0.0}, {"peak_memory_bytes", 0}, {"levels", Json::array()},
+                    {"consistency", Json::array()}};
+  save();
+  log({{"event", "method_started"}, {"method", method}});
+}
+
+void Recorder::level_started(int level) {
+  log({{"event", "level_started"}, {"method", method_}, {"level", level}});
+}
+
+void Recorder::iteration(const IterationRow& r, const Positions&) {
+  char line[400];
+  std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
+                r.iteration, r.seconds, r.energy, r.decrement, r.force_residual, r.step_length);
+  steps_ << line;
+  if (r.proxy_energy) std::snprintf(line, sizeof line, "%.17g", *r.proxy_energy), steps_ << line;
+  std::snprintf(line, sizeof line, ",%.9g\n", r.step_size);
+  steps_ << line << std::flush;
+}
+
+Recorder::Json Recorder::state_entry(const LevelResult& r) {
+  const Level& level = scene_.hierarchy.levels[r.level];
+  const LevelModel& model = *scene_.models[r.level];
+  Json entry = {{"level", r.level},
+                {"vertices", level.vertex_count()},
+                {"triangles", level.triangle_count()},
+                {"status", to_string(r.outcome)},
+                {"message", r.message},
+                {"steps", r.steps},
+                {"newton_iterations", r.iterations},
+                {"factorisations", r.factorisations},
+                {"seconds", r.seconds},
+                {"seconds_by_phase", r.seconds_by_phase},
+                {"energy", finite_or_null(model.value(r.x))},
+                {"energy_on_finest", finite_or_null(scene_.models.back()->value(scene_.hierarchy.prolong(
+                                         r.x, r.level, static_cast<int>(scene_.models.size()) - 1)))},
+                {"decrement", finite_or_null(r.decrement)},
+                {"force_residual", finite_or_null(r.force_residual)},
+                {"intersections", nullptr},
+                {"smallest_gap", nullptr},
+                {"mesh", file_of(method_, r.level, ".ply")}};
+  return entry;
+}
+
+void Recorder::level_finished(const LevelResult& r) {
+  const TriangleMesh mesh{r.x, scene_.hierarchy.levels[r.level].rest.triangles};
+  write_ply(folder_.file(file_of(method_, r.level, ".ply")), mesh);
+  write_vtp(folder_.file(file_of(method_, r.level, ".vtp")), mesh);
+  Json& entry = method_entry();
+  entry["levels"].push_back(state_entry(r));
+  entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
+  entry["peak_memory_bytes"] = peak_memory_bytes();
+  save();
+  log({{"event", "level_finished"}, {"method", method_}, {"level", r.level}, {"status", to_string(r.outcome)},
+       {"message", r.message}, {"seconds", r.seconds}});
+}
+
+Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
+                                 const std::string& fields_file) {
+  Json row;
+  VertexFields fields;
+  for (const auto& [name, metric] : experiment_.metrics) {
+    if (metric->scope() != MetricScope::pair) continue;
+    const MetricResult result =
+        metric->evaluate({scene_.hierarchy.levels[level], *scene_.models[level], x, &other});
+    for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
+    for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
+  }
+  if (!fields_file.empty() && !fields.empty()) {
+    write_ply(folder_.file(fields_file), {x, scene_.hierarchy.levels[level].rest.triangles}, fields);
+    row["fields"] = fields_file;
+  }
+  return row;
+}
+
+void Recorder::method_finished(const std::vector<LevelResult>& results) {
+  Json& entry = method_entry();
+  Outcome worst = Outcome::converged;
+  const int finest = static_cast<int>(scene_.models.size()) - 1;
+  std::vector<std::pair<double, std::string>> frames;
+  for (const LevelResult& r : results) {
+    if (r.outcome != Outcome::converged) worst = r.outcome;
+    for (const auto& [name, metric] : experiment_.metrics)
+      if (metric->scope() == MetricScope::state)
+        for (const MetricValue& v :
+             metric->evaluate({scene_.hierarchy.levels[r.level], *scene_.models[r.level], r.x}).values)
+          at_dotted(entry["levels"][r.level], v.name) = finite_or_null(v.value);
+    frames.emplace_back(r.level, file_of(method_, r.level, ".vtp").substr(7));
+  }
+  write_pvd(folder_.file("levels/" + method_ + ".pvd"), frames);
+  for (std::size_t c = 0; c < results.size(); ++c)
+    for (std::size_t f = c + 1; f < results.size(); ++f) {
+      const Positions carried = scene_.hierarchy.prolong(results[c].x, results[c].level, results[f].level);
+      const std::string tag = method_ + "_l" + std::to_string(c) + "_l" + std::to_string(f);
+      Json row = {{"coarse", c}, {"fine", f}};
+      row.update(compare(results[f].level, results[f].x, carried,
+                         results[f].level == finest ? "fields/" + tag + ".ply" : ""));
+      entry["consistency"].push_back(row);
+    }
+  entry["status"] = to_string(worst);
+  if (!results.empty() && results.back().level == finest) finest_.emplace_back(method_, results.back().x);
+  save();
+  log({{"event", "method_finished"}, {"method", method_}, {"status", to_string(worst)}});
+}
+
+void Recorder::run_finished(bool complete) {
+  const Positions* reference = nullptr;
+  for (const auto& [method, x] : finest_)
+    if (method == experiment_.parameters.reference) reference = &x;
+  if (reference)
+    for (const auto& [method, x] : finest_)
+      if (&x != reference) {
+        Json row = compare(static_cast<int>(scene_.models.size()) - 1, x, *reference, "");
+        row["against"] = experiment_.parameters.reference;
+        results_["methods"][method]["reference"] = row;
+      }
+  results_["complete"] = complete;
+  save();
+  log({{"event", "run_finished"}, {"complete", complete}});
+}
+
+}  // namespace drape

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/experiment/experiment.h"
+#include "core/experiment/run_folder.h"
+
+namespace drape {
+
+/// Writes a run down while it goes: steps.csv, log.jsonl, levels/*.ply and results.json.
+class Recorder : public Observer {
+ public:
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
+
+  void method_started(const std::string& method);
+  /// Measures the levels reached and every pair of them, and writes results.json.
+  void method_finished(const std::vector<LevelResult>& results);
+  /// Measures every method's finest state against the reference method's; marks the results complete.
+  void run_finished(bool complete);
+
+  void level_started(int level) override;
+  void iteration(const IterationRow& row, const Positions& x) override;
+  void level_finished(const LevelResult& result) override;
+
+ private:
+  using Json = nlohmann::ordered_json;
+
+  Json& method_entry() { return results_["methods"][method_]; }
+  std::string file_of(const std::string& method, int level, const char* extension) const;
+  Json state_entry(const LevelResult& result);
+  Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
+  void log(Json entry);
+  void save() const;
+
+  const RunFolder& folder_;
+  const Experiment& experiment_;
+  const Scene& scene_;
+  std::ofstream steps_, log_;
+  Json results_;
+  std::string method_;
+  std::vector<std::pair<std::string, Positions>> finest_;  // of each method that reached it
+};
+
+}  // namespace drape

@@ -1,0 +1,48 @@
+#include "core/experiment/run_folder.h"
+
+#include <fstream>
+#include <stdexcept>
+
+namespace drape {
+
+namespace {
+
+// What a run writes; the only names that --overwrite may remove.
+constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html", "steps.csv", "log.jsonl",
+                                     "levels",      "fields",       "rest",        "pictures"};
+
+}  // namespace
+
+RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::create_directories(path_, error);
+  const std::string name = path_.string();
+  if (error || !fs::is_directory(path_))
+    throw std::runtime_error(name + ": cannot make the results folder" + (error ? " (" + error.message() + ")" : "") +
+                             "; name another with --out");
+  if (fs::exists(file("results.json")) && !overwrite)
+    throw std::runtime_error(name + ": holds the results of another run; name another folder with --out, or "
+                                    "replace them with --overwrite");
+  const fs::path probe = file("writable.part");
+  {
+    std::ofstream out(probe);
+    if (!out.put('\n')) throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
+  }
+  fs::remove(probe, error);
+  if (overwrite)
+    for (const char* own : own_names) fs::remove_all(file(own), error);
+  for (const char* folder : {"levels", "fields", "rest"}) fs::create_directories(file(folder));
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) const {
+  const std::filesystem::path part = file(name + ".part");
+  {
+    std::ofstream out(part, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw std::runtime_error(part.string() + ": cannot write (is the disk full?)");
+  }
+  std::filesystem::rename(part, file(name));
+}
+
+}  // namespace drape

@@ -1,0 +1,81 @@
+#include "core/experiment/runner.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/experiment/progress.h"
+#include "core/experiment/recorder.h"
+#include "core/experiment/yaml_file.h"
+#include "core/report/report.h"
+
+namespace drape {
+
+namespace {
+
+/// Passes everything on to the recorder and the progress bar.
+class RunObserver : public Observer {
+ public:
+  RunObserver(Recorder& recorder, Progress& progress, const std::function<bool()>& stop)
+      : recorder_(recorder), progress_(progress), stop_(stop) {}
+
+  void level_started(int level) override {
+    recorder_.level_started(level);
+    progress_.level_started(level);
+  }
+  void iteration(const IterationRow& row, const Positions& x) override {
+    recorder_.iteration(row, x);
+    progress_.iteration(row, x);
+  }
+  void level_finished(const LevelResult& result) override {
+    recorder_.level_finished(result);
+    progress_.level_finished(result);
+  }
+  bool stop_requested() override { return stop_ && stop_(); }
+
+ private:
+  Recorder& recorder_;
+  Progress& progress_;
+  const std::function<bool()>& stop_;
+};
+
+void require_methods(const Experiment& experiment, const std::vector<std::string>& chosen) {
+  std::string known;
+  for (const auto& [name, solver] : experiment.methods) known += (known.empty() ? "" : ", ") + name;
+  for (const std::string& name : chosen)
+    if (std::none_of(experiment.methods.begin(), experiment.methods.end(),
+                     [&](const auto& method) { return method.first == name; }))
+      throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
+}
+
+}  // namespace
+
+bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
+  require_methods(experiment, options.methods);
+  const RunFolder folder(options.out, options.overwrite);
+  folder.write_text("config.yaml", to_yaml(experiment.resolved));
+  Recorder recorder(folder, experiment, scene);
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet);
+  RunObserver observer(recorder, progress, options.stop);
+  const Problem problem = scene.problem();
+
+  bool all_converged = true, cancelled = false;
+  for (const auto& [name, solver] : experiment.methods) {
+    if (!options.methods.empty() &&
+        std::find(options.methods.begin(), options.methods.end(), name) == options.methods.end())
+      continue;
+    if (cancelled) break;
+    recorder.method_started(name);
+    progress.method_started(name);
+    const std::vector<LevelResult> results = solver->solve(problem, observer);
+    recorder.method_finished(results);
+    for (const LevelResult& r : results) {
+      all_converged = all_converged && r.outcome == Outcome::converged;
+      cancelled = cancelled || r.outcome == Outcome::cancelled;
+    }
+  }
+  recorder.run_finished(!cancelled);
+  if (options.report) write_report(folder.path());
+  return all_converged;
+}
+
+}  // namespace drape

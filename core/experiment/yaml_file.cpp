@@ -1,0 +1,174 @@
+#include "core/experiment/yaml_file.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "core/plugin/parameters.h"
+
+namespace drape {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+Location place(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return {file, 0, 0};
+  return {file, mark.line + 1, mark.column + 1};
+}
+
+/// Copies yaml-cpp's graph into a tree; an alias is a copy of its anchor, with the anchor's place.
+class Converter {
+ public:
+  Converter(const std::string& file, ConfigErrors& errors) : file_(file), errors_(errors) {}
+
+  ConfigNode convert(const YAML::Node& yaml) {
+    ConfigNode node;
+    node.where = place(file_, yaml.Mark());
+    // An alias inside its own anchor never ends, and a few nested ones can make billions of nodes.
+    if (++nodes_ > max_nodes || depth_ > max_depth) {
+      if (!refused_) errors_.push_back({node.where, "too many nested or repeated nodes; check the aliases"});
+      refused_ = true;
+      return node;
+    }
+    ++depth_;
+    if (yaml.IsScalar()) convert_scalar(yaml, node);
+    if (yaml.IsSequence()) convert_list(yaml, node);
+    if (yaml.IsMap()) convert_map(yaml, node);
+    --depth_;
+    return node;
+  }
+
+ private:
+  void convert_scalar(const YAML::Node& yaml, ConfigNode& node) {
+    const std::string& tag = yaml.Tag();
+    node.kind = Kind::scalar;
+    node.scalar = yaml.Scalar();
+    node.quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
+    if (!node.quoted && !tag.empty() && tag != "?")
+      errors_.push_back({node.where, "tag \"" + tag + "\" is not supported; take it out"});
+  }
+
+  void convert_list(const YAML::Node& yaml, ConfigNode& node) {
+    node.kind = Kind::list;
+    for (const YAML::Node& item : yaml) {
+      if (refused_) return;
+      node.items.push_back(convert(item));
+    }
+  }
+
+  void convert_map(const YAML::Node& yaml, ConfigNode& node) {
+    node.kind = Kind::map;
+    for (const auto& entry : yaml) {
+      if (refused_) return;
+      const Location where = place(file_, entry.first.Mark());
+      if (!entry.first.IsScalar()) {
+        errors_.push_back({where, "a key must be a word"});
+        continue;
+      }
+      node.add(entry.first.Scalar(), convert(entry.second));
+      node.key_places.back() = where;
+    }
+  }
+
+  static constexpr int max_nodes = 200000;
+  static constexpr int max_depth = 100;
+  const std::string& file_;
+  ConfigErrors& errors_;
+  int nodes_ = 0;
+  int depth_ = 0;
+  bool refused_ = false;
+};
+
+ConfigNode parse_value(const std::string& text, const std::string& name, ConfigErrors& errors) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      errors.push_back({place(name, documents[1].Mark()), "a second document begins here; a config is one"});
+    else if (!documents.empty())
+      return Converter(name, errors).convert(documents[0]);
+  } catch (const YAML::Exception& error) {
+    errors.push_back({place(name, error.mark), "not valid YAML: " + error.msg});
+  }
+  return {};
+}
+
+void set_places(ConfigNode& node, const Location& where) {
+  node.where = where;
+  for (ConfigNode& item : node.items) set_places(item, where);
+  for (auto& entry : node.entries) set_places(entry.second, where);
+  for (Location& key : node.key_places) key = where;
+}
+
+/// The part of `node` that one word of a path names, made if it is a new key; null where there is none.
+ConfigNode* step(ConfigNode& node, const std::string& word, const Location& where) {
+  if (node.kind == Kind::list) {
+    const auto index = parse_integer(word);
+    return index && *index >= 0 && *index < int(node.items.size()) ? &node.items[size_t(*index)] : nullptr;
+  }
+  if (node.kind == Kind::scalar) {
+    ConfigNode map;
+    map.where = node.where;
+    map.add("type", node);
+    node = map;
+  }
+  for (auto& [key, value] : node.entries)
+    if (key == word) return &value;
+  ConfigNode value;
+  value.where = where;
+  node.add(word, value);
+  return &node.entries.back().second;
+}
+
+}  // namespace
+
+ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigErrors& errors) {
+  const size_t before = errors.size();
+  const ConfigNode node = parse_value(text, name, errors);
+  if (errors.size() != before) return {};
+  if (node.kind == Kind::map) return node;
+  errors.push_back({node.kind == Kind::null ? Location{name, 0, 0} : node.where,
+                    node.kind == Kind::null ? "is empty; a config is a map of keys and values"
+                                            : "a config must begin with a map of keys and values"});
+  return {};
+}
+
+ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
+  std::ostringstream text;
+  std::ifstream stream(file);
+  const bool directory = std::filesystem::is_directory(file);
+  if (!stream || directory || (stream.peek() != EOF && !(text << stream.rdbuf()))) {
+    const std::string why = directory ? "is a folder, not a file"
+                            : std::filesystem::exists(file) ? "cannot be read" : "no such file";
+    errors.push_back({{file.string(), 0, 0}, why});
+    return {};
+  }
+  return parse_yaml(text.str(), file.string(), errors);
+}
+
+bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
+  const Location where{"--set " + path, 0, 0};
+  const size_t before = errors.size();
+  ConfigNode* node = &root;
+  ConfigNode parsed = parse_value(value, where.file, errors);
+  if (errors.size() != before) return false;
+  std::istringstream words(path + ".");
+  for (std::string word; std::getline(words, word, '.');) {
+    if (word.empty()) {
+      errors.push_back({where, "the path has an empty name"});
+      return false;
+    }
+    const size_t size = node->items.size();
+    node = step(*node, word, where);
+    if (!node) {
+      errors.push_back({where, "\"" + word + "\" is not an index of a list of " + std::to_string(size) +
+                                   ", counted from 0"});
+      return false;
+    }
+  }
+  set_places(parsed, where);
+  *node = parsed;
+  return true;
+}
+
+}  // namespace drape

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/refiner.h"
+
+namespace drape {
+
+/// Levels of one cloth from coarse to fine, and the operators between them. Immutable once made.
+struct Hierarchy {
+  std::vector<Level> levels;                      ///< at least one
+  std::vector<ProlongationMatrix> prolongations;  ///< [l]: P_{l→l+1} of the chosen refiner
+  std::vector<ProlongationMatrix> midpoints;      ///< [l]: U_{l→l+1}, which leaves the surface in place
+
+  /// Refines `coarsest` level_count - 1 times. Rest positions follow the same operator, X_{l+1} = P X_l,
+  /// so that the rest shape is free of stress on every level. Throws std::runtime_error with the first
+  /// fault of check_mesh, if any level has one, and on fewer than one level.
+  static Hierarchy of(TriangleMesh coarsest, const Refiner& refiner, int level_count);
+
+  int level_count() const { return static_cast<int>(levels.size()); }
+
+  /// P_{to-1→to} ⋯ P_{from→from+1} x, for x (n_from × 3) and 0 ≤ from ≤ to < level_count().
+  Positions prolong(const Positions& x, int from, int to) const;
+};
+
+}  // namespace drape

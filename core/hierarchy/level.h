@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/mesh/topology.h"
+#include "core/mesh/triangle_mesh.h"
+
+namespace drape {
+
+/// One resolution of one cloth: its rest shape and what follows from it alone. Immutable once made.
+struct Level {
+  int index = 0;                ///< 0 is the coarsest
+  TriangleMesh rest;            ///< rest positions X_l [m] and triangles
+  Topology topology;            ///< of rest.triangles
+  Eigen::VectorXd vertex_area;  ///< n, a third of the adjacent rest areas [m²]
+
+  /// Derives topology and areas from `rest`, which must have passed check_mesh.
+  static Level of(int index, TriangleMesh rest);
+
+  int vertex_count() const { return static_cast<int>(rest.vertices.rows()); }
+  int triangle_count() const { return static_cast<int>(rest.triangles.rows()); }
+};
+
+}  // namespace drape

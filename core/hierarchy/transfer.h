@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "core/mesh/triangle_mesh.h"
+#include "core/model/refiner.h"
+
+namespace drape {
+
+/// A prolongation made ready to be applied many times: y = P x and g_c = Pᵀ g_f, threaded, without
+/// allocation and with the same bits for any number of threads.
+class Transfer {
+ public:
+  explicit Transfer(const ProlongationMatrix& weights);
+
+  /// fine = P coarse (n_f × 3); `fine` is resized when needed.
+  void prolong(const Positions& coarse, Positions& fine) const { apply(down_, coarse, fine); }
+  /// coarse = Pᵀ fine (n_c × 3).
+  void restrict(const Positions& fine, Positions& coarse) const { apply(up_, fine, coarse); }
+
+ private:
+  struct Rows {
+    std::vector<int> start, column;
+    std::vector<double> weight;
+  };
+  static Rows rows_of(const ProlongationMatrix& matrix);
+  static void apply(const Rows& rows, const Positions& x, Positions& y);
+
+  Rows down_, up_;
+};
+
+}  // namespace drape

@@ -1,0 +1,187 @@
+#include "core/mesh/check.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "core/mesh/half_edges.h"
+
+namespace drape {
+namespace {
+
+using Faults = std::vector<std::string>;
+
+std::string text(int number) { return std::to_string(number); }
+
+std::string triangle_name(const Triangles& triangles, int t) {
+  return "triangle " + text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
+         text(triangles(t, 2)) + ")";
+}
+
+std::string edge_name(const HalfEdge& e) {
+  return "edge (" + text(e.smaller()) + ", " + text(e.larger()) + ")";
+}
+
+bool repeats_vertex(const Triangles& triangles, int t) {
+  const auto v = triangles.row(t);
+  return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
+
+std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, int t) {
+  const auto v = mesh.triangles.row(t);
+  return {mesh.vertices.row(v[0]), mesh.vertices.row(v[1]), mesh.vertices.row(v[2])};
+}
+
+bool check_indices(const TriangleMesh& mesh, Faults& faults) {
+  const int n = static_cast<int>(mesh.vertices.rows());
+  bool in_range = true;
+  std::vector<char> used(n, 0);
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int v = mesh.triangles(t, k);
+      if (v >= 0 && v < n) {
+        used[v] = 1;
+        continue;
+      }
+      faults.push_back(triangle_name(mesh.triangles, t) + " names vertex " + text(v) +
+                       ", but vertices go from 0 to " + text(n - 1));
+      in_range = false;
+    }
+  for (int v = 0; v < n; ++v) {
+    if (!mesh.vertices.row(v).allFinite())
+      faults.push_back("vertex " + text(v) + " has a coordinate that is not finite");
+    if (!used[v]) faults.push_back("vertex " + text(v) + " belongs to no triangle");
+  }
+  return in_range;
+}
+
+void check_shapes(const TriangleMesh& mesh, Faults& faults) {
+  constexpr double smallest_height = 1e-12;  // relative; far above rounding, far below any usable triangle
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    if (repeats_vertex(mesh.triangles, t)) {
+      faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex");
+      continue;
+    }
+    const auto [a, b, c] = corners(mesh, t);
+    const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+    if ((b - a).cross(c - a).norm() <= smallest_height * longest)  // false where a coordinate is NaN
+      faults.push_back(triangle_name(mesh.triangles, t) + " has no area");
+  }
+}
+
+void check_duplicates(const Triangles& triangles, Faults& faults) {
+  std::vector<std::pair<std::array<int, 3>, int>> sorted;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    std::array<int, 3> v{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    std::sort(v.begin(), v.end());
+    sorted.emplace_back(v, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i].first == sorted[i - 1].first)
+      faults.push_back(triangle_name(triangles, sorted[i].second) + " has the same vertices as triangle " +
+                       text(sorted[i - 1].second));
+}
+
+/// Sets of triangle corners that hang together across edges; one set a fan.
+class Fans {
+ public:
+  explicit Fans(int corner_count) : parent_(corner_count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int i, int j) { parent_[find(i)] = find(j); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// Corner of the half-edge's triangle at its start or end vertex.
+int corner_at(int half_edge, bool end) {
+  return half_edge - half_edge % 3 + (half_edge % 3 + (end ? 2 : 1)) % 3;
+}
+
+void check_edge(const Triangles& triangles, const std::vector<int>& sides, Faults& faults) {
+  const HalfEdge e = HalfEdge::of(triangles, sides[0]);
+  if (sides.size() > 2) {
+    std::string names;
+    for (int h : sides) names += (names.empty() ? " " : ", ") + text(h / 3);
+    faults.push_back(edge_name(e) + " has " + text(static_cast<int>(sides.size())) + " triangles:" + names);
+  } else if (sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from) {
+    faults.push_back(edge_name(e) + " runs in the same direction in triangles " + text(sides[0] / 3) +
+                     " and " + text(sides[1] / 3) + ": one of them is inverted");
+  }
+}
+
+void check_connectivity(const Triangles& triangles, int vertex_count, Faults& faults) {
+  std::vector<int> order = half_edges_by_edge(triangles, vertex_count);
+  std::erase_if(order, [&](int h) { return repeats_vertex(triangles, h / 3); });
+  Fans fans(static_cast<int>(3 * triangles.rows()));
+  std::vector<int> sides;
+  for (std::size_t i = 0; i < order.size(); i += sides.size()) {
+    const HalfEdge e = HalfEdge::of(triangles, order[i]);
+    sides.clear();
+    for (std::size_t j = i; j < order.size() && HalfEdge::of(triangles, order[j]).same_edge(e); ++j)
+      sides.push_back(order[j]);
+    check_edge(triangles, sides, faults);
+    for (int h : sides) {
+      const bool same_direction = HalfEdge::of(triangles, h).from == e.from;
+      fans.unite(corner_at(h, !same_direction), corner_at(sides[0], false));
+      fans.unite(corner_at(h, same_direction), corner_at(sides[0], true));
+    }
+  }
+
+  std::vector<int> fan_count(vertex_count, 0);
+  for (int c = 0; c < 3 * triangles.rows(); ++c)
+    if (fans.find(c) == c && !repeats_vertex(triangles, c / 3)) ++fan_count[triangles(c / 3, c % 3)];
+  for (int v = 0; v < vertex_count; ++v)
+    if (fan_count[v] > 1)
+      faults.push_back("vertex " + text(v) + " joins " + text(fan_count[v]) + " separate fans of triangles");
+}
+
+void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
+  if (!(mesh.vertices.col(2).array() == 0).all()) return;
+  std::vector<int> up, down;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    const auto [a, b, c] = corners(mesh, t);
+    const double z = (b - a).cross(c - a).z();
+    if (z > 0) up.push_back(t);
+    if (z < 0) down.push_back(t);
+  }
+  for (int t : up.size() < down.size() ? up : down)
+    faults.push_back(triangle_name(mesh.triangles, t) + " faces the other way than most of this flat mesh");
+}
+
+}  // namespace
+
+std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
+  Faults faults;
+  if (mesh.vertices.rows() == 0) faults.push_back("the mesh has no vertices");
+  if (mesh.triangles.rows() == 0) faults.push_back("the mesh has no triangles");
+  if (!check_indices(mesh, faults) || mesh.triangles.rows() == 0) return faults;
+  check_shapes(mesh, faults);
+  check_duplicates(mesh.triangles, faults);
+  check_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), faults);
+  check_flat_orientation(mesh, faults);
+  return faults;
+}
+
+double smallest_angle(const TriangleMesh& mesh) {
+  if (mesh.triangles.rows() == 0) return 0;
+  double smallest = std::numbers::pi;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    const auto p = corners(mesh, t);
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
+      smallest = std::min(smallest, std::atan2(a.cross(b).norm(), a.dot(b)));
+    }
+  }
+  return smallest * 180 / std::numbers::pi;
+}
+
+}  // namespace drape

@@ -1,0 +1,93 @@
+// Wavefront OBJ and OFF.
+#include <algorithm>
+#include <charconv>
+
+#include "core/mesh/io_formats.h"
+#include "core/mesh/mesh_builder.h"
+#include "core/mesh/text_reader.h"
+
+namespace drape {
+namespace {
+
+void read_vertex(const TextReader& reader, std::size_t first_word, MeshBuilder& builder) {
+  if (reader.words().size() < first_word + 3) reader.fail("a vertex needs three coordinates");
+  for (std::size_t k = 0; k < 3; ++k)
+    builder.coordinates.push_back(reader.number(reader.words()[first_word + k]));
+}
+
+/// Vertex index, from 0, of one corner of an OBJ face: "v", "v/vt", "v//vn" or "v/vt/vn", v from 1 or,
+/// negative, counted back from the last vertex so far.
+int obj_corner(const TextReader& reader, std::string_view word, int vertex_count) {
+  const long long v = reader.integer(word.substr(0, word.find('/')));
+  if (v == 0 || v > vertex_count || v < -static_cast<long long>(vertex_count))
+    reader.fail("face names vertex " + std::to_string(v) + ", but " + std::to_string(vertex_count) +
+                " vertices precede it");
+  return static_cast<int>(v > 0 ? v - 1 : vertex_count + v);
+}
+
+}  // namespace
+
+TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes) {
+  TextReader reader(path, bytes, '#');
+  MeshBuilder builder;
+  std::vector<int> polygon;
+  while (reader.next_line()) {
+    const auto& words = reader.words();
+    if (words[0] == "v") read_vertex(reader, 1, builder);
+    if (words[0] != "f") continue;
+    polygon.clear();
+    for (std::size_t k = 1; k < words.size(); ++k)
+      polygon.push_back(obj_corner(reader, words[k], builder.vertex_count()));
+    if (polygon.size() < 3) reader.fail("a face needs at least three vertices");
+    builder.add_polygon(polygon);
+  }
+  return builder.mesh();
+}
+
+TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes) {
+  TextReader reader(path, bytes, '#');
+  const std::string_view magic = reader.next_word("OFF");
+  // Prefixes announce texture, colour and normals, which stand behind the coordinates and are not read.
+  if (magic != "OFF" && magic != "COFF" && magic != "NOFF" && magic != "CNOFF" && magic != "STOFF")
+    reader.fail("an OFF file begins with OFF, not '" + std::string(magic) + "'");
+  std::string_view word = reader.next_word("the number of vertices");
+  if (word == "BINARY") reader.fail("binary OFF is not read; convert it to text or to PLY");
+  const int vertex_count = reader.count(word, "vertices");
+  const int face_count = reader.count(reader.next_word("the number of faces"), "faces");
+
+  MeshBuilder builder;
+  for (int v = 0; v < vertex_count; ++v) {
+    if (!reader.next_line()) reader.fail("the file ends before vertex " + std::to_string(v));
+    read_vertex(reader, 0, builder);
+  }
+  std::vector<int> polygon;
+  for (int f = 0; f < face_count; ++f) {
+    if (!reader.next_line()) reader.fail("the file ends before face " + std::to_string(f));
+    const auto& words = reader.words();
+    const auto size = static_cast<std::size_t>(reader.count(words[0], "vertices of a face"));
+    if (size < 3) reader.fail("a face needs at least three vertices");
+    if (words.size() <= size) reader.fail("a face of " + std::to_string(size) + " vertices names fewer");
+    polygon.clear();
+    for (std::size_t k = 1; k <= size; ++k) polygon.push_back(reader.index(words[k], vertex_count, "vertex"));
+    builder.add_polygon(polygon);
+  }
+  return builder.mesh();
+}
+
+std::string exact_text(double value) {
+  char buffer[32];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+std::string obj_text(const TriangleMesh& mesh) {
+  std::string text;
+  for (int v = 0; v < mesh.vertices.rows(); ++v)
+    text += "v " + exact_text(mesh.vertices(v, 0)) + ' ' + exact_text(mesh.vertices(v, 1)) + ' ' +
+            exact_text(mesh.vertices(v, 2)) + '\n';
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    text += "f " + std::to_string(mesh.triangles(t, 0) + 1) + ' ' + std::to_string(mesh.triangles(t, 1) + 1) +
+            ' ' + std::to_string(mesh.triangles(t, 2) + 1) + '\n';
+  return text;
+}
+
+}  // namespace drape

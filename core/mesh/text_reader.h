@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace drape {
+
+/// A text as lines of words, with errors that name file and line. The text must outlive the reader.
+class TextReader {
+ public:
+  /// `comment` starts a comment that runs to the end of its line; '\0' for none.
+  TextReader(std::filesystem::path path, std::string_view text, char comment);
+
+  /// Moves to the next line that has words; false at the end of the text.
+  bool next_line();
+  /// Words of the current line.
+  const std::vector<std::string_view>& words() const { return words_; }
+  /// The next word, on this line or a later one; an error names what was `expected` where the text ends.
+  std::string_view next_word(const std::string& expected);
+  /// Drops the words of this line that next_word has not given out.
+  void finish_line() { next_ = words_.size(); }
+  /// Bytes up to the end of this line.
+  std::size_t position() const { return position_; }
+
+  double number(std::string_view word) const;
+  long long integer(std::string_view word) const;
+  /// integer(word), which must lie in 0 … limit - 1; `what` names it in the error.
+  int index(std::string_view word, int limit, const std::string& what) const;
+
+  /// integer(word), a number of `things`, each of which takes at least a byte of the text.
+  int count(std::string_view word, const std::string& things) const;
+
+  [[noreturn]] void fail(const std::string& message) const;  ///< std::runtime_error "file:line: message"
+
+ private:
+  std::filesystem::path path_;
+  std::string_view text_;
+  char comment_;
+  std::size_t position_ = 0;
+  int line_ = 0;
+  std::vector<std::string_view> words_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace drape

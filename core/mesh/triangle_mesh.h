@@ -1,0 +1,19 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace drape {
+
+/// n×3 vertex positions, one row a vertex [m]. Row-major so that one vertex is contiguous.
+using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// m×3 vertex indices, one row a triangle, counter-clockwise.
+using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// Vertices and triangles; a plain value.
+struct TriangleMesh {
+  Positions vertices;   ///< n×3 [m]
+  Triangles triangles;  ///< m×3
+};
+
+}  // namespace drape

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "core/hierarchy/level.h"
+#include "core/model/material.h"
+#include "core/numerics/block_matrix.h"
+
+namespace drape {
+
+/// What to do with negative eigenvalues of an element's Hessian (method.md, section 5).
+enum class Projection { clamp, absolute, none };
+
+/// The part an energy plays in the report; `external` ones define the load of the force residual.
+enum class EnergyRole { membrane, bending, external };
+
+/// An energy bound to one level: E(x), ∂E/∂x, ∂²E/∂x². Immutable; evaluation is const, stateless and
+/// gives the same bits with any number of threads.
+class BoundEnergy {
+ public:
+  virtual ~BoundEnergy() = default;
+
+  /// Energy at x (n×3) [J]; +∞ outside its domain.
+  virtual double value(const Positions& x) const = 0;
+
+  /// Adds the gradient [N] to g (n×3) and returns the energy [J].
+  virtual double add_gradient(const Positions& x, Positions& g) const = 0;
+
+  /// m×k vertices of each element whose Hessian is not zero; no rows where the energy is linear.
+  /// Fixed for the life of the object: the matrix pattern and every sink's slots follow from it.
+  virtual Stencils stencils() const = 0;
+
+  /// Adds ∂²E/∂x² [N/m], projected per element, to the sink: element e of stencils() adds its
+  /// 3×3 blocks (a, b), a ≤ b, a and b being columns of stencils().
+  virtual void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const = 0;
+};
+
+/// A kind of energy, made by name from its parameters. Out of it comes one BoundEnergy a level.
+class Energy {
+ public:
+  virtual ~Energy() = default;
+  virtual EnergyRole role() const = 0;
+  /// The level and the material must outlive nothing: whatever is needed is copied.
+  virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
+};
+
+}  // namespace drape

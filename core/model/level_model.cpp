@@ -1,0 +1,94 @@
+#include "core/model/level_model.h"
+
+#include <cmath>
+
+namespace drape {
+
+namespace {
+
+double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < g.rows(); ++i)
+    if (flags[i] == flag) sum += g.row(i).squaredNorm();
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
+
+LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
+                       std::vector<char> fixed)
+    : level_(level), fixed_(std::move(fixed)), masses_(material.area_density() * level.vertex_area) {
+  std::vector<Stencils> stencils;
+  for (const NamedEnergy& e : energies) {
+    Term term{e.name, e.energy->role(), e.energy->bind(level, material), nullptr};
+    stencils.push_back(term.energy->stencils());
+    terms_.push_back(std::move(term));
+  }
+  pattern_ = BlockPattern::of(level.vertex_count(), stencils);
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (stencils[t].rows() > 0) terms_[t].slots = std::make_unique<BlockSlots>(*pattern_, stencils[t]);
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external && term.slots) load_is_constant_ = false;
+  if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+}
+
+double LevelModel::value(const Positions& x) const {
+  double sum = 0;
+  for (const Term& term : terms_) {
+    sum += term.energy->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+double LevelModel::gradient(const Positions& x, Positions& g) const {
+  g.setZero(x.rows(), 3);
+  double sum = 0;
+  for (const Term& term : terms_) {
+    sum += term.energy->add_gradient(x, g);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix) const {
+  matrix.set_zero();
+  for (const Term& term : terms_)
+    if (term.slots) {
+      BlockSink sink(*term.slots, matrix);
+      term.energy->add_hessian(x, projection, sink);
+    }
+}
+
+std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
+  std::vector<std::pair<std::string, double>> parts;
+  for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
+  return parts;
+}
+
+double LevelModel::load_norm(const Positions& x) const {
+  return load_is_constant_ ? constant_load_norm_ : external_force_norm(x);
+}
+
+double LevelModel::external_force_norm(const Positions& x) const {
+  Positions g = Positions::Zero(x.rows(), 3);
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external) term.energy->add_gradient(x, g);
+  return free_norm(g, fixed_);
+}
+
+double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
+  if (const double load = load_norm(x); load > 0) return load;
+  if (const double held = norm_where(gradient, fixed_, 1); held > 0) return held;
+  return 1;
+}
+
+double LevelModel::force_residual(const Positions& x) const {
+  Positions g;
+  gradient(x, g);
+  return free_norm(g, fixed_) / residual_scale(x, g);
+}
+
+}  // namespace drape

@@ -1,0 +1,24 @@
+#include "core/model/solver.h"
+
+namespace drape {
+
+Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const {
+  Positions y = weights * x;
+  const std::vector<char>& fixed = models[level + 1]->fixed();
+  for (Eigen::Index i = 0; i < y.rows(); ++i)
+    if (fixed[i]) y.row(i) = starts[level + 1].row(i);
+  return y;
+}
+
+const char* to_string(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::converged: return "converged";
+    case Outcome::out_of_steps: return "out_of_steps";
+    case Outcome::stalled: return "stalled";
+    case Outcome::cancelled: return "cancelled";
+    case Outcome::infeasible: return "infeasible";
+  }
+  return "";
+}
+
+}  // namespace drape

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/hierarchy/hierarchy.h"
+#include "core/model/contact_model.h"
+#include "core/model/level_model.h"
+
+namespace drape {
+
+/// Everything that a method starts from. Refers to objects that the experiment owns.
+struct Problem {
+  const Hierarchy& hierarchy;
+  std::vector<const LevelModel*> models;  ///< the plain model of every level
+  std::vector<Positions> starts;          ///< the scene's start on every level, fixed vertices in place
+
+  int finest() const { return static_cast<int>(models.size()) - 1; }
+  /// A level's state carried to the next one by `weights` (n_{l+1} × n_l), fixed vertices put in place.
+  Positions carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const;
+};
+
+/// How a solve ended.
+enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible };
+const char* to_string(Outcome outcome);
+
+/// One Newton iteration, as observers see it.
+struct IterationRow {
+  int level = 0, step = 0, iteration = 0;
+  double seconds = 0;                 ///< since the method's start
+  double energy = 0;                  ///< E_l, the plain energy of the level [J]
+  std::optional<double> proxy_energy; ///< F_l where the method minimises that [J]
+  double decrement = 0;               ///< ‖p‖ / (h √n) [m/s]
+  double force_residual = 0;          ///< of what is minimised, after the iteration [1]
+  double step_length = 0;             ///< α of the line search
+  double step_size = 0;               ///< h [s]; +∞ for the static form
+};
+
+/// The state a method reached on one level and how.
+struct LevelResult {
+  int level = 0;
+  Outcome outcome = Outcome::converged;
+  std::string message;                ///< what stopped it, where that is not convergence
+  Positions x;
+  int steps = 0, iterations = 0, factorisations = 0;
+  double seconds = 0;
+  std::map<std::string, double> seconds_by_phase;
+  double decrement = 0;
+  double force_residual = 0;          ///< of what was minimised [1]
+};
+
+/// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void level_started(int level) { (void)level; }
+  virtual void iteration(const IterationRow& row, const Positions& x) { (void)row, (void)x; }
+  virtual void level_finished(const LevelResult& result) { (void)result; }
+  virtual bool stop_requested() { return false; }
+};
+
+/// A method: a schedule of Newton solves over the levels of a problem.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  /// Results of the levels reached, in order. Only misuse throws.
+  virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
+};
+
+}  // namespace drape

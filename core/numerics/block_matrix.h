@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace drape {
+
+/// m×k vertex indices, one row an element.
+using Stencils = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Sparsity of a symmetric matrix of 3×3 blocks, one block row a vertex. Only blocks (i, j) with
+/// i ≤ j are kept, row by row, columns ascending; every diagonal block is present. Immutable.
+class BlockPattern {
+ public:
+  /// The union of the pairs (i, j) that occur together in a row of any of the stencils.
+  static std::shared_ptr<const BlockPattern> of(int vertex_count, const std::vector<Stencils>& stencils);
+
+  /// From rows of ascending columns j ≥ i, diagonal first.
+  BlockPattern(std::vector<int> row_start, std::vector<int> columns);
+
+  int rows() const { return static_cast<int>(row_start.size()) - 1; }
+  int blocks() const { return static_cast<int>(columns.size()); }
+  /// Index of block (i, j), i ≤ j; -1 where the pattern has none.
+  int find(int i, int j) const;
+
+  const std::vector<int> row_start;  ///< rows() + 1
+  const std::vector<int> columns;    ///< blocks()
+};
+
+/// A symmetric matrix over a BlockPattern; block b is values[9b … 9b + 8], row-major.
+struct BlockMatrix {
+  std::shared_ptr<const BlockPattern> pattern;
+  std::vector<double> values;
+
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern = nullptr);
+  void set_zero();
+  double* block(int b) { return values.data() + 9 * static_cast<std::size_t>(b); }
+  const double* block(int b) const { return values.data() + 9 * static_cast<std::size_t>(b); }
+  /// y = A x for n×3 x and y.
+  void multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
+                Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const;
+};
+
+/// Where the blocks of one energy's elements go in a pattern; made once, when the pattern is.
+class BlockSlots {
+ public:
+  BlockSlots(const BlockPattern& pattern, const Stencils& stencils);
+
+ private:
+  friend class BlockSink;
+  int pairs_;               // k(k+1)/2 block pairs an element
+  std::vector<int> slots_;  // block index, bitwise complemented where it is to be transposed
+};
+
+/// Adds elements' 3×3 blocks to a matrix. Concurrent calls are safe for elements that share no vertex.
+class BlockSink {
+ public:
+  BlockSink(const BlockSlots& slots, BlockMatrix& matrix) : slots_(slots), values_(matrix.values.data()) {}
+
+  /// Adds `h` (row-major 3×3, element rows of local vertex a, columns of b) for the pair a ≤ b.
+  void add(int element, int a, int b, const double* h) {
+    const int slot = slots_.slots_[static_cast<std::size_t>(element) * slots_.pairs_ + b * (b + 1) / 2 + a];
+    if (slot >= 0) {
+      double* v = values_ + 9 * static_cast<std::size_t>(slot);
+      for (int i = 0; i < 9; ++i) v[i] += h[i];
+    } else {
+      double* v = values_ + 9 * static_cast<std::size_t>(~slot);
+      for (int r = 0; r < 3; ++r)
+        for (int c = 0; c < 3; ++c) v[3 * r + c] += h[3 * c + r];
+    }
+  }
+
+ private:
+  const BlockSlots& slots_;
+  double* values_;
+};
+
+}  // namespace drape

@@ -1,0 +1,209 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "core/model/energy.h"
+#include "core/numerics/element_order.h"
+#include "core/numerics/pack.h"
+#include "core/numerics/parallel.h"
+#include "core/numerics/project_hessian.h"
+
+namespace drape {
+
+/// project_hessian of a kernel's Hessian at the differences d.
+template <class Kernel, int Size, class T>
+void project(const Eigen::Matrix<T, 3, 1>* d, SymmetricMatrix<Size, T>& h, Projection projection) {
+  if constexpr (requires(Eigen::Matrix<T, 3, 1>* n) { Kernel::null_direction(d, n); }) {
+    Eigen::Matrix<T, 3, 1> n[Size / 3];
+    Kernel::null_direction(d, n);
+    project_hessian(h, projection, n[0].data());
+  } else {
+    project_hessian(h, projection);
+  }
+}
+
+/// The sum of one kernel over many elements: gathering, threads, projection and scattering, once for all.
+///
+/// A Kernel has `vertices` (k), `convex` (no projection needed), `Rest` (a fixed-size vector of doubles) and,
+/// for T double or Pack, of the k - 1 differences d_i = x_i - x_0 and the element's rest numbers,
+///
+///     T value(const Vector3<T>* d, const T* rest);
+///     T gradient(const Vector3<T>* d, const T* rest, Vector3<T>* g);      // by d_i; returns the value
+///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h);     // upper 3×3 blocks
+///     void null_direction(const Vector3<T>* d, Vector3<T>* n);            // optional: what the Hessian takes to 0
+///
+/// A value that is not a number counts as +∞.
+template <class Kernel, int W = native_pack_width>
+class ElementEnergy final : public BoundEnergy {
+ public:
+  /// Elements m×k, the rest numbers of each, and rest positions n×3 to order the elements by.
+  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, const Positions& places)
+      : order_(ElementOrder::of(elements, places)), stencils_(elements.rows(), k) {
+    for (Eigen::Index e = 0; e < elements.rows(); ++e) stencils_.row(e) = elements.row(order_.elements[e]);
+    for (int c = 0; c < order_.chunks(); ++c) {
+      first_pack_.push_back(static_cast<int>(packs_.size()));
+      const int end = order_.chunk_start[c + 1];
+      for (int first = order_.chunk_start[c]; first < end; first += W) {
+        Elements pack{{}, {}, first, std::min(W, end - first)};
+        for (int lane = 0; lane < W; ++lane) {
+          const int e = std::min(first + lane, end - 1);  // lanes left over repeat the last element
+          for (int v = 0; v < k; ++v) pack.vertices[v][lane] = 3 * stencils_(e, v);
+          for (int r = 0; r < rest_size; ++r) pack.rest[r].v[lane] = rest[order_.elements[e]][r];
+        }
+        packs_.push_back(pack);
+      }
+    }
+    first_pack_.push_back(static_cast<int>(packs_.size()));
+  }
+
+  double value(const Positions& x) const override {
+    Sums sums;
+    parallel_for(order_.chunks(), 1, [&](int begin, int end) {
+      for (int c = begin; c < end; ++c)
+        sums[c] = sum_of_chunk(c, [&](const Elements& pack) {
+          Vector d[k - 1];
+          gather(pack, x, d);
+          return Kernel::value(d, pack.rest);
+        });
+    });
+    return total(sums);
+  }
+
+  double add_gradient(const Positions& x, Positions& g) const override {
+    Sums sums;
+    for_each_colour([&](int c) {
+      sums[c] = sum_of_chunk(c, [&](const Elements& pack) {
+        Vector d[k - 1], by_difference[k - 1];
+        gather(pack, x, d);
+        const T energy = Kernel::gradient(d, pack.rest, by_difference);
+        scatter(pack, by_difference, g);
+        return energy;
+      });
+    });
+    return total(sums);
+  }
+
+  Stencils stencils() const override { return stencils_; }
+
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    for_each_colour([&](int c) {
+      for (int p = first_pack_[c]; p < first_pack_[c + 1]; ++p) {
+        Vector d[k - 1];
+        Hessian h;
+        gather(packs_[p], x, d);
+        hessian(d, packs_[p].rest, h);
+        if constexpr (!Kernel::convex) project<Kernel>(d, h, projection);
+        scatter(packs_[p], h, sink);
+      }
+    });
+  }
+
+ private:
+  static constexpr int k = Kernel::vertices, rest_size = Kernel::Rest::SizeAtCompileTime;
+  using T = Pack<W>;
+  using Vector = Eigen::Matrix<T, 3, 1>;
+  using Hessian = SymmetricMatrix<3 * (k - 1), T>;
+  using Sums = std::array<double, ElementOrder::max_chunks>;
+
+  struct Elements {
+    T rest[rest_size];
+    int vertices[k][W];  ///< where their coordinates start: 3 times the index
+    int first;   ///< row of stencils_ in lane 0
+    int active;  ///< lanes that count
+  };
+
+  template <class Body>
+  void for_each_colour(const Body& body) const {
+    for (int colour = 0; colour < order_.colours(); ++colour) {
+      const int first = order_.colour_start[colour];
+      parallel_for(order_.colour_start[colour + 1] - first, 1, [&](int begin, int end) {
+        for (int c = first + begin; c < first + end; ++c) body(c);
+      });
+    }
+  }
+
+  template <class Body>
+  double sum_of_chunk(int chunk, const Body& body) const {
+    T sum = 0.0;
+    for (int p = first_pack_[chunk]; p < first_pack_[chunk + 1]; ++p) {
+      T energy = body(packs_[p]);
+      energy = select(energy == energy, energy, std::numeric_limits<double>::infinity());
+      for (int lane = packs_[p].active; lane < W; ++lane) energy.v[lane] = 0;
+      sum += energy;
+    }
+    double result = 0;
+    for (int lane = 0; lane < W; ++lane) result += sum[lane];
+    return result;
+  }
+
+  double total(const Sums& sums) const {
+    double result = 0;
+    for (int c = 0; c < order_.chunks(); ++c) result += sums[c];
+    return result;
+  }
+
+  static void gather(const Elements& pack, const Positions& x, Vector* d) {
+    T origin[3];
+    for (int c = 0; c < 3; ++c) origin[c] = gather_lanes<W>(x.data() + c, pack.vertices[0]);
+    for (int v = 1; v < k; ++v)
+      for (int c = 0; c < 3; ++c) d[v - 1][c] = gather_lanes<W>(x.data() + c, pack.vertices[v]) - origin[c];
+  }
+
+  static void scatter(const Elements& pack, const Vector* by_difference, Positions& g) {
+    Vector all[k];
+    all[0] = -by_difference[0];
+    for (int v = 1; v < k; ++v) {
+      all[v] = by_difference[v - 1];
+      if (v > 1) all[0] -= all[v];
+    }
+    for (int lane = 0; lane < pack.active; ++lane)
+      for (int v = 0; v < k; ++v) {
+        double* to = g.data() + pack.vertices[v][lane];
+        for (int c = 0; c < 3; ++c) to[c] += all[v][c].v[lane];
+      }
+  }
+
+  static void hessian(const Vector* d, const T* rest, Hessian& h) {
+    Eigen::Matrix<T, 3 * (k - 1), 3 * (k - 1)> full;
+    Kernel::hessian(d, rest, full);
+    for (int j = 0; j < 3 * (k - 1); ++j)
+      for (int i = 0; i <= j; ++i) h(i, j) = full(i, j);
+  }
+
+  // Vertex 0's blocks follow from translation invariance: every block row sums to zero.
+  static void scatter(const Elements& pack, const Hessian& h, BlockSink& sink) {
+    T blocks[k][k][9];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) {
+        blocks[0][0][3 * r + c] = 0.0;
+        for (int b = 1; b < k; ++b) {
+          T sum = 0.0;
+          for (int a = 1; a < k; ++a) {
+            const T entry = h(3 * (a - 1) + r, 3 * (b - 1) + c);
+            if (a <= b) blocks[a][b][3 * r + c] = entry;
+            sum += entry;
+          }
+          blocks[0][b][3 * r + c] = -sum;
+          blocks[0][0][3 * r + c] += sum;
+        }
+      }
+    for (int lane = 0; lane < pack.active; ++lane)
+      for (int b = 0; b < k; ++b)
+        for (int a = 0; a <= b; ++a) {
+          double one[9];
+          for (int i = 0; i < 9; ++i) one[i] = blocks[a][b][i].v[lane];
+          sink.add(pack.first + lane, a, b, one);
+        }
+  }
+
+  ElementOrder order_;
+  Stencils stencils_;            // in order_
+  std::vector<Elements> packs_;  // chunk by chunk
+  std::vector<int> first_pack_;  // chunks + 1
+};
+
+}  // namespace drape

@@ -1,0 +1,294 @@
+#include "core/numerics/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/numerics/block_cholesky.h"
+
+namespace drape {
+
+void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
+  d.add_choice("form", &NewtonParameters::form,
+               {{"quasistatic", NewtonForm::quasistatic}, {"static", NewtonForm::statics}})
+      .meaning("damped gradient flow in steps of h, or one minimisation (h infinite)")
+      .source("PCS section 4; supplement, Figure 4");
+  d.add("step_size", &NewtonParameters::step_size)
+      .unit("s").above(0)
+      .meaning("h of the first implicit step; the static form uses it for the decrement alone")
+      .source("PCS section 4");
+  d.add("step_growth", &NewtonParameters::step_growth)
+      .at_least(1)
+      .meaning("factor on h after a step taken in full; shortened steps divide it. 1 keeps h")
+      .source("departure from the paper");
+  d.add("step_size_limit", &NewtonParameters::step_size_limit).unit("s").above(0).meaning("h grows no further");
+  d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
+      .at_least(1).meaning("Newton iterations an implicit step may take").source("PCS section 4");
+  d.add("max_steps", &NewtonParameters::max_steps).at_least(1).meaning("steps a level may take");
+  d.add("force_tolerance", &NewtonParameters::force_tolerance)
+      .above(0)
+      .meaning("a level is converged when the net force on its free vertices is below this part of the load")
+      .source("method.md section 2");
+  d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
+      .unit("m/s").at_least(0)
+      .meaning("also asked of the largest of the last three decrements; 0 asks nothing")
+      .source("Li et al. 2021 (C-IPC)");
+  d.add_choice("projection", &NewtonParameters::projection,
+               {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
+      .meaning("what becomes of negative eigenvalues of an element's Hessian")
+      .source("Teran et al. 2005; Chen et al. 2024 for absolute");
+  d.add("exact_below", &NewtonParameters::exact_below)
+      .at_least(0)
+      .meaning("force residual below which the unprojected matrix is tried first; 0 never")
+      .source("departure from the paper");
+  d.add("refresh", &NewtonParameters::refresh)
+      .at_least(1).meaning("iterations that share one matrix and its factor").source("departure from the paper");
+}
+
+namespace {
+
+constexpr double sufficient_decrease = 1e-4;
+constexpr double shortest_step = 1e-6;
+/// Differences of energies below this part of them are rounding, not descent.
+constexpr double energy_noise = 1e-12;
+constexpr double smallest_step_size = 1e-8;
+
+/// The state of one minimisation; each member function is one phase of an iteration.
+class Newton {
+ public:
+  Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const Stopwatch& clock,
+         Observer& observer)
+      : f_(objective), model_(objective.model()), p_(parameters), clock_(clock), observer_(observer),
+        h_(parameters.step_size) {
+    result_.x = std::move(x);
+    result_.level = model_.level().index;
+    free_count_ = static_cast<double>(std::count(model_.fixed().begin(), model_.fixed().end(), 0));
+    if (p_.exact_below <= 0) exact_from_ = 0;
+    else exact_from_ = p_.exact_below;
+  }
+
+  LevelResult run() {
+    {
+      PhaseTimer t(result_.seconds_by_phase, "gradient");
+      energy_ = f_.gradient(result_.x, g_);
+    }
+    if (!std::isfinite(energy_)) return finish(Outcome::infeasible, "the energy at the start is not finite: a triangle is degenerate");
+    update_residual();
+    while (true) {
+      if (converged()) return finish(Outcome::converged, "");
+      if (result_.steps == p_.max_steps)
+        return finish(Outcome::out_of_steps, "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " + std::to_string(result_.force_residual));
+      if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
+      if (!step()) return finish(Outcome::stalled, message_);
+    }
+  }
+
+ private:
+  bool is_static() const { return p_.form == NewtonForm::statics; }
+  double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
+
+  bool converged() const {
+    if (result_.force_residual > p_.force_tolerance) return false;
+    if (p_.decrement_tolerance <= 0) return true;
+    return result_.iterations >= 3 &&
+           *std::max_element(decrements_, decrements_ + 3) <= p_.decrement_tolerance;
+  }
+
+  /// One implicit step. False when no descent was found.
+  bool step() {
+    origin_ = result_.x;
+    bool full = true;
+    for (int k = 0; k < p_.iterations_per_step; ++k) {
+      if (!iterate(k)) return false;
+      full = full && alpha_ == 1;
+      if (converged()) break;
+    }
+    ++result_.steps;
+    if (p_.step_growth > 1) h_ = full ? std::min(h_ * p_.step_growth, p_.step_size_limit) : h_ / p_.step_growth;
+    return true;
+  }
+
+  bool iterate(int iteration) {
+    while (true) {
+      shifted_gradient();
+      factorise();
+      {
+        PhaseTimer t(result_.seconds_by_phase, "solve");
+        cholesky_.solve(r_, direction_);
+        direction_ *= -1;
+      }
+      if (line_search()) break;
+      // A factor kept from an earlier state may give no descent: once more with a fresh one. A step
+      // too long for its quadratic model is damped more.
+      if (age_ > 0) {
+        age_ = p_.refresh;
+        continue;
+      }
+      if (is_static()) {
+        message_ = "the line search found no descent (the direction's slope is " + std::to_string(slope_) + ")";
+        return false;
+      }
+      h_ /= 4;
+      age_ = p_.refresh;
+      if (h_ < smallest_step_size) {
+        message_ = "the line search found no descent at any step size down to 1e-8 s";
+        return false;
+      }
+    }
+    ++age_;
+    const double decrement = std::sqrt(direction_.squaredNorm() / std::max(free_count_, 1.0)) / h_;
+    decrements_[result_.iterations % 3] = decrement;
+    result_.decrement = decrement;
+    ++result_.iterations;
+    update_residual();
+    report(iteration);
+    return true;
+  }
+
+  /// r = ∇F(x) + M (x − x^t) / h², zero on fixed vertices.
+  void shifted_gradient() {
+    r_ = g_;
+    inertia_ = 0;
+    const double s = inverse_h2();
+    for (Eigen::Index i = 0; i < r_.rows(); ++i) {
+      if (model_.fixed()[i]) {
+        r_.row(i).setZero();
+        continue;
+      }
+      const double m = s * model_.masses()[i];
+      const Eigen::RowVector3d moved = result_.x.row(i) - origin_.row(i);
+      r_.row(i) += m * moved;
+      inertia_ += 0.5 * m * moved.squaredNorm();
+    }
+  }
+
+  double inertia_at(const Positions& x) const {
+    double sum = 0;
+    const double s = inverse_h2();
+    if (s > 0)
+      for (Eigen::Index i = 0; i < x.rows(); ++i)
+        sum += 0.5 * s * model_.masses()[i] * (x.row(i) - origin_.row(i)).squaredNorm();
+    return sum;
+  }
+
+  void factorise() {
+    if (cholesky_.has_factor() && age_ < p_.refresh) return;
+    age_ = 0;
+    if (result_.force_residual < exact_from_) {
+      if (try_factor(Projection::none, 0)) return;
+      exact_from_ = 0.5 * result_.force_residual;  // not before it is much closer
+    }
+    double shift = 0;
+    while (!try_factor(p_.projection, shift)) {
+      // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
+      shift = shift == 0 ? 1e-3 / (p_.step_size * p_.step_size) : 10 * shift;
+      if (!(shift < 1e30)) throw std::runtime_error("the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
+    }
+  }
+
+  bool try_factor(Projection projection, double extra_shift) {
+    const BlockMatrix* a;
+    {
+      PhaseTimer t(result_.seconds_by_phase, "hessian");
+      a = &f_.matrix(result_.x, projection);
+    }
+    {
+      PhaseTimer t(result_.seconds_by_phase, "analyse");
+      cholesky_.analyse(a->pattern, model_.fixed());
+    }
+    PhaseTimer t(result_.seconds_by_phase, "factorise");
+    ++result_.factorisations;
+    return cholesky_.factorise(*a, (inverse_h2() + extra_shift) * model_.masses());
+  }
+
+  /// Backtracks along the direction until the energy has decreased enough; moves x, g and energy.
+  bool line_search() {
+    PhaseTimer t(result_.seconds_by_phase, "gradient");
+    slope_ = r_.cwiseProduct(direction_).sum();
+    if (!(slope_ < 0)) return false;
+    const double before = energy_ + inertia_;
+    const double force_before = free_norm(r_, model_.fixed());
+    for (alpha_ = 1; alpha_ >= shortest_step; alpha_ *= 0.5) {
+      trial_ = result_.x + alpha_ * direction_;
+      const double energy = f_.gradient(trial_, trial_g_);
+      if (!std::isfinite(energy)) continue;
+      const double change = energy - energy_ + inertia_at(trial_) - inertia_;
+      bool accept = change <= sufficient_decrease * alpha_ * slope_;
+      if (!accept && std::abs(change) <= energy_noise * (std::abs(before) + scale_of_work()))
+        accept = shifted_norm(trial_, trial_g_) < force_before;
+      if (!accept) continue;
+      result_.x.swap(trial_);
+      g_.swap(trial_g_);
+      energy_ = energy;
+      return true;
+    }
+    return false;
+  }
+
+  /// Work of the load over the size of the cloth: energies cancel, their rounding does not.
+  double scale_of_work() const { return scale_ * std::sqrt(free_count_); }
+
+  double shifted_norm(const Positions& x, const Positions& g) const {
+    double sum = 0;
+    const double s = inverse_h2();
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      if (!model_.fixed()[i])
+        sum += (g.row(i) + s * model_.masses()[i] * (x.row(i) - origin_.row(i))).squaredNorm();
+    return std::sqrt(sum);
+  }
+
+  void update_residual() {
+    scale_ = f_.residual_scale(result_.x, g_);
+    result_.force_residual = free_norm(g_, model_.fixed()) / scale_;
+  }
+
+  void report(int iteration) {
+    IterationRow row;
+    row.level = result_.level;
+    row.step = result_.steps;
+    row.iteration = iteration;
+    row.energy = energy_;
+    if (f_.is_proxy()) {
+      row.proxy_energy = energy_;
+      row.energy = model_.value(result_.x);
+    }
+    row.decrement = result_.decrement;
+    row.force_residual = result_.force_residual;
+    row.step_length = alpha_;
+    row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
+    row.seconds = clock_.seconds();
+    observer_.iteration(row, result_.x);
+  }
+
+  LevelResult finish(Outcome outcome, std::string message) {
+    result_.outcome = outcome;
+    result_.message = std::move(message);
+    result_.seconds = watch_.seconds();
+    return std::move(result_);
+  }
+
+  Objective& f_;
+  const LevelModel& model_;
+  const NewtonParameters& p_;
+  const Stopwatch& clock_;
+  Stopwatch watch_;
+  Observer& observer_;
+
+  BlockCholesky cholesky_;
+  LevelResult result_;
+  std::string message_;
+  Positions origin_, g_, r_, direction_, trial_, trial_g_;
+  double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
+  double h_, free_count_ = 0, exact_from_ = 0;
+  double decrements_[3] = {};
+  int age_ = 0;
+};
+
+}  // namespace
+
+LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
+                     const Stopwatch& clock, Observer& observer) {
+  return Newton(objective, std::move(x), parameters, clock, observer).run();
+}
+
+}  // namespace drape

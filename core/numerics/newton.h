@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/model/objective.h"
+#include "core/model/solver.h"
+#include "core/numerics/stopwatch.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Whether a level is solved by damped gradient flow or by one minimisation (method.md, sections 2, 3).
+enum class NewtonForm { quasistatic, statics };
+
+/// Settings of the one Newton, the same for every method so that comparisons compare methods.
+struct NewtonParameters {
+  NewtonForm form = NewtonForm::quasistatic;
+  double step_size = 0.5;
+  double step_growth = 1;
+  double step_size_limit = 1e3;
+  int iterations_per_step = 1;
+  int max_steps = 5000;
+  double force_tolerance = 1e-3;
+  double decrement_tolerance = 0;
+  Projection projection = Projection::clamp;
+  double exact_below = 0;
+  int refresh = 1;
+
+  static void declare(Declaration<NewtonParameters>& d);
+};
+
+/// Minimises the objective from x, where fixed vertices stay, step by implicit step
+///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x),
+/// with a filtered line search. `clock` is the method's, for the rows that the observer gets.
+LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
+                     const Stopwatch& clock, Observer& observer);
+
+}  // namespace drape

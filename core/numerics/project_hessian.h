@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/model/energy.h"
+#include "core/numerics/symmetric_eigen.h"
+
+namespace drape {
+namespace projection_detail {
+
+/// The reflection I - β v vᵀ that turns y into the last axis.
+template <int Size, class T>
+struct Reflection {
+  T v[Size], beta;
+
+  explicit Reflection(const T* y) {
+    using std::abs, std::sqrt;
+    T square = 0.0;
+    for (int i = 0; i < Size; ++i) {
+      v[i] = y[i];
+      square += y[i] * y[i];
+    }
+    const T length = sqrt(square), last = y[Size - 1];
+    v[Size - 1] += select(last < 0.0, -length, length);
+    beta = 1.0 / (square + length * abs(last));
+  }
+
+  void apply(SymmetricMatrix<Size, T>& a) const {
+    T w[Size], vw = 0.0;
+    for (int i = 0; i < Size; ++i) {
+      w[i] = 0.0;
+      for (int j = 0; j < Size; ++j) w[i] += a(i, j) * v[j];
+      w[i] *= beta;
+      vw += v[i] * w[i];
+    }
+    vw *= 0.5 * beta;
+    for (int i = 0; i < Size; ++i) w[i] -= vw * v[i];
+    for (int j = 0; j < Size; ++j)
+      for (int i = 0; i <= j; ++i) a(i, j) -= v[i] * w[j] + w[i] * v[j];
+  }
+};
+
+/// (I + w 1 1ᵀ) h (I + w 1 1ᵀ), where 1 1ᵀ adds up 3×3 blocks.
+template <int Size, class T>
+void mix_blocks(SymmetricMatrix<Size, T>& h, double w) {
+  constexpr int N = Size / 3;
+  T sums[N][3][3], total[3][3];  // of each column of blocks, of all
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) {
+      total[r][c] = 0.0;
+      for (int j = 0; j < N; ++j) {
+        sums[j][r][c] = h(r, 3 * j + c);
+        for (int i = 1; i < N; ++i) sums[j][r][c] += h(3 * i + r, 3 * j + c);
+        total[r][c] += sums[j][r][c];
+      }
+    }
+  for (int j = 0; j < Size; ++j)
+    for (int i = 0; i <= j; ++i)
+      h(i, j) += w * (sums[j / 3][i % 3][j % 3] + sums[i / 3][j % 3][i % 3]) + w * w * total[i % 3][j % 3];
+}
+
+template <int Size, class T>
+void project_eigenvalues(SymmetricMatrix<Size, T>& a, Projection projection) {
+  map_eigenvalues(a, [projection](T eigenvalue) {
+    using std::abs, std::max;
+    return projection == Projection::clamp ? max(eigenvalue, T(0.0)) : abs(eigenvalue);
+  });
+}
+
+}  // namespace projection_detail
+
+/// Projects the Hessian of a translation-invariant element of N + 1 vertices, given by its derivatives by the
+/// N differences from vertex 0: the same as projecting the full (3N + 3)² matrix. `null`, if given, is a column
+/// that h takes to zero; it saves a dimension, a third of the work for N = 3.
+template <int Size, class T>
+void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection, const T* null = nullptr) {
+  using namespace projection_detail;
+  if (projection == Projection::none) return;
+  // With E the matrix of the differences x_i - x_0, the full Hessian is Eᵀ h E, and E = S Qᵀ with orthonormal
+  // Q (which holds no translation) and S = √(E Eᵀ) = √(I + 1 1ᵀ) = I + shift 1 1ᵀ: project S h S.
+  constexpr int N = Size / 3;
+  const double shift = (std::sqrt(N + 1.0) - 1) / N, back = -shift / std::sqrt(N + 1.0);
+  const SymmetricMatrix<Size, T> unprojected = h;
+  mix_blocks(h, shift);
+  if (positive_semidefinite(h)) {
+    h = unprojected;
+  } else if (null) {
+    T y[Size];  // S⁻¹ null
+    for (int i = 0; i < Size; ++i) {
+      T sum = null[i % 3];
+      for (int j = 1; j < N; ++j) sum += null[3 * j + i % 3];
+      y[i] = null[i] + back * sum;
+    }
+    const Reflection<Size, T> reflection(y);
+    reflection.apply(h);
+    SymmetricMatrix<Size - 1, T> rest;  // what is left are the first columns
+    std::copy_n(h.upper, Size * (Size - 1) / 2, rest.upper);
+    project_eigenvalues(rest, projection);
+    std::copy_n(rest.upper, Size * (Size - 1) / 2, h.upper);
+    for (int i = 0; i < Size; ++i) h(i, Size - 1) = 0.0;
+    reflection.apply(h);
+    mix_blocks(h, back);
+  } else {
+    project_eigenvalues(h, projection);
+    mix_blocks(h, back);
+  }
+}
+
+}  // namespace drape

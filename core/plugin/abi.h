@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+
+namespace drape {
+class Registry;
+}
+
+/// What a plugin library tells about itself, in plain C: read before any C++ of it is called.
+struct DrapePluginDescriptor {
+  std::uint32_t magic;            ///< DRAPE_ABI_MAGIC
+  std::uint32_t abi_number;       ///< DRAPE_ABI_NUMBER; what follows is read only if it is ours
+  const char* compiler;           ///< "GCC 12.2"
+  const char* standard_library;   ///< "libstdc++ 12, C++11 ABI 1"
+  const char* eigen_version;      ///< "3.4.0"
+  int eigen_max_align_bytes;      ///< follows from the machine's vector width (-march)
+  const char* scalar;             ///< "double"
+  void (*register_entries)(drape::Registry&);
+};
+
+// Macros, not inline functions: of an inline function the dynamic linker would hand the plugin the copy in
+// the core library, and every plugin would seem to fit.
+
+#define DRAPE_ABI_MAGIC 0x50415244u  // "DRAP"
+/// Raise with every change to a class that crosses the library boundary.
+#define DRAPE_ABI_NUMBER 1u
+
+#define DRAPE_TEXT_(x) #x
+#define DRAPE_TEXT(x) DRAPE_TEXT_(x)
+
+#if defined(__clang__)
+#define DRAPE_COMPILER "Clang " DRAPE_TEXT(__clang_major__) "." DRAPE_TEXT(__clang_minor__)
+#else
+#define DRAPE_COMPILER "GCC " DRAPE_TEXT(__GNUC__) "." DRAPE_TEXT(__GNUC_MINOR__)
+#endif
+
+#if defined(_LIBCPP_VERSION)
+#define DRAPE_STANDARD_LIBRARY "libc++ " DRAPE_TEXT(_LIBCPP_VERSION)
+#else
+#define DRAPE_STANDARD_LIBRARY \
+  "libstdc++ " DRAPE_TEXT(_GLIBCXX_RELEASE) ", C++11 ABI " DRAPE_TEXT(_GLIBCXX_USE_CXX11_ABI)
+#endif
+
+#define DRAPE_EIGEN_VERSION \
+  DRAPE_TEXT(EIGEN_WORLD_VERSION) "." DRAPE_TEXT(EIGEN_MAJOR_VERSION) "." DRAPE_TEXT(EIGEN_MINOR_VERSION)
+
+/// The descriptor of the library that is being compiled.
+#define DRAPE_ABI_DESCRIPTOR(register_entries)                                                         \
+  {DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_COMPILER, DRAPE_STANDARD_LIBRARY, DRAPE_EIGEN_VERSION, \
+   EIGEN_MAX_ALIGN_BYTES, "double", register_entries}
+
+namespace drape {
+
+/// What keeps a library from working with this one, naming both sides; empty if nothing does.
+std::string mismatch(const DrapePluginDescriptor& theirs);
+
+}  // namespace drape

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/plugin/registry.h"
+
+namespace drape {
+
+/// For the terminal: a row for each parameter with type, default and range, its meaning and source below;
+/// the parameters of sections are indented.
+std::string describe(const Schema& schema);
+std::string describe(const RegistryEntry& entry);  ///< the same after the entry's name, summary and library
+
+/// For the reference page: a Markdown table, sections' parameters as `section.name`.
+std::string describe_markdown(const Schema& schema);
+std::string describe_markdown(const RegistryEntry& entry);  ///< the same under a heading and the summary
+
+/// For editors: the JSON Schema of configs with this schema. With a registry, nodes that choose a plugin
+/// allow the names and parameters of those in it; without, anything.
+nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
+
+}  // namespace drape

@@ -1,0 +1,73 @@
+#include "core/plugin/loader.h"
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/plugin/abi.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> libraries_of(const fs::path& directory) {
+  std::vector<fs::path> libraries;
+  for (const auto& file : fs::directory_iterator(directory))
+    if (file.path().extension() == ".so") libraries.push_back(file.path());
+  std::sort(libraries.begin(), libraries.end());
+  return libraries;
+}
+
+void load(Registry& registry, const fs::path& library) {
+  const std::string path = library.string();
+  // A name without a slash would be looked for in the system's folders.
+  void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!handle) throw std::runtime_error(path + ": cannot be loaded: " + dlerror());
+  const auto entry_point =
+      reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
+  if (!entry_point)
+    throw std::runtime_error(path + ": is not a drape plugin: it exports no function drape_plugin"
+                             " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+  const DrapePluginDescriptor& descriptor = *entry_point();
+  const std::string fault = mismatch(descriptor);
+  if (!fault.empty())
+    throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
+  registry.current_library = path;
+  descriptor.register_entries(registry);
+}
+
+}  // namespace
+
+std::vector<fs::path> plugin_directories() {
+  std::vector<fs::path> directories;
+  const fs::path beside = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "drape";
+  if (fs::is_directory(beside)) directories.push_back(beside);
+  const char* variable = std::getenv("DRAPE_PLUGIN_PATH");
+  std::istringstream list(variable ? variable : "");
+  for (std::string directory; std::getline(list, directory, ':');) {
+    if (directory.empty()) continue;
+    if (!fs::is_directory(directory))
+      throw std::runtime_error("DRAPE_PLUGIN_PATH names " + directory + ", which is not a folder");
+    directories.push_back(directory);
+  }
+  return directories;
+}
+
+void load_plugins(Registry& registry, const std::vector<fs::path>& directories) {
+  std::vector<fs::path> done;
+  for (const fs::path& directory : directories) {
+    if (!fs::is_directory(directory))
+      throw std::runtime_error(directory.string() + ": is not a folder of plugins");
+    // A folder named twice is one folder, not a clash of names.
+    const fs::path canonical = fs::canonical(directory);
+    if (std::find(done.begin(), done.end(), canonical) != done.end()) continue;
+    done.push_back(canonical);
+    for (const fs::path& library : libraries_of(directory)) load(registry, library);
+  }
+}
+
+}  // namespace drape

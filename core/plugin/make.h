@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/plugin/registry.h"
+
+namespace drape {
+
+/// The entry that a node names: the node is a plugin's name, or a map with the name under `type`.
+/// Null, with an error appended, if there is none.
+const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                 ConfigErrors& errors);
+
+/// As `make_from`, for a kind known by its word; the pointer is to the kind's interface.
+std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                  ConfigErrors& errors, ConfigNode* resolved = nullptr);
+
+/// The object that a node describes, `loop` or `{type: loop, corner_angle: 30}`; null, with every error
+/// appended, if it describes none. `resolved` receives the node with every parameter in it.
+template <class Interface>
+std::shared_ptr<Interface> make_from(const Registry& registry, const ConfigNode& node, ConfigErrors& errors,
+                                     ConfigNode* resolved = nullptr) {
+  return std::static_pointer_cast<Interface>(
+      make_plugin(registry, Kind<Interface>::name, node, errors, resolved));
+}
+
+}  // namespace drape

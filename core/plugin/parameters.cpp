@@ -1,0 +1,163 @@
+#include "core/plugin/parameters.h"
+
+#include <charconv>
+#include <cmath>
+
+#include "core/plugin/words.h"
+
+namespace drape {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+template <class Number>
+std::optional<Number> parse_all(const std::string& text) {
+  // from_chars knows no plus sign.
+  const size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
+  Number value;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + skip, end, value);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return value;
+}
+
+/// What was written, for "must be …, not …".
+std::string shown(const ConfigNode& node) {
+  switch (node.kind) {
+    case Kind::null: return "empty";
+    case Kind::list: return "a list";
+    case Kind::map: return "a map";
+    case Kind::scalar: break;
+  }
+  const bool number = !node.quoted && parse_number(node.scalar);
+  return number ? node.scalar : (node.quoted ? "the text \"" : "\"") + node.scalar + "\"";
+}
+
+std::string with_unit(double value, const Parameter& p) {
+  const std::string text = ConfigNode::of(value).scalar;
+  return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
+}
+
+/// "must be …" if the number is out of range, else "".
+std::string range_fault(double value, const Parameter& p) {
+  if (!std::isfinite(value)) return "a finite number";
+  if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
+  if (!p.open_minimum && !(value >= p.minimum)) return "at least " + with_unit(p.minimum, p);
+  if (p.open_maximum && !(value < p.maximum)) return "below " + with_unit(p.maximum, p);
+  if (!p.open_maximum && !(value <= p.maximum)) return "at most " + with_unit(p.maximum, p);
+  return "";
+}
+
+/// What a scalar must be and is not, or "".
+std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
+  const bool plain = node.kind == Kind::scalar && !node.quoted;
+  if (type == "number" || type == "integer") {
+    if (type == "integer") {
+      const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
+      return value ? range_fault(*value, p) : "an integer";
+    }
+    if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
+      return "a finite number";
+    const auto value = plain ? parse_number(node.scalar) : std::nullopt;
+    return value ? range_fault(*value, p) : "a number";
+  }
+  if (type == "boolean")
+    return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
+  if (node.kind != Kind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
+  const bool known = p.choices.empty() ||
+                     std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
+  return known ? "" : quoted_choice(p.choices);
+}
+
+void check_scalar(const std::string& type, const std::string& label, const ConfigNode& node,
+                  const Parameter& p, ConfigErrors& errors) {
+  const std::string fault = scalar_fault(type, node, p);
+  if (fault.empty()) return;
+  const std::string nearest = node.kind == Kind::scalar ? nearest_word(node.scalar, p.choices) : "";
+  errors.push_back({node.where, label + " must be " + fault + ", not " + shown(node) +
+                                    (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")});
+}
+
+void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
+  const std::string label = "\"" + p.name + "\"";
+  std::string items = p.type.substr(std::string("list of ").size());
+  const std::string type = items.substr(0, items.size() - 1);
+  if (type == "section") items = "maps";
+  if (type == "node") items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
+  const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
+  if (node.kind != Kind::list) {
+    errors.push_back({node.where, label + " must be " + wanted + ", not " + shown(node)});
+  } else if (p.size && int(node.items.size()) != p.size) {
+    errors.push_back(
+        {node.where, label + " must be " + wanted + ", not of " + std::to_string(node.items.size())});
+  } else if (type != "section" && type != "node") {
+    for (size_t i = 0; i < node.items.size(); ++i)
+      check_scalar(type, "item " + std::to_string(i + 1) + " of " + label, node.items[i], p, errors);
+  }
+}
+
+/// Whether the node may be handed to `p.read`; if not, says why.
+bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
+  const size_t before = errors.size();
+  if (p.nullable && node.kind == Kind::null) return true;
+  if (p.type.starts_with("list of ")) check_list(node, p, errors);
+  else if (p.type != "section" && p.type != "node")
+    check_scalar(p.type, "\"" + p.name + "\"", node, p, errors);
+  return errors.size() == before;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
+std::optional<int> parse_integer(const std::string& text) { return parse_all<int>(text); }
+
+namespace parameter_detail {
+
+void convert(const ConfigNode& node, double& value) { value = parse_number(node.scalar).value(); }
+void convert(const ConfigNode& node, int& value) { value = parse_integer(node.scalar).value(); }
+void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
+void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
+
+}  // namespace parameter_detail
+
+void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
+  const std::string in = name.empty() ? "" : " in " + name;
+  if (map.kind != Kind::map && map.kind != Kind::null) {
+    const std::string label = name.empty() ? "this" : "\"" + name + "\"";
+    errors.push_back({map.where, label + " must be a map of keys and values, not " + shown(map)});
+    return;
+  }
+  std::vector<std::string> known;
+  for (const Parameter& p : parameters) known.push_back(p.name);
+  for (size_t i = 0; i < map.entries.size(); ++i) {
+    const auto& [key, node] = map.entries[i];
+    const auto same_key = [&](const auto& entry) { return entry.first == key; };
+    const size_t first =
+        size_t(std::find_if(map.entries.begin(), map.entries.end(), same_key) - map.entries.begin());
+    const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
+    if (first != i) {
+      errors.push_back({map.key_places[i], "repeated key \"" + key + "\"" + in + "; it is first set at " +
+                                               map.key_places[first].text()});
+    } else if (index == known.size()) {
+      const std::string nearest = nearest_word(key, known);
+      const std::string hint = !nearest.empty()  ? "; did you mean \"" + nearest + "\"?"
+                               : known.empty() ? "; it takes no keys"
+                                               : "; known keys are " + joined(known);
+      errors.push_back({map.key_places[i], "unknown key \"" + key + "\"" + in + hint});
+    } else if (check(node, parameters[index], errors)) {
+      parameters[index].read(object, node, errors);
+    }
+  }
+  for (const Parameter& p : parameters)
+    if (p.required && !map.find(p.name))
+      errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
+}
+
+ConfigNode Schema::write(const void* object) const {
+  ConfigNode map;
+  map.kind = Kind::map;
+  for (const Parameter& p : parameters) map.add(p.name, p.write(object));
+  return map;
+}
+
+}  // namespace drape

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/plugin/config_node.h"
+
+namespace drape {
+
+/// One parameter, declared once: parsing, checks, `drape describe`, the reference page, the JSON schema
+/// and the saved config all derive from it. Its default is the member's value in a fresh struct.
+struct Parameter {
+  std::string name;
+  std::string type;      ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::string meaning;
+  std::string unit;      ///< SI; empty or "1" where there is none
+  std::string source;    ///< paper and equation, or design note
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool open_minimum = false;           ///< the minimum itself is refused
+  bool open_maximum = false;
+  int size = 0;                        ///< lists: number of items, 0 for any
+  bool required = false;
+  bool nullable = false;               ///< null is allowed and means "none"
+  std::vector<std::string> choices;    ///< text: the allowed words, empty for any
+  std::string plugin_kind;             ///< nodes: the kind of plugin they choose, empty for none
+
+  // Type-erased access to the member of a struct; `read` is given only nodes that passed the checks above.
+  std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
+  std::function<ConfigNode(const void* object)> write;
+  std::shared_ptr<const class Schema> section;  ///< type "section" and "list of sections"
+};
+
+/// The parameters of one struct.
+class Schema {
+ public:
+  std::string name;                    ///< what error texts call it ("in newton"); may be empty
+  std::vector<Parameter> parameters;
+  std::function<std::shared_ptr<void>()> fresh;  ///< a struct with its defaults
+
+  /// Reads a map into `object` (a struct with this schema). Unknown keys (with the nearest known name),
+  /// wrong types, values out of range, missing required and repeated keys are all appended to `errors`.
+  void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
+  /// The object as a map with every parameter in it.
+  ConfigNode write(const void* object) const;
+};
+
+/// Fluent access to the parameter just added.
+class ParameterHandle {
+ public:
+  explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
+  ParameterHandle& meaning(std::string text) { p_.meaning = std::move(text); return *this; }
+  ParameterHandle& unit(std::string text) { p_.unit = std::move(text); return *this; }
+  ParameterHandle& source(std::string text) { p_.source = std::move(text); return *this; }
+  ParameterHandle& at_least(double v) { p_.minimum = v; return *this; }
+  ParameterHandle& at_most(double v) { p_.maximum = v; return *this; }
+  ParameterHandle& above(double v) { p_.minimum = v; p_.open_minimum = true; return *this; }
+  ParameterHandle& below(double v) { p_.maximum = v; p_.open_maximum = true; return *this; }
+  ParameterHandle& size(int n) { p_.size = n; return *this; }
+  ParameterHandle& required() { p_.required = true; return *this; }
+  ParameterHandle& choices(std::vector<std::string> words) { p_.choices = std::move(words); return *this; }
+  ParameterHandle& plugin(std::string kind) { p_.plugin_kind = std::move(kind); return *this; }
+
+ private:
+  Parameter& p_;
+};
+
+/// What a parameter struct's `static void declare(Declaration<Self>&)` receives.
+///
+///     struct NewtonParameters {
+///       double step_size = 0.5;
+///       static void declare(Declaration<NewtonParameters>& d) {
+///         d.add("step_size", &NewtonParameters::step_size).unit("s").above(0).meaning("…").source("…");
+///       }
+///     };
+///
+/// Members may be double, int, bool, std::string, std::optional of those, std::vector of double, int or
+/// std::string, Eigen::Vector2d/3d, enums with words (`add_choice`), another declared struct
+/// (`add_section`), a vector of one (`add_sections`), or a ConfigNode or vector of them that is read later,
+/// when the plugin it names is known (`add_node`).
+template <class Struct>
+class Declaration;
+
+/// The schema that `Struct::declare` gives.
+template <class Struct>
+Schema schema_of(const std::string& name = "");
+
+}  // namespace drape
+
+#include "core/plugin/parameters_impl.h"

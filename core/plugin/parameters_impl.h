@@ -1,0 +1,200 @@
+#pragma once
+
+// Templates of parameters.h; include that one.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <stdexcept>
+
+namespace drape {
+
+/// The number that all of `text` spells in decimal, or nothing; "+1", "1e-3" and ".5" are numbers.
+std::optional<double> parse_number(const std::string& text);
+std::optional<int> parse_integer(const std::string& text);
+
+namespace parameter_detail {
+
+// Conversions of nodes that have passed the checks of Schema::read.
+void convert(const ConfigNode& node, double& value);
+void convert(const ConfigNode& node, int& value);
+void convert(const ConfigNode& node, bool& value);
+void convert(const ConfigNode& node, std::string& value);
+inline void convert(const ConfigNode& node, ConfigNode& value) { value = node; }
+
+template <class T>
+void convert(const ConfigNode& node, std::vector<T>& values) {
+  values.resize(node.items.size());
+  for (size_t i = 0; i < values.size(); ++i) convert(node.items[i], values[i]);
+}
+
+template <int N>
+void convert(const ConfigNode& node, Eigen::Matrix<double, N, 1>& values) {
+  for (int i = 0; i < N; ++i) convert(node.items[i], values[i]);
+}
+
+template <class T>
+void convert(const ConfigNode& node, std::optional<T>& value) {
+  value.reset();
+  if (node.kind != ConfigNode::Kind::null) convert(node, value.emplace());
+}
+
+inline ConfigNode to_node(double value) { return ConfigNode::of(value); }
+inline ConfigNode to_node(int value) { return ConfigNode::of(value); }
+inline ConfigNode to_node(bool value) { return ConfigNode::of(value); }
+inline ConfigNode to_node(const std::string& value) { return ConfigNode::of(value); }
+inline ConfigNode to_node(const ConfigNode& value) { return value; }
+
+template <class Range, class Write>
+ConfigNode list_node(const Range& values, Write write) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::list;
+  for (const auto& value : values) node.items.push_back(write(value));
+  return node;
+}
+
+template <class T>
+ConfigNode to_node(const std::vector<T>& values) {
+  return list_node(values, [](const T& value) { return to_node(value); });
+}
+
+template <int N>
+ConfigNode to_node(const Eigen::Matrix<double, N, 1>& values) {
+  return to_node(std::vector<double>(values.data(), values.data() + N));
+}
+
+template <class T>
+ConfigNode to_node(const std::optional<T>& value) {
+  return value ? to_node(*value) : ConfigNode();
+}
+
+// What a member type asks of a config.
+template <class T>
+struct Shape;
+template <class T>
+struct ScalarShape {
+  static constexpr int size = 0;
+  static constexpr bool nullable = false;
+};
+template <>
+struct Shape<double> : ScalarShape<double> { static std::string type() { return "number"; } };
+template <>
+struct Shape<int> : ScalarShape<int> { static std::string type() { return "integer"; } };
+template <>
+struct Shape<bool> : ScalarShape<bool> { static std::string type() { return "boolean"; } };
+template <>
+struct Shape<std::string> : ScalarShape<std::string> { static std::string type() { return "text"; } };
+template <>
+struct Shape<ConfigNode> : ScalarShape<ConfigNode> { static std::string type() { return "node"; } };
+template <class T>
+struct Shape<std::vector<T>> : ScalarShape<T> {
+  static std::string type() { return "list of " + Shape<T>::type() + "s"; }
+};
+template <int N>
+struct Shape<Eigen::Matrix<double, N, 1>> {
+  static constexpr int size = N;
+  static constexpr bool nullable = false;
+  static std::string type() { return "list of numbers"; }
+};
+template <class T>
+struct Shape<std::optional<T>> : Shape<T> { static constexpr bool nullable = true; };
+
+}  // namespace parameter_detail
+
+template <class Struct>
+class Declaration {
+ public:
+  Schema schema;
+
+  template <class Member>
+  ParameterHandle add(const std::string& name, Member Struct::*member) {
+    using Shape = parameter_detail::Shape<Member>;
+    Parameter& p = append(name, Shape::type());
+    p.size = Shape::size;
+    p.nullable = Shape::nullable;
+    p.read = [member](void* object, const ConfigNode& node, ConfigErrors&) {
+      parameter_detail::convert(node, static_cast<Struct*>(object)->*member);
+    };
+    p.write = [member](const void* object) {
+      return parameter_detail::to_node(static_cast<const Struct*>(object)->*member);
+    };
+    return ParameterHandle(p);
+  }
+
+  /// An enum, written as one of some words.
+  template <class Enum>
+  ParameterHandle add_choice(const std::string& name, Enum Struct::*member,
+                             std::vector<std::pair<std::string, Enum>> words) {
+    Parameter& p = append(name, "text");
+    for (const auto& [word, value] : words) p.choices.push_back(word);
+    p.read = [member, words](void* object, const ConfigNode& node, ConfigErrors&) {
+      for (const auto& [word, value] : words)
+        if (word == node.scalar) static_cast<Struct*>(object)->*member = value;
+    };
+    p.write = [member, words, name](const void* object) {
+      for (const auto& [word, value] : words)
+        if (value == static_cast<const Struct*>(object)->*member) return ConfigNode::of(word);
+      throw std::runtime_error("a value of parameter \"" + name + "\" has no word in its declaration");
+    };
+    return ParameterHandle(p);
+  }
+
+  /// A struct with its own `declare`, written as a nested map.
+  template <class Section>
+  ParameterHandle add_section(const std::string& name, Section Struct::*member) {
+    Parameter& p = append(name, "section");
+    const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
+    p.section = section;
+    p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
+      section->read(&(static_cast<Struct*>(object)->*member), node, errors);
+    };
+    p.write = [member, section](const void* object) {
+      return section->write(&(static_cast<const Struct*>(object)->*member));
+    };
+    return ParameterHandle(p);
+  }
+
+  /// Any number of such structs, written as a list of maps; it replaces the list of defaults.
+  template <class Section>
+  ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member) {
+    Parameter& p = append(name, "list of sections");
+    const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
+    p.section = section;
+    p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
+      std::vector<Section>& list = static_cast<Struct*>(object)->*member;
+      list.assign(node.items.size(), Section());
+      for (size_t i = 0; i < list.size(); ++i) section->read(&list[i], node.items[i], errors);
+    };
+    p.write = [member, section](const void* object) {
+      return parameter_detail::list_node(static_cast<const Struct*>(object)->*member,
+                                         [&](const Section& item) { return section->write(&item); });
+    };
+    return ParameterHandle(p);
+  }
+
+  /// A ConfigNode, or a std::vector of them, kept as it was written; name its kind with `.plugin("energy")`.
+  template <class Node>
+  ParameterHandle add_node(const std::string& name, Node Struct::*member) {
+    return add(name, member);
+  }
+
+ private:
+  Parameter& append(const std::string& name, const std::string& type) {
+    for (const Parameter& p : schema.parameters)
+      if (p.name == name) throw std::runtime_error("parameter \"" + name + "\" is declared twice");
+    Parameter& p = schema.parameters.emplace_back();
+    p.name = name;
+    p.type = type;
+    return p;
+  }
+};
+
+template <class Struct>
+Schema schema_of(const std::string& name) {
+  Declaration<Struct> declaration;
+  Struct::declare(declaration);
+  declaration.schema.name = name;
+  declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
+  return declaration.schema;
+}
+
+}  // namespace drape

@@ -1,0 +1,46 @@
+#pragma once
+
+// Templates of registry.h; include that one.
+
+namespace drape {
+
+class ContactModel;
+class Energy;
+class Metric;
+class Refiner;
+class Solver;
+
+/// The word for an interface of core/model.
+template <class Interface>
+struct Kind;
+template <>
+struct Kind<ContactModel> { static constexpr const char* name = "contact"; };
+template <>
+struct Kind<Energy> { static constexpr const char* name = "energy"; };
+template <>
+struct Kind<Metric> { static constexpr const char* name = "metric"; };
+template <>
+struct Kind<Refiner> { static constexpr const char* name = "refiner"; };
+template <>
+struct Kind<Solver> { static constexpr const char* name = "solver"; };
+
+template <class Interface, class Implementation>
+void Registry::add(const std::string& name, const std::string& summary) {
+  using Parameters = typename Implementation::Parameters;
+  auto entry = std::make_unique<RegistryEntry>();
+  entry->kind = Kind<Interface>::name;
+  entry->name = name;
+  entry->summary = summary;
+  entry->library = current_library;
+  entry->schema = schema_of<Parameters>(name);
+  entry->make_parameters = entry->schema.fresh;
+  entry->make = [](const void* parameters) -> std::shared_ptr<void> {
+    // Through Interface*: that is the type the void pointer is cast back to.
+    std::shared_ptr<Interface> object =
+        std::make_shared<Implementation>(*static_cast<const Parameters*>(parameters));
+    return object;
+  };
+  add_entry(std::move(entry));
+}
+
+}  // namespace drape

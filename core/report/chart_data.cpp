@@ -1,0 +1,119 @@
+#include "core/report/chart_data.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_points = 500;  // a series; more cannot be seen and only make the page large
+
+/// Six digits: enough to draw, a third of the bytes.
+Json rounded(const Figure& value) {
+  if (!value) return nullptr;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", *value);
+  return std::strtod(text, nullptr);
+}
+
+/// Energies are compared with others of the same function only: the plain energy of a level, or a
+/// level's proxy, which the finest level does not have.
+bool is_proxy(const RunData& run, const IterationSeries& series, const StepRow& row) {
+  return row.proxy_energy && series.level != run.finest_level();
+}
+
+Figure objective(const RunData& run, const IterationSeries& series, const StepRow& row) {
+  return is_proxy(run, series, row) ? row.proxy_energy : row.energy;
+}
+
+Json series_json(const RunData& run) {
+  std::map<std::pair<int, bool>, double> best;
+  for (const IterationSeries& series : run.iterations) {
+    for (const StepRow& row : series.rows) {
+      const Figure energy = objective(run, series, row);
+      if (!energy) continue;
+      const auto key = std::pair(series.level, is_proxy(run, series, row));
+      const auto known = best.emplace(key, *energy).first;
+      known->second = std::min(known->second, *energy);
+    }
+  }
+  Json all = Json::array();
+  for (const IterationSeries& series : run.iterations) {
+    Json iteration = Json::array(), seconds = iteration, residual = iteration, gap = iteration;
+    const std::size_t count = series.rows.size(), stride = (count + most_points - 1) / most_points;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (k % stride != 0 && k + 1 != count) continue;
+      const StepRow& row = series.rows[k];
+      const Figure energy = objective(run, series, row);
+      iteration.push_back(k + 1);
+      seconds.push_back(rounded(row.seconds));
+      residual.push_back(rounded(row.force_residual));
+      gap.push_back(energy ? rounded(*energy - best.at({series.level, is_proxy(run, series, row)})) : Json());
+    }
+    all.push_back({{"method", series.method},
+                   {"level", series.level},
+                   {"iteration", iteration},
+                   {"seconds", seconds},
+                   {"residual", residual},
+                   {"gap", gap}});
+  }
+  return all;
+}
+
+/// Bars: one label a level of each method, one row of values a name.
+Json bars_json(const RunData& run, NamedFigures LevelRecord::*member) {
+  Json labels = Json::array();
+  std::vector<std::string> names;
+  std::vector<std::map<std::string, Figure>> columns;
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& level : method.levels) {
+      if ((level.*member).empty()) continue;
+      labels.push_back(method.name + ", level " + std::to_string(level.level));
+      columns.emplace_back();
+      for (const auto& [name, value] : level.*member) {
+        columns.back()[name] = value;
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      }
+    }
+  }
+  Json values = Json::array();
+  for (const std::string& name : names) {
+    Json row = Json::array();
+    for (const auto& column : columns) {
+      row.push_back(column.count(name) ? rounded(column.at(name)) : Json());
+    }
+    values.push_back(row);
+  }
+  return {{"labels", labels}, {"names", names}, {"values", values}};
+}
+
+}  // namespace
+
+std::string chart_data(const RunData& run) {
+  Json methods = Json::array();
+  for (const MethodRecord& method : run.methods) methods.push_back(method.name);
+  const Json data = {{"methods", methods},
+                     {"finest", run.finest_level()},
+                     {"tolerance", rounded(run.force_tolerance)},
+                     {"series", series_json(run)},
+                     {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
+                     {"parts", bars_json(run, &LevelRecord::energy_parts)}};
+  const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace drape

@@ -1,0 +1,38 @@
+#include "core/report/embedded.h"
+
+// The assembler looks for relative names in the compiler's include folders, so the project's own files
+// need only the include root; Chart.js lies where the system's package has put it.
+#ifndef DRAPE_CHART_JS
+#error "define DRAPE_CHART_JS as the quoted path of chart.min.js (Debian: libjs-chart.js)"
+#endif
+
+#define DRAPE_EMBED(name, path)                                                              \
+  __asm__(                                                                                   \
+      ".pushsection .rodata\n"                                                               \
+      ".local drape_embedded_" #name                                                         \
+      "\n"                                                                                   \
+      ".local drape_embedded_" #name                                                         \
+      "_end\n"                                                                               \
+      "drape_embedded_" #name                                                                \
+      ":\n"                                                                                  \
+      ".incbin \"" path                                                                      \
+      "\"\n"                                                                                 \
+      "drape_embedded_" #name                                                                \
+      "_end:\n"                                                                              \
+      ".byte 0\n"                                                                            \
+      ".popsection\n");                                                                      \
+  extern "C" __attribute__((visibility("hidden"))) const char drape_embedded_##name[];       \
+  extern "C" __attribute__((visibility("hidden"))) const char drape_embedded_##name##_end[]; \
+  std::string_view drape::Embedded::name() {                                                 \
+    return {drape_embedded_##name,                                                           \
+            static_cast<std::size_t>(drape_embedded_##name##_end - drape_embedded_##name)};  \
+  }
+
+DRAPE_EMBED(page_html, "core/report/assets/page.html")
+DRAPE_EMBED(page_css, "core/report/assets/page.css")
+DRAPE_EMBED(page_js, "core/report/assets/page.js")
+DRAPE_EMBED(chart_js, DRAPE_CHART_JS)
+DRAPE_EMBED(cloth_vertex_shader, "core/report/assets/cloth.vert")
+DRAPE_EMBED(cloth_fragment_shader, "core/report/assets/cloth.frag")
+DRAPE_EMBED(depth_vertex_shader, "core/report/assets/depth.vert")
+DRAPE_EMBED(depth_fragment_shader, "core/report/assets/depth.frag")

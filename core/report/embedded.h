@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string_view>
+
+namespace drape {
+
+/// Files built into the library (core/report/assets and Chart.js), as text.
+struct Embedded {
+  static std::string_view page_html();
+  static std::string_view page_css();
+  static std::string_view page_js();
+  static std::string_view chart_js();
+  static std::string_view cloth_vertex_shader();
+  static std::string_view cloth_fragment_shader();
+  static std::string_view depth_vertex_shader();
+  static std::string_view depth_fragment_shader();
+};
+
+}  // namespace drape

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace drape {
+
+/// A picture in memory: rows from the top, three bytes (red, green, blue; sRGB) a pixel.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<unsigned char> pixels;  ///< 3·width·height
+};
+
+/// The image shrunk by a whole factor, each pixel the mean of a factor×factor block.
+Image shrink(const Image& image, int factor);
+
+/// The bytes of a PNG file. Throws std::runtime_error if libpng refuses the image.
+std::string encode_png(const Image& image);
+
+}  // namespace drape

@@ -1,0 +1,284 @@
+#include "core/report/pictures.h"
+
+#include <cctype>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "core/mesh/file.h"
+#include "core/mesh/io.h"
+#include "core/mesh/topology.h"
+#include "core/report/colours.h"
+#include "core/report/render.h"
+
+namespace drape {
+
+namespace {
+
+constexpr int picture_width = 900, picture_height = 700, map_size = 700;
+constexpr int most_vertices_with_edges = 2500;  // beyond, the lines would run into each other
+
+/// The fine state of a pair with the curvatures of both; a field that was not written is empty.
+struct PairFields {
+  TriangleMesh mesh;
+  Eigen::VectorXd H_difference, principal, principal_other;
+};
+
+std::string file_part(std::string name) {
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+  }
+  return name;
+}
+
+/// A mesh whose triangles may be drawn without looking again.
+TriangleMesh checked_mesh(const std::filesystem::path& path) {
+  TriangleMesh mesh = read_mesh(path);
+  const bool inside = mesh.triangles.size() == 0 ||
+                      (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows());
+  if (!inside) throw std::runtime_error(path.string() + ": a triangle names a vertex that is not there");
+  return mesh;
+}
+
+class PictureMaker {
+ public:
+  explicit PictureMaker(const RunData& run) : run_(run) {}
+
+  PictureSet make() {
+    std::filesystem::create_directories(run_.folder / "pictures");
+    read_states();
+    draw_states();
+    read_fields();
+    draw_H_differences();
+    draw_folds();
+    return std::move(set_);
+  }
+
+ private:
+  using StateKey = std::pair<std::string, int>;
+  using PairKey = std::pair<std::string, std::pair<int, int>>;
+
+  std::optional<TriangleMesh> try_mesh(const std::string& name) {
+    const std::filesystem::path path = run_.folder / name;
+    if (name.empty() || !std::filesystem::is_regular_file(path)) return {};
+    try {
+      return checked_mesh(path);
+    } catch (const std::exception& error) {
+      set_.notes.emplace_back(error.what());
+      return {};
+    }
+  }
+
+  void read_states() {
+    std::vector<const Positions*> all;
+    for (const MethodRecord& method : run_.methods) {
+      for (const LevelRecord& level : method.levels) {
+        if (auto mesh = try_mesh(level.mesh)) {
+          all.push_back(&states_.insert_or_assign({method.name, level.level}, *mesh).first->second.vertices);
+        }
+      }
+    }
+    // Three quarters from above: the top shows how it lies, the side how it folds.
+    camera_ = Camera::around(all, {0.55, -1.0, 0.68}, double(picture_width) / picture_height);
+  }
+
+  void draw_states() {
+    for (const MethodRecord& method : run_.methods) {
+      for (const LevelRecord& level : method.levels) {
+        const auto state = states_.find({method.name, level.level});
+        if (state == states_.end()) continue;
+        Drawing drawing{state->second};
+        drawing.edges = state->second.vertices.rows() <= most_vertices_with_edges;
+        keep(state_picture(method, level.level), renderer().draw(drawing, camera_));
+      }
+    }
+  }
+
+  void read_fields() {
+    for (const MethodRecord& method : run_.methods) {
+      for (const ConsistencyRecord& pair : method.consistency) {
+        auto mesh = try_mesh(pair.fields);
+        if (!mesh) continue;
+        PairFields fields{std::move(*mesh), {}, {}, {}};
+        try {
+          for (const VertexField& field : read_ply_fields(run_.folder / pair.fields)) {
+            if (field.values.size() != fields.mesh.vertices.rows()) continue;
+            if (field.name == "H_difference") fields.H_difference = field.values;
+            if (field.name == "principal_curvature") fields.principal = field.values;
+            if (field.name == "principal_curvature_other") fields.principal_other = field.values;
+          }
+        } catch (const std::exception& error) {
+          set_.notes.emplace_back(error.what());
+        }
+        fields_.insert_or_assign({method.name, {pair.coarse, pair.fine}}, std::move(fields));
+      }
+    }
+  }
+
+  const PairFields* fields(const MethodRecord& method, int coarse, int fine) const {
+    const auto found = fields_.find({method.name, {coarse, fine}});
+    return found == fields_.end() ? nullptr : &found->second;
+  }
+
+  void draw_H_differences() {
+    std::vector<const Eigen::VectorXd*> all;
+    for (const MethodRecord& method : run_.methods) {
+      const ConsistencyRecord* pair = widest_pair(method);
+      const PairFields* f = pair ? fields(method, pair->coarse, pair->fine) : nullptr;
+      if (f && f->H_difference.size() > 0) all.push_back(&f->H_difference);
+    }
+    set_.H_difference_scale = magnitude_quantile(all, H_difference_quantile);
+    for (const MethodRecord& method : run_.methods) {
+      const ConsistencyRecord* pair = widest_pair(method);
+      const PairFields* f = pair ? fields(method, pair->coarse, pair->fine) : nullptr;
+      if (!f || f->H_difference.size() == 0) continue;
+      const Colours colours = diverging_colours(f->H_difference, set_.H_difference_scale);
+      const auto rest = try_mesh("rest/l" + std::to_string(pair->fine) + ".ply");
+      const std::string name = H_difference_picture(method, *pair);
+      if (rest && rest->vertices.rows() == f->mesh.vertices.rows()) {
+        set_.maps_on_rest = true;
+        if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size);
+        keep(name, map_renderer_->draw({*rest, nullptr, &colours, false, false}, Camera::facing(*rest, 1)));
+      } else {
+        keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true}, camera_));
+      }
+    }
+  }
+
+  /// The curvature of the finest state a method has, and the mesh it lies on.
+  const PairFields* finest_fields(const MethodRecord& method) const {
+    const PairFields* best = nullptr;
+    int finest = -1;
+    for (const ConsistencyRecord& pair : method.consistency) {
+      const PairFields* f = fields(method, pair.coarse, pair.fine);
+      if (f && f->principal.size() > 0 && pair.fine > finest) {
+        finest = pair.fine;
+        best = f;
+      }
+    }
+    return best;
+  }
+
+  void draw_folds() {
+    const PairFields* reference = nullptr;
+    for (const MethodRecord& method : run_.methods) {
+      if (!reference) reference = finest_fields(method);
+    }
+    if (!reference) return;
+    set_.fold_threshold = magnitude_quantile({&reference->principal}, fold_quantile);
+    for (const MethodRecord& method : run_.methods) {
+      for (const LevelRecord& level : method.levels) {
+        try {
+          draw_fold(method, level.level);
+        } catch (const std::exception& error) {
+          set_.notes.push_back(fold_picture(method, level.level) + ": " + error.what());
+        }
+      }
+    }
+  }
+
+  /// As a coarse level its curvature is known on the finer connectivity, so its state is carried there;
+  /// the finest level carries its own.
+  void draw_fold(const MethodRecord& method, int level) {
+    const std::string name = fold_picture(method, level);
+    for (auto pair = method.consistency.rbegin(); pair != method.consistency.rend(); ++pair) {
+      const PairFields* f = fields(method, pair->coarse, pair->fine);
+      const auto state = states_.find({method.name, level});
+      if (!f || pair->coarse != level || f->principal_other.size() == 0 || state == states_.end()) continue;
+      TriangleMesh mesh = state->second;
+      Positions normals = smooth_normals(mesh);
+      if (!carry_up(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
+      const Colours colours = fold_colours(f->principal_other, set_.fold_threshold);
+      keep(name, renderer().draw({mesh, &normals, &colours, false, true}, camera_));
+      return;
+    }
+    for (const ConsistencyRecord& pair : method.consistency) {
+      const PairFields* f = fields(method, pair.coarse, pair.fine);
+      if (!f || pair.fine != level || f->principal.size() == 0) continue;
+      const Colours colours = fold_colours(f->principal, set_.fold_threshold);
+      keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true}, camera_));
+      return;
+    }
+  }
+
+  /// Splits a state 1→4 at edge midpoints, which leaves its surface as it is, until it has `count`
+  /// vertices. Relies on the numbering of Refinement: old vertices first, then one an edge. False if
+  /// the numbers do not fit or an intermediate level's triangles are not known.
+  bool carry_up(TriangleMesh& mesh, Positions& normals, const Triangles& finest, Eigen::Index count) const {
+    while (mesh.vertices.rows() < count) {
+      const int n = static_cast<int>(mesh.vertices.rows());
+      const Topology topology = Topology::of(mesh.triangles, n);
+      const Eigen::Index next = n + topology.edges.rows();
+      const Triangles* triangles = next == count ? &finest : triangles_of(next);
+      if (next > count || !triangles) return false;
+      mesh.vertices.conservativeResize(next, 3);
+      normals.conservativeResize(next, 3);
+      for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
+        const int a = topology.edges(e, 0), b = topology.edges(e, 1);
+        mesh.vertices.row(n + e) = (mesh.vertices.row(a) + mesh.vertices.row(b)) / 2;
+        normals.row(n + e) = (normals.row(a) + normals.row(b)).normalized();
+      }
+      mesh.triangles = *triangles;
+    }
+    return mesh.vertices.rows() == count;
+  }
+
+  const Triangles* triangles_of(Eigen::Index vertex_count) const {
+    for (const auto& [key, mesh] : states_) {
+      if (mesh.vertices.rows() == vertex_count) return &mesh.triangles;
+    }
+    return nullptr;
+  }
+
+  Renderer& renderer() {
+    if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height);
+    return *renderer_;
+  }
+
+  void keep(const std::string& name, Image image) {
+    std::string png = encode_png(image);
+    write_file(run_.folder / "pictures" / name, png);
+    set_.pictures.insert_or_assign(name, Picture{std::move(image), std::move(png)});
+  }
+
+  const RunData& run_;
+  PictureSet set_;
+  std::map<StateKey, TriangleMesh> states_;
+  std::map<PairKey, PairFields> fields_;
+  Camera camera_;
+  std::unique_ptr<Renderer> renderer_, map_renderer_;
+};
+
+}  // namespace
+
+const Picture* PictureSet::find(const std::string& name) const {
+  const auto found = pictures.find(name);
+  return found == pictures.end() ? nullptr : &found->second;
+}
+
+std::string state_picture(const MethodRecord& method, int level) {
+  return file_part(method.name) + "_l" + std::to_string(level) + ".png";
+}
+
+std::string fold_picture(const MethodRecord& method, int level) {
+  return file_part(method.name) + "_l" + std::to_string(level) + "_folds.png";
+}
+
+std::string H_difference_picture(const MethodRecord& method, const ConsistencyRecord& pair) {
+  return file_part(method.name) + "_l" + std::to_string(pair.coarse) + "_l" + std::to_string(pair.fine) +
+         "_H_difference.png";
+}
+
+const ConsistencyRecord* widest_pair(const MethodRecord& method) {
+  const ConsistencyRecord* widest = nullptr;
+  for (const ConsistencyRecord& pair : method.consistency) {
+    const bool wider = !widest || pair.coarse < widest->coarse ||
+                       (pair.coarse == widest->coarse && pair.fine > widest->fine);
+    if (wider) widest = &pair;
+  }
+  return widest;
+}
+
+PictureSet draw_pictures(const RunData& run) { return PictureMaker(run).make(); }
+
+}  // namespace drape

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+namespace drape {
+
+/// Writes DIR/report.html, one page that needs no other file and no network, and DIR/pictures/*.png from
+/// what a finished or interrupted run has left in DIR (results.json, steps.csv, config.yaml, levels/,
+/// fields/, rest/). What is missing shows as a dash or a sentence. Throws std::runtime_error with one
+/// line if DIR has no readable results.json or cannot be written to.
+void write_report(const std::filesystem::path& run_directory);
+
+}  // namespace drape

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace drape {
+
+/// A figure of a run, absent when the run did not get that far or did not measure it.
+using Figure = std::optional<double>;
+
+/// Figures by name, in the order they were written.
+using NamedFigures = std::vector<std::pair<std::string, Figure>>;
+
+/// One level of one method, as results.json has it (SI units).
+struct LevelRecord {
+  int level = 0;
+  std::string status;
+  Figure vertices, triangles, steps, newton_iterations, seconds;
+  Figure energy, energy_on_finest;   ///< [J]
+  Figure decrement, force_residual;  ///< [m/s], [1]
+  Figure largest_stretch, intersections, smallest_gap;
+  NamedFigures seconds_by_phase, energy_parts;
+  std::string mesh;  ///< relative to the run's folder; may be empty
+};
+
+/// Differences of one coarse state, carried up, from one finer state.
+struct ConsistencyRecord {
+  int coarse = 0, fine = 0;
+  Figure d_H_fit, d_H_ddg, d_K_fit, d_K_ddg;  ///< [1], [1], [1/m²], [1/m²]
+  Figure distance_rms;                        ///< in diagonals of the rest shape
+  std::string fields;                         ///< relative to the run's folder; may be empty
+};
+
+struct MethodRecord {
+  std::string name, status;
+  Figure seconds, peak_memory_bytes;
+  std::vector<LevelRecord> levels;  ///< coarse to fine
+  std::vector<ConsistencyRecord> consistency;
+
+  const LevelRecord* level(int index) const;
+  const ConsistencyRecord* pair(int coarse, int fine) const;
+};
+
+/// One row of steps.csv.
+struct StepRow {
+  Figure seconds, energy, decrement, force_residual, step_length, proxy_energy;
+};
+
+/// All rows of one level of one method, in order.
+struct IterationSeries {
+  std::string method;
+  int level = 0;
+  std::vector<StepRow> rows;
+};
+
+/// Everything a finished or interrupted run has written, except meshes.
+struct RunData {
+  std::filesystem::path folder;
+  std::string experiment, description, version, cpu, table1_scene, configuration;
+  bool complete = false;
+  Figure cores, threads, force_tolerance;
+  std::vector<MethodRecord> methods;
+  std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
+
+  int finest_level() const;                ///< over all methods; -1 without levels
+  std::vector<int> level_indices() const;  ///< of all methods, ascending
+  /// (coarse, fine) of all methods, ascending.
+  std::vector<std::pair<int, int>> pairs() const;
+};
+
+/// Reads results.json (needed), steps.csv and config.yaml (if there). Absent or null values stay absent.
+/// Throws std::runtime_error with one line if results.json is missing or is not JSON.
+RunData read_run(const std::filesystem::path& folder);
+
+}  // namespace drape

@@ -1,0 +1,139 @@
+#include "core/report/tables.h"
+
+#include <algorithm>
+
+#include "core/report/html.h"
+
+namespace drape {
+
+namespace {
+
+using html::Cell;
+using html::escape;
+using html::figure;
+
+using Row = std::vector<Cell>;
+
+Cell words(const std::string& content) { return {content, false}; }
+
+std::string status_badge(const std::string& status) {
+  const std::string kind = status == "converged" ? "good" : status.empty() ? "none" : "poor";
+  return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
+}
+
+/// The sum over levels of those that are known.
+Figure sum_of_levels(const MethodRecord& method, Figure LevelRecord::*member) {
+  Figure sum;
+  for (const LevelRecord& level : method.levels) {
+    if (level.*member) sum = sum.value_or(0) + *(level.*member);
+  }
+  return sum;
+}
+
+/// Names of all energy parts, in order of first appearance.
+std::vector<std::string> part_names(const RunData& run) {
+  std::vector<std::string> names;
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& level : method.levels) {
+      for (const auto& [name, value] : level.energy_parts) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      }
+    }
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string summary_table(const RunData& run) {
+  const Row head = {words("method"),    words("status"),       {"levels"},           {"time [s]"},
+                    {"steps"},          {"Newton iterations"}, {"final energy [J]"}, {"above lowest [J]"},
+                    {"force residual"}, {"decrement [m/s]"},   {"largest stretch"},  {"smallest gap [m]"},
+                    {"intersections"},  {"peak memory"}};
+  Figure lowest;
+  for (const MethodRecord& method : run.methods) {
+    const Figure energy = final_energy(run, method);
+    if (energy) lowest = std::min(lowest.value_or(*energy), *energy);
+  }
+  std::vector<Row> body;
+  for (const MethodRecord& method : run.methods) {
+    const Figure energy = final_energy(run, method);
+    const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
+    const Figure seconds = method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
+    body.push_back({words(escape(method.name)),
+                    words(status_badge(method.status)),
+                    {std::to_string(method.levels.size())},
+                    {figure(seconds)},
+                    {html::count(sum_of_levels(method, &LevelRecord::steps))},
+                    {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
+                    {figure(energy)},
+                    {figure(energy ? Figure(*energy - *lowest) : energy)},
+                    {figure(last.force_residual)},
+                    {figure(last.decrement)},
+                    {figure(last.largest_stretch)},
+                    {figure(last.smallest_gap)},
+                    {html::count(last.intersections)},
+                    {html::bytes(method.peak_memory_bytes)}});
+  }
+  return html::table({head}, body);
+}
+
+std::string level_table(const RunData& run) {
+  const Row head = {words("method"),       {"level"},
+                    {"vertices"},          {"triangles"},
+                    words("status"),       {"steps"},
+                    {"Newton iterations"}, {"time [s]"},
+                    {"energy [J]"},        {"on finest [J]"},
+                    {"force residual"},    {"decrement [m/s]"},
+                    {"largest stretch"},   {"smallest gap [m]"},
+                    {"intersections"}};
+  std::vector<Row> body;
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& r : method.levels) {
+      Row row;
+      if (&r == &method.levels.front()) {
+        row.push_back(words(escape(method.name)));
+        row.back().rows = static_cast<int>(method.levels.size());
+      }
+      const Row rest = {{std::to_string(r.level)},    {html::count(r.vertices)},
+                        {html::count(r.triangles)},   words(status_badge(r.status)),
+                        {html::count(r.steps)},       {html::count(r.newton_iterations)},
+                        {figure(r.seconds)},          {figure(r.energy)},
+                        {figure(r.energy_on_finest)}, {figure(r.force_residual)},
+                        {figure(r.decrement)},        {figure(r.largest_stretch)},
+                        {figure(r.smallest_gap)},     {html::count(r.intersections)}};
+      row.insert(row.end(), rest.begin(), rest.end());
+      body.push_back(row);
+    }
+  }
+  return html::table({head}, body);
+}
+
+std::string energy_table(const RunData& run) {
+  const std::vector<std::string> names = part_names(run);
+  if (names.empty()) return "<p class=\"absent\">No energy parts were recorded.</p>";
+  Row head = {words("method"), {"level"}};
+  for (const std::string& name : names) head.push_back({escape(name)});
+  head.push_back({"sum"});
+  std::vector<Row> body;
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& level : method.levels) {
+      Row row;
+      if (&level == &method.levels.front()) {
+        row.push_back(words(escape(method.name)));
+        row.back().rows = static_cast<int>(method.levels.size());
+      }
+      row.push_back({std::to_string(level.level)});
+      for (const std::string& name : names) {
+        const auto part = std::find_if(level.energy_parts.begin(), level.energy_parts.end(),
+                                       [&](const auto& p) { return p.first == name; });
+        row.push_back({figure(part == level.energy_parts.end() ? Figure() : part->second)});
+      }
+      row.push_back({figure(level.energy)});
+      body.push_back(row);
+    }
+  }
+  return html::table({head}, body);
+}
+
+}  // namespace drape

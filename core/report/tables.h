@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "core/report/run_data.h"
+#include "core/report/table1.h"
+
+namespace drape {
+
+/// How the run ended and who did best, as one sentence or two of HTML.
+std::string outcome_sentence(const RunData& run);
+
+/// The energy of the finest model in the last state of a method [J].
+Figure final_energy(const RunData& run, const MethodRecord& method);
+
+/// One row a method: status, cost and quality of what it ended with.
+std::string summary_table(const RunData& run);
+
+/// One row a level of each method.
+std::string level_table(const RunData& run);
+
+/// One row a pair of levels and measure, one column a method, the lowest of a row in bold; the
+/// published columns beside if `published` is not null.
+std::string consistency_table(const RunData& run, const Table1Block* published);
+
+/// The published block alone, in the same layout.
+std::string published_table(const Table1Block& block);
+
+/// Parts of the energy, one row a level of each method [J].
+std::string energy_table(const RunData& run);
+
+}  // namespace drape

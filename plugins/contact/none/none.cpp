@@ -1,0 +1,22 @@
+#include "core/model/contact_model.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// No contact: the cloth passes through itself and everything else, at no cost.
+class NoContact : public ContactModel {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+  explicit NoContact(const Parameters&) {}
+
+  std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override { return nullptr; }
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::ContactModel, drape::NoContact>(
+      "none", "No contact: nothing is kept apart, and no contact code runs.");
+}

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Forces that stay as they are while the cloth moves: E = -Σ f_i · x_i.
+class ConstantLoad final : public Energy {
+ public:
+  /// A force on the vertex that is nearest to `point` at rest.
+  struct PointForce {
+    Eigen::Vector3d point{0, 0, 0};
+    Eigen::Vector3d force{0, 0, 0};
+    static void declare(Declaration<PointForce>& d) {
+      d.add("point", &PointForce::point).unit("m").required().meaning(
+          "place in the rest shape; the nearest vertex takes the force").source("this project");
+      d.add("force", &PointForce::force).unit("N").required().meaning("total force").source("this project");
+    }
+  };
+
+  struct Parameters {
+    Eigen::Vector3d force_density{0, 0, 0};
+    std::vector<PointForce> points;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("force_density", &Parameters::force_density).unit("N/m²").meaning(
+          "force a unit of rest area, everywhere").source("this project");
+      d.add_sections("points", &Parameters::points).meaning("forces on single vertices").source("this project");
+    }
+  };
+
+  explicit ConstantLoad(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape

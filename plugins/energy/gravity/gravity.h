@@ -1,0 +1,27 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Weight, E = -Σ m_i a · x_i with m_i = ρ d A_i, A_i the level's vertex areas.
+class Gravity final : public Energy {
+ public:
+  struct Parameters {
+    Eigen::Vector3d acceleration{0, 0, -9.81};
+    static void declare(Declaration<Parameters>& d) {
+      d.add("acceleration", &Parameters::acceleration).unit("m/s²").meaning("acceleration of free fall").source(
+          "standard gravity, rounded; z is up");
+    }
+  };
+
+  explicit Gravity(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape

@@ -1,0 +1,31 @@
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "plugins/energy/gravity/gravity.h"
+#include "tests/support/evaluate.h"
+
+using namespace drape;
+
+TEST_CASE("gravity: a cloth's potential and weight") {
+  const Level level = Level::of(0, grid({2, 3}, 17, 9, Diagonals::one_way));
+  Material material;
+  material.density = 500;
+  material.thickness = 2e-4;
+  const double mass = 2 * 3 * 500 * 2e-4;
+  Gravity::Parameters parameters;
+  CHECK(Gravity(parameters).bind(level, material)->value(level.rest.vertices) == 0);  // it lies at z = 0
+  parameters.acceleration << 0.1, -0.2, -9.81;
+  const auto bound = Gravity(parameters).bind(level, material);
+
+  // The cloth's centre is at (1, 1.5); lifted by 5.
+  Positions x = level.rest.vertices;
+  x.col(2).array() += 5;
+  CHECK(bound->value(x) == Approx(-mass * (0.1 * 1 - 0.2 * 1.5 - 9.81 * 5)).epsilon(1e-12));
+
+  Positions g = Positions::Constant(x.rows(), 3, 7.0);
+  CHECK(bound->add_gradient(x, g) == bound->value(x));
+  const Eigen::RowVector3d force = -(g.array() - 7.0).matrix().colwise().sum();
+  CHECK((force - mass * parameters.acceleration.transpose()).norm() <= 1e-12 * mass);
+  CHECK(Gravity(parameters).role() == EnergyRole::external);
+  CHECK(bound->stencils().rows() == 0);
+}

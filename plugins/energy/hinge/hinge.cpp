@@ -1,0 +1,34 @@
+#include "plugins/energy/hinge/hinge.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "core/numerics/element_energy.h"
+#include "core/plugin/plugin.h"
+#include "plugins/energy/hinge/hinge_kernel.h"
+
+namespace drape {
+
+std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& material) const {
+  const double nu = material.poisson_ratio;
+  const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  const Positions& places = level.rest.vertices;
+  const Stencils hinges = level.topology.hinges(level.rest.triangles);
+  std::vector<HingeKernel::Rest> rest;
+  for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
+    Eigen::Vector3d d[3];
+    for (int i = 0; i < 3; ++i) d[i] = places.row(hinges(h, i + 1)) - places.row(hinges(h, 0));
+    rest.push_back(HingeKernel::rest(d, k));
+    if (!rest.back().allFinite())
+      throw std::runtime_error("hinge: a triangle at the edge of vertices " + std::to_string(hinges(h, 0)) +
+                               " and " + std::to_string(hinges(h, 1)) + " of level " +
+                               std::to_string(level.index) + " has no area at rest");
+  }
+  return std::make_unique<ElementEnergy<HingeKernel>>(hinges, rest, places);
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Energy, drape::Hinge>("hinge", "Bending by the angles between triangles, any rest shape.");
+}

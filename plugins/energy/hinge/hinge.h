@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Discrete hinge bending (method.md, section 5): Σ_e k · 3‖ē‖²/(Ā₁+Ā₂) (θ-θ̄)², k = E_bend d³/(24(1-ν²)), θ̄ from
+/// the rest shape.
+class Hinge final : public Energy {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit Hinge(const Parameters&) {}
+  EnergyRole role() const override { return EnergyRole::bending; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+};
+
+}  // namespace drape

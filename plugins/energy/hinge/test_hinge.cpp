@@ -1,0 +1,155 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "plugins/energy/hinge/hinge.h"
+#include "plugins/energy/hinge/hinge_kernel.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+
+namespace {
+
+using Check = KernelCheck<HingeKernel>;
+constexpr double pi = 3.14159265358979323846, k = 0.7;
+
+/// Two triangles over an edge of length 1 along x, whose normals differ by `angle`.
+Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, double foot_v = 0.7, double height_v = 1.1) {
+  Check::State x;
+  x << 1, 0, 0, foot_u, height_u, 0, foot_v, -height_v * std::cos(angle), -height_v * std::sin(angle);
+  return x;
+}
+
+HingeKernel::Rest rest_of(const Check::State& x) {
+  const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
+  return HingeKernel::rest(d, k);
+}
+
+const HingeKernel::Rest flat_rest = rest_of(folded(0)), bent_rest = rest_of(folded(0.6));
+
+double angle_of(const Check::State& x) {
+  const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
+  return HingeKernel::angle(d);
+}
+
+/// Random, nearly flat, sharply folded to both sides, and with a nearly degenerate triangle.
+std::vector<Check::State> states() {
+  std::vector<Check::State> all;
+  for (unsigned seed = 1; seed <= 5; ++seed) all.push_back(folded(0.3) + 0.3 * normal_numbers(9, seed));
+  for (const double angle : {1e-3, 3.0, -3.0, 1.6, -0.9}) all.push_back(folded(angle));
+  all.push_back(folded(0.5, 0.4, 0.03));
+  all.push_back(folded(0.5, 3.0, 0.2, -2.0, 0.1));
+  return all;
+}
+
+/// The energy of the level whose vertices have been moved, over k κ² times the rest area.
+double energy_over_smooth(const Level& level, const Positions& x, double curvature) {
+  const Material material;
+  const double nu = material.poisson_ratio;
+  const double own_k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  return Hinge({}).bind(level, material)->value(x) / (own_k * curvature * curvature * level.vertex_area.sum());
+}
+
+}  // namespace
+
+TEST_CASE("hinge: the angle is signed, positive where the second triangle lies behind the first") {
+  for (const double angle : {-3.1, -1.0, -1e-9, 0.0, 1e-9, 0.5, 2.0, 3.1})
+    CHECK(angle_of(folded(angle)) == Approx(angle).epsilon(1e-14).margin(0));
+}
+
+TEST_CASE("hinge: derivatives are those of the value") {
+  for (const auto& rest : {flat_rest, bent_rest})
+    for (const auto& x : states()) Check::derivatives(x, rest, 1e-4, 1e-7);
+}
+
+TEST_CASE("hinge: lanes compute what double does") {
+  for (const auto& rest : {flat_rest, bent_rest})
+    for (const auto& x : states()) Check::all_lanes(x, rest, rest[0]);
+}
+
+TEST_CASE("hinge: projection is that of the full element matrix") {
+  double smallest = 0;
+  for (const auto& x : states()) {
+    smallest = std::min(smallest, Check::projections<double>(x, bent_rest));
+    Check::projections<Pack<8>>(x, bent_rest);
+  }
+  REQUIRE(smallest < -1e-3);  // else nothing was projected
+  CHECK(Check::projections<Pack<8>>(folded(0), flat_rest) > -1e-12);  // rank one: nothing to project
+}
+
+TEST_CASE("hinge: rest shapes, flat or bent, are stress-free") {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  for (const double angle : {0.0, 0.6, -2.5}) {
+    const Check::State x = folded(angle);
+    Check::State turned;
+    for (int i = 0; i < 3; ++i) turned.segment<3>(3 * i) = turn * x.segment<3>(3 * i);
+    const auto r = Check::evaluate(turned, rest_of(x));
+    CHECK(std::abs(r.value) <= 1e-28 * k);
+    CHECK(r.gradient.norm() <= 1e-13 * k);
+    CHECK(r.hessian.norm() > k);
+  }
+}
+
+TEST_CASE("hinge: a fold in closed form") {
+  // c = 3 k ‖ē‖² / (Ā₁ + Ā₂)
+  const double c = 3 * k * 1 / (0.5 * 0.8 + 0.5 * 1.1);
+  for (const double angle : {-2.0, 0.3, 3.0})
+    CHECK(Check::evaluate(folded(angle), bent_rest).value == Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
+}
+
+// The two numbers below depend on the triangulation; the README says what that means.
+TEST_CASE("hinge: a regular grid rolled along its edges has 3 k κ² an area") {
+  const double radius = 2;
+  for (const int n : {41, 81}) {
+    const Level level = Level::of(0, grid({1, 1}, n, n, Diagonals::one_way));
+    Positions x = level.rest.vertices;
+    for (int i = 0; i < level.vertex_count(); ++i) {
+      const double angle = x(i, 1) / radius;
+      x.row(i) << x(i, 0), radius * std::sin(angle), radius * (std::cos(angle) - 1);
+    }
+    // The n - 2 inner rows of edges along the axis, of n - 1 rows of cells.
+    CHECK(energy_over_smooth(level, x, 1 / radius) * (n - 1) / (n - 2) == Approx(3).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("hinge: equilateral triangles on a sphere have 4 k κ² an area") {
+  const double side = 1e-3, radius = 0.5;
+  TriangleMesh mesh;
+  mesh.vertices.setZero(7, 3);
+  mesh.triangles.resize(6, 3);
+  for (int i = 0; i < 6; ++i) {
+    mesh.vertices.row(i + 1) << side * std::cos(i * pi / 3), side * std::sin(i * pi / 3), 0;
+    mesh.triangles.row(i) << 0, i + 1, (i + 1) % 6 + 1;
+  }
+  const Level level = Level::of(0, mesh);
+  Positions x = mesh.vertices;
+  for (int i = 0; i < 7; ++i) {
+    const double distance = x.row(i).norm();
+    x(i, 2) = std::sqrt(radius * radius - distance * distance) - radius;
+  }
+  // An endless mesh has 3/2 edges a triangle, this patch (its six spokes) one.
+  CHECK(energy_over_smooth(level, x, 1 / radius) * 3 / 2 == Approx(4).epsilon(1e-4));
+}
+
+TEST_CASE("hinge: same bits with any number of threads") {
+  const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
+  const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
+  check_threads(*Hinge({}).bind(level, Material()),
+                level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3));
+}
+
+TEST_CASE("hinge: a single triangle has no hinge") {
+  TriangleMesh mesh;
+  mesh.vertices = Eigen::Matrix3d::Identity();
+  mesh.triangles.resize(1, 3);
+  mesh.triangles << 0, 1, 2;
+  const auto bound = Hinge({}).bind(Level::of(0, mesh), Material());
+  CHECK(bound->value(mesh.vertices) == 0);
+  CHECK(bound->stencils().rows() == 0);
+}
+
+TEST_CASE("hinge: a triangle without area is refused") {
+  Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+  level.rest.vertices.row(4) = level.rest.vertices.row(0);
+  CHECK_THROWS_WITH(Hinge({}).bind(level, Material()), Catch::Contains("hinge: ") && Catch::Contains("no area"));
+}

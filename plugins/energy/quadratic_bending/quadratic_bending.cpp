@@ -1,0 +1,45 @@
+#include "plugins/energy/quadratic_bending/quadratic_bending.h"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "core/numerics/element_energy.h"
+#include "core/plugin/plugin.h"
+#include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
+
+namespace drape {
+namespace {
+
+void require_flat(const Eigen::Vector3d* d, const Level& level, int v0, int v1) {
+  const Eigen::Vector3d n1 = d[0].cross(d[1]), n2 = d[2].cross(d[0]);
+  const double angle = std::atan2(n1.cross(n2).norm(), n1.dot(n2));
+  if (n1.norm() > 0 && n2.norm() > 0 && angle <= 1e-6) return;
+  std::ostringstream text;
+  text << "quadratic_bending: the rest shape of level " << level.index << " is not flat (angle " << angle
+       << " at the edge of vertices " << v0 << " and " << v1 << "); use hinge";
+  throw std::runtime_error(text.str());
+}
+
+}  // namespace
+
+std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Material& material) const {
+  const double nu = material.poisson_ratio;
+  const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  const Positions& places = level.rest.vertices;
+  const Stencils hinges = level.topology.hinges(level.rest.triangles);
+  std::vector<QuadraticBendingKernel::Rest> rest;
+  for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
+    Eigen::Vector3d d[3];
+    for (int i = 0; i < 3; ++i) d[i] = places.row(hinges(h, i + 1)) - places.row(hinges(h, 0));
+    require_flat(d, level, hinges(h, 0), hinges(h, 1));
+    rest.push_back(QuadraticBendingKernel::rest(d, k));
+  }
+  return std::make_unique<ElementEnergy<QuadraticBendingKernel>>(hinges, rest, places);
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Energy, drape::QuadraticBending>(
+      "quadratic_bending", "Bending with a constant matrix, for flat rest shapes that hardly stretch.");
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Isometric quadratic bending (Bergou et al. 2006) with the hinge's stiffness; flat rest shapes only.
+class QuadraticBending final : public Energy {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit QuadraticBending(const Parameters&) {}
+  EnergyRole role() const override { return EnergyRole::bending; }
+  /// Throws where a hinge's rest angle is above 1e-6.
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+};
+
+}  // namespace drape

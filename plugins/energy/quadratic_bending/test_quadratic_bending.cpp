@@ -1,0 +1,81 @@
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "plugins/energy/quadratic_bending/quadratic_bending.h"
+#include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+
+namespace {
+
+using Check = KernelCheck<QuadraticBendingKernel>;
+constexpr double k = 0.7, height_u = 0.8, height_v = 1.1;
+
+/// Two triangles over an edge of length 1 along x, whose normals differ by `angle`.
+Check::State folded(double angle) {
+  Check::State x;
+  x << 1, 0, 0, 0.4, height_u, 0, 0.7, -height_v * std::cos(angle), -height_v * std::sin(angle);
+  return x;
+}
+
+QuadraticBendingKernel::Rest rest_of(const Check::State& x) {
+  const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
+  return QuadraticBendingKernel::rest(d, k);
+}
+
+const QuadraticBendingKernel::Rest rest = rest_of(folded(0));
+
+}  // namespace
+
+TEST_CASE("quadratic_bending: derivatives are those of the value") {
+  for (unsigned seed = 1; seed <= 5; ++seed)
+    Check::derivatives(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, 1e-3, 1e-9);
+}
+
+TEST_CASE("quadratic_bending: lanes compute what double does") {
+  for (unsigned seed = 1; seed <= 5; ++seed)
+    Check::all_lanes(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, rest[0]);
+}
+
+TEST_CASE("quadratic_bending: the matrix needs no projection") {
+  CHECK(Check::projections<double>(folded(2), rest) > -1e-12);
+  CHECK(Check::projections<Pack<8>>(folded(2), rest) > -1e-12);
+}
+
+TEST_CASE("quadratic_bending: flat hinges are stress-free, deformed in their plane or not") {
+  Check::State sheared = folded(0);
+  for (int i = 0; i < 3; ++i) sheared[3 * i] = 1.3 * sheared[3 * i] + 0.4 * sheared[3 * i + 1];
+  for (const auto& x : {folded(0), sheared}) {
+    const auto r = Check::evaluate(x, rest);
+    CHECK(std::abs(r.value) <= 1e-28 * k);
+    CHECK(r.gradient.norm() <= 1e-13 * k);
+    CHECK(r.hessian.norm() > k);
+  }
+}
+
+TEST_CASE("quadratic_bending: an isometric fold has the hinge energy with θ replaced by 2 sin θ/2") {
+  const double c = 3 * k / (0.5 * height_u + 0.5 * height_v);
+  for (const double angle : {-2.0, 1e-3, 0.3, 3.0})
+    CHECK(Check::evaluate(folded(angle), rest).value ==
+          Approx(c * std::pow(2 * std::sin(angle / 2), 2)).epsilon(1e-12).margin(0));
+}
+
+TEST_CASE("quadratic_bending: same bits with any number of threads, whatever the projection") {
+  const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
+  const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
+  const Positions x = level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3);
+  const auto bound = QuadraticBending({}).bind(level, Material());
+  check_threads(*bound, x);
+  const auto plain = hessian_of(*bound, x, Projection::none).values;
+  CHECK(hessian_of(*bound, x, Projection::clamp).values == plain);
+  CHECK(hessian_of(*bound, 2 * x, Projection::absolute).values == plain);
+}
+
+TEST_CASE("quadratic_bending: a rest shape that is not flat is refused") {
+  TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
+  mesh.vertices(5, 2) = 0.01;
+  CHECK_THROWS_WITH(QuadraticBending({}).bind(Level::of(3, mesh), Material()),
+                    Catch::Contains("the rest shape of level 3 is not flat (angle 0.0") &&
+                        Catch::Contains("use hinge"));
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// St. Venant–Kirchhoff membrane in plane stress (method.md, section 5); finite everywhere.
+class Stvk final : public Energy {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit Stvk(const Parameters&) {}
+  EnergyRole role() const override { return EnergyRole::membrane; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+};
+
+}  // namespace drape

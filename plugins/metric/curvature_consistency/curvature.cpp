@@ -1,0 +1,167 @@
+#include "plugins/metric/curvature_consistency/curvature.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/numerics/parallel.h"
+#include "plugins/metric/curvature_consistency/quadric.h"
+
+namespace drape {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int grain = 1024;  // vertices a piece; each piece allocates a mark per vertex of the mesh
+
+Vector3d vertex(const Positions& x, int i) { return x.row(i).transpose(); }
+
+Vector3d area_vector(const Positions& x, const Triangles& triangles, int t) {
+  const Vector3d a = vertex(x, triangles(t, 0));
+  return 0.5 * (vertex(x, triangles(t, 1)) - a).cross(vertex(x, triangles(t, 2)) - a);
+}
+
+Positions vertex_normals(const Positions& x, const Triangles& triangles, const Topology& topology) {
+  Positions normals(x.rows(), 3);
+  parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      Vector3d sum = Vector3d::Zero();
+      for (const int* t = topology.vertex_triangles.begin(i); t != topology.vertex_triangles.end(i); ++t)
+        sum += area_vector(x, triangles, *t);
+      const double length = sum.norm();
+      if (!(length > 0))
+        throw std::runtime_error(
+            "curvature: the triangles around vertex " + std::to_string(i) +
+            " have no common normal; they are degenerate or folded flat onto each other");
+      normals.row(i) = sum.transpose() / length;
+    }
+  });
+  return normals;
+}
+
+/// Vertices within some edges of a centre, by breadth-first search; the marks are reused between centres.
+class RingSearch {
+ public:
+  RingSearch(const AdjacencyList& neighbours, int vertex_count)
+      : neighbours_(neighbours), marks_(vertex_count, -1) {}
+
+  /// The vertices around `centre`, without itself, ring after ring; valid until the next call.
+  const std::vector<int>& around(int centre, int rings) {
+    found_.assign(1, centre);
+    marks_[centre] = centre;
+    std::size_t next = 0;
+    for (int ring = 0; ring < rings; ++ring)
+      for (const std::size_t last = found_.size(); next < last; ++next) {
+        const int from = found_[next];
+        for (const int* j = neighbours_.begin(from); j != neighbours_.end(from); ++j) {
+          if (marks_[*j] == centre) continue;
+          marks_[*j] = centre;
+          found_.push_back(*j);
+        }
+      }
+    found_.erase(found_.begin());
+    return found_;
+  }
+
+ private:
+  const AdjacencyList& neighbours_;
+  std::vector<int> marks_;
+  std::vector<int> found_;
+};
+
+VertexCurvatures sized(Eigen::Index n) {
+  return {Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n), Eigen::VectorXd(n)};
+}
+
+}  // namespace
+
+VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology,
+                                int rings) {
+  const int n = static_cast<int>(x.rows());
+  const Positions normals = vertex_normals(x, triangles, topology);
+  VertexCurvatures result = sized(n);
+  parallel_for(n, grain, [&](int begin, int end) {
+    RingSearch search(topology.vertex_vertices, n);
+    std::vector<Vector3d> offsets;
+    for (int i = begin; i < end; ++i) {
+      const Vector3d normal = vertex(normals, i), u = normal.unitOrthogonal(), v = normal.cross(u);
+      double scale = 0;  // fitting in units of the neighbourhood keeps the normal matrix well conditioned
+      const auto gather = [&](bool all) {
+        offsets.clear();
+        for (const int j : search.around(i, rings)) {
+          if (!all && normals.row(j).dot(normals.row(i)) <= 0) continue;
+          const Vector3d offset = vertex(x, j) - vertex(x, i);
+          offsets.emplace_back(offset.dot(u), offset.dot(v), offset.dot(normal));
+          scale = std::max(scale, offsets.back().norm());
+        }
+      };
+      gather(false);
+      if (offsets.size() < 5) gather(true);  // as libigl: five unknowns need five neighbours
+      for (Vector3d& offset : offsets) offset /= scale;
+      const PointCurvatures at_i = quadric_curvatures(fit_quadric(offsets));
+      result.mean[i] = at_i.mean / scale;
+      result.gaussian[i] = at_i.gaussian / (scale * scale);
+      result.kappa1[i] = at_i.kappa1 / scale;
+      result.kappa2[i] = at_i.kappa2 / scale;
+    }
+  });
+  return result;
+}
+
+VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology) {
+  VertexCurvatures result = sized(x.rows());
+  result.mean.setZero();
+  const auto hinges = topology.hinges(triangles);
+  Eigen::VectorXd bend(hinges.rows());  // ‖e‖ θ_e
+  parallel_for(static_cast<int>(hinges.rows()), grain, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h) {
+      const Vector3d x0 = vertex(x, hinges(h, 0)), edge = vertex(x, hinges(h, 1)) - x0;
+      const Vector3d n1 = edge.cross(vertex(x, hinges(h, 2)) - x0);
+      const Vector3d n2 = (vertex(x, hinges(h, 3)) - x0).cross(edge);
+      const double length = edge.norm();
+      bend[h] = length * std::atan2(n1.cross(n2).dot(edge), length * n1.dot(n2));
+    }
+  });
+  for (Eigen::Index h = 0; h < hinges.rows(); ++h)
+    for (int end = 0; end < 2; ++end) result.mean[hinges(h, end)] += 0.25 * bend[h];
+
+  parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      double angles = 0, area = 0;
+      for (const int* t = topology.vertex_triangles.begin(i); t != topology.vertex_triangles.end(i); ++t) {
+        const int k = triangles(*t, 0) == i ? 0 : triangles(*t, 1) == i ? 1 : 2;
+        const Vector3d to_next = vertex(x, triangles(*t, (k + 1) % 3)) - vertex(x, i);
+        const Vector3d to_last = vertex(x, triangles(*t, (k + 2) % 3)) - vertex(x, i);
+        const double twice_area = to_next.cross(to_last).norm();
+        angles += std::atan2(twice_area, to_next.dot(to_last));
+        area += twice_area / 6;
+      }
+      if (!(area > 0))
+        throw std::runtime_error("curvature: the triangles around vertex " + std::to_string(i) +
+                                 " have no area");
+      const double whole = topology.on_border[i] ? std::numbers::pi : 2 * std::numbers::pi;
+      result.mean[i] /= area;
+      result.gaussian[i] = (whole - angles) / area;
+      const double radius = std::sqrt(std::max(result.mean[i] * result.mean[i] - result.gaussian[i], 0.0));
+      result.kappa1[i] = result.mean[i] + radius;
+      result.kappa2[i] = result.mean[i] - radius;
+    }
+  });
+  return result;
+}
+
+Eigen::VectorXd strongest_curvature(const VertexCurvatures& curvatures) {
+  return (curvatures.kappa1.array().abs() >= curvatures.kappa2.array().abs())
+      .select(curvatures.kappa1, curvatures.kappa2);
+}
+
+double integrated_square_difference(const Eigen::VectorXd& weights, const Eigen::VectorXd& a,
+                                    const Eigen::VectorXd& b) {
+  return (weights.array() * (a - b).array().square()).sum();
+}
+
+}  // namespace drape

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/model/metric.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Consistency of two states from the integrated squared difference of their curvatures (supplement of
+/// Zhang et al. 2022, section 1): d_H_fit, d_H_ddg [1], d_K_fit, d_K_ddg [1/m²].
+class CurvatureConsistency : public Metric {
+ public:
+  struct Parameters {
+    int rings = 5;
+    static void declare(Declaration<Parameters>& d);
+  };
+
+  explicit CurvatureConsistency(const Parameters& parameters) : parameters_(parameters) {}
+  MetricScope scope() const override { return MetricScope::pair; }
+  /// Throws std::runtime_error without a second state, or where it has another number of vertices.
+  MetricResult evaluate(const MetricInput& input) const override;
+
+ private:
+  Parameters parameters_;
+};
+
+}  // namespace drape

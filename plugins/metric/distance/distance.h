@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/model/metric.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Distances between two states, in units of the rest shape's bounding-box diagonal: distance_rms,
+/// distance_max over corresponding vertices, distance_hausdorff between the surfaces.
+class Distance : public Metric {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit Distance(const Parameters&) {}
+  MetricScope scope() const override { return MetricScope::pair; }
+  /// Throws std::runtime_error without a second state, or where it has another number of vertices.
+  MetricResult evaluate(const MetricInput& input) const override;
+};
+
+}  // namespace drape

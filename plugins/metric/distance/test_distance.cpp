@@ -1,0 +1,181 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "core/numerics/parallel.h"
+#include "plugins/metric/distance/closest_point.h"
+#include "plugins/metric/distance/distance.h"
+
+using namespace drape;
+using Eigen::Vector3d;
+
+namespace {
+
+Level square(int n) {
+  TriangleMesh mesh{Positions((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << double(i) / n, double(j) / n, 0;
+  for (int i = 0, t = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = a + n + 1;
+      mesh.triangles.row(t++) << a, b, b + 1;
+      mesh.triangles.row(t++) << a, b + 1, a + 1;
+    }
+  return Level::of(0, mesh);
+}
+
+const LevelModel& no_model() {
+  alignas(64) static const char nothing[64] = {};
+  return reinterpret_cast<const LevelModel&>(nothing);
+}
+
+MetricResult evaluate(const Level& level, const Positions& x, const Positions& other) {
+  return Distance(Distance::Parameters()).evaluate({level, no_model(), x, &other});
+}
+
+double value(const MetricResult& result, const std::string& name) {
+  for (const MetricValue& v : result.values)
+    if (v.name == name) return v.value;
+  FAIL("no value named " << name);
+  return 0;
+}
+
+/// Bumpy, folded enough that the nearest triangle is not the corresponding one.
+Positions crumpled(const Level& level, double phase) {
+  Positions x = level.rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double u = x(i, 0), v = x(i, 1);
+    x.row(i) << 0.5 * std::sin(4 * u + phase), v + 0.1 * std::cos(9 * u),
+        0.3 * std::sin(7 * v + 3 * u + phase);
+  }
+  return x;
+}
+
+const double infinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+TEST_CASE("distance from a point to a triangle, over each of its regions", "[distance]") {
+  const Vector3d a(0, 0, 0), b(2, 0, 0), c(0, 1, 0);
+  const auto squared = [&](double x, double y, double z) {
+    return squared_point_triangle_distance({x, y, z}, a, b, c);
+  };
+  CHECK(squared(0.4, 0.3, 0.5) == Approx(0.25));  // above the inside
+  CHECK(squared(0.4, 0.3, 0) == 0);               // in it
+  CHECK(squared(-1, -1, 1) == Approx(3));         // corner a
+  CHECK(squared(3, -0.5, 0) == Approx(1.25));     // corner b
+  CHECK(squared(-0.5, 2, 0) == Approx(1.25));     // corner c
+  CHECK(squared(1, -2, 0) == Approx(4));          // edge ab
+  CHECK(squared(-3, 0.5, 1) == Approx(10));       // edge ca
+  CHECK(squared(2, 1, 0) == Approx(0.8));         // edge bc: 2/√5 from x + 2y = 2
+  CHECK(squared_point_triangle_distance({1, 1, 0}, a, b, 0.5 * b) == Approx(1));  // collapsed to a segment
+  CHECK(squared_point_triangle_distance({1, 1, 0}, a, a, a) == Approx(2));        // and to a point
+}
+
+TEST_CASE("the tree finds what looking at every triangle finds", "[distance]") {
+  const Level level = square(14);
+  const Positions x = crumpled(level, 0.3);
+  const SurfaceDistance surface(x, level.rest.triangles);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vector3d p(uniform(random), uniform(random), uniform(random));
+    double expected = infinity;
+    for (int t = 0; t < level.triangle_count(); ++t) {
+      const auto corner = level.rest.triangles.row(t);
+      expected = std::min(expected, squared_point_triangle_distance(p, x.row(corner[0]).transpose(),
+                                                                    x.row(corner[1]).transpose(),
+                                                                    x.row(corner[2]).transpose()));
+    }
+    CHECK(surface.squared(p, infinity) == Approx(expected).epsilon(1e-12));
+    CHECK(surface.squared(p, 0.5 * expected) == 0.5 * expected);  // the bound, where nothing is below it
+  }
+}
+
+TEST_CASE("a state is at no distance from itself", "[distance]") {
+  const Level level = square(6);
+  const Positions x = crumpled(level, 0);
+  const MetricResult result = evaluate(level, x, x);
+  REQUIRE(result.values.size() == 3);
+  for (const MetricValue& v : result.values) {
+    CHECK(v.value == 0);
+    CHECK(v.unit == "diagonal");
+    CHECK(v.better == Better::lower);
+  }
+}
+
+TEST_CASE("a lift across the surface counts in every distance, a slide along it only at the border",
+          "[distance]") {
+  const Level level = square(10);
+  const double diagonal = std::sqrt(2.0);
+  const Positions& x = level.rest.vertices;
+  const Positions lifted = x.rowwise() + Eigen::RowVector3d(0, 0, 0.25);
+  for (const char* name : {"distance_rms", "distance_max", "distance_hausdorff"})
+    CHECK(value(evaluate(level, x, lifted), name) == Approx(0.25 / diagonal));
+
+  // Each row slides by at most 0.04 within the square, nothing at the border: the surface stays where it is.
+  Positions slid = x;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) slid(i, 0) += 0.16 * x(i, 0) * (1 - x(i, 0));
+  const MetricResult result = evaluate(level, x, slid);
+  CHECK(value(result, "distance_max") == Approx(0.04 / diagonal));
+  CHECK(value(result, "distance_hausdorff") == Approx(0).margin(1e-12));
+  double sum = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    sum += level.vertex_area[i] * std::pow(0.16 * x(i, 0) * (1 - x(i, 0)), 2);
+  CHECK(value(result, "distance_rms") == Approx(std::sqrt(sum) / diagonal));
+}
+
+TEST_CASE("the Hausdorff distance looks both ways", "[distance]") {
+  // x is the square; other has its right half folded over onto the left one. Seen from other the square is
+  // nowhere away, seen from the square its right border is half a side away.
+  const Level level = square(10);
+  const Positions& x = level.rest.vertices;
+  Positions folded = x;
+  folded.col(0) = 0.5 - (x.col(0).array() - 0.5).abs();
+  CHECK(value(evaluate(level, x, folded), "distance_hausdorff") == Approx(0.5 / std::sqrt(2.0)));
+  CHECK(value(evaluate(level, folded, x), "distance_hausdorff") == Approx(0.5 / std::sqrt(2.0)));
+}
+
+TEST_CASE("distances are relative to the rest diagonal and ordered", "[distance]") {
+  const Level level = square(16);
+  Level large = level;
+  large.rest.vertices *= 10;
+  large = Level::of(0, large.rest);
+  const Positions x = crumpled(level, 0), other = crumpled(level, 0.4);
+  const MetricResult small = evaluate(level, x, other);
+  const double rms = value(small, "distance_rms"), max = value(small, "distance_max");
+  const double hausdorff = value(small, "distance_hausdorff");
+  CHECK(rms > 0.01);
+  CHECK(rms < max);
+  CHECK(hausdorff > 0.01);
+  CHECK(hausdorff < max);
+  const MetricResult scaled = evaluate(large, 10 * x, 10 * other);
+  for (const MetricValue& v : small.values) CHECK(value(scaled, v.name) == Approx(v.value).epsilon(1e-10));
+}
+
+TEST_CASE("distances are the same bits with any number of threads", "[distance]") {
+  const Level level = square(24);
+  const Positions x = crumpled(level, 0), other = crumpled(level, 0.4);
+  const int before = thread_count();
+  set_thread_count(1);
+  const MetricResult one = evaluate(level, x, other);
+  set_thread_count(3);
+  const MetricResult three = evaluate(level, x, other);
+  set_thread_count(before);
+  for (const MetricValue& v : one.values) CHECK(value(three, v.name) == v.value);
+}
+
+TEST_CASE("distance needs two finite states of the level", "[distance]") {
+  const Level level = square(2);
+  const Positions& x = level.rest.vertices;
+  const Distance metric({});
+  CHECK(metric.scope() == MetricScope::pair);
+  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), x, nullptr}), Catch::Contains("two states"));
+  CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));
+  Positions broken = x;
+  broken(1, 1) = infinity;
+  CHECK_THROWS_WITH(evaluate(level, x, broken), Catch::Contains("not finite"));
+}

@@ -1,0 +1,33 @@
+#include "core/model/level_model.h"
+#include "core/model/metric.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// The plain energy of a state, term by term.
+class EnergyByPart : public Metric {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+  explicit EnergyByPart(const Parameters&) {}
+
+  MetricScope scope() const override { return MetricScope::state; }
+
+  MetricResult evaluate(const MetricInput& input) const override {
+    MetricResult result;
+    double sum = 0;
+    for (const auto& [name, joules] : input.model.energy_parts(input.x)) {
+      result.values.push_back({"energy_parts." + name, joules, "J", Better::lower});
+      sum += joules;
+    }
+    result.values.push_back({"energy", sum, "J", Better::lower});
+    return result;
+  }
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Metric, drape::EnergyByPart>("energy", "Plain energy of a state, in all and by term.");
+}

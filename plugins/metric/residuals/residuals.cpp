@@ -1,0 +1,56 @@
+#include <cmath>
+
+#include "core/model/level_model.h"
+#include "core/model/metric.h"
+#include "core/numerics/block_cholesky.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// How far a state is from an equilibrium of the plain model of its level (method.md, section 2).
+class Residuals : public Metric {
+ public:
+  struct Parameters {
+    double step_size = 0.5;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("step_size", &Parameters::step_size)
+          .unit("s").above(0).meaning("h of the implicit step whose Newton direction the decrement measures")
+          .source("Li et al. 2021 (C-IPC)");
+    }
+  };
+  explicit Residuals(const Parameters& parameters) : p_(parameters) {}
+
+  MetricScope scope() const override { return MetricScope::state; }
+
+  MetricResult evaluate(const MetricInput& input) const override {
+    MetricResult result;
+    result.values.push_back(
+        {"force_residual_plain", input.model.force_residual(input.x), "1", Better::lower});
+    result.values.push_back({"decrement_plain", decrement(input.model, input.x), "m/s", Better::lower});
+    return result;
+  }
+
+ private:
+  /// ‖p‖ / (h √n) of the first Newton direction of an implicit step from x, with the clamped matrix.
+  double decrement(const LevelModel& model, const Positions& x) const {
+    Positions g, p;
+    model.gradient(x, g);
+    BlockMatrix matrix(model.pattern());
+    model.hessian(x, Projection::clamp, matrix);
+    BlockCholesky cholesky;
+    cholesky.analyse(model.pattern(), model.fixed());
+    const double h = p_.step_size;
+    if (!cholesky.factorise(matrix, model.masses() / (h * h))) return std::nan("");
+    cholesky.solve(g, p);
+    return std::sqrt(p.squaredNorm() * 3 / std::max(1, cholesky.unknowns())) / h;
+  }
+
+  Parameters p_;
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Metric, drape::Residuals>(
+      "residuals", "Force residual and Newton decrement of a state under its level's plain model.");
+}

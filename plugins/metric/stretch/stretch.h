@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/model/metric.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Principal stretches of a state's triangles: largest_stretch, smallest_stretch, mean_stretch [1].
+class Stretch : public Metric {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit Stretch(const Parameters&) {}
+  MetricScope scope() const override { return MetricScope::state; }
+  /// Throws std::runtime_error where the state has another number of vertices than the level, or a rest
+  /// triangle has no area.
+  MetricResult evaluate(const MetricInput& input) const override;
+};
+
+}  // namespace drape

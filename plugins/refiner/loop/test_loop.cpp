@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "core/hierarchy/hierarchy.h"
+#include "core/mesh/check.h"
+#include "core/mesh/generate.h"
+#include "plugins/refiner/loop/loop.h"
+
+using namespace drape;
+using Row = std::map<int, double>;
+
+namespace {
+
+const LoopRefiner loop{LoopRefiner::Parameters{}};
+
+Row row(const Refinement& refinement, int i) {
+  Row entries;
+  for (ProlongationMatrix::InnerIterator it(refinement.weights, i); it; ++it)
+    entries[static_cast<int>(it.col())] = it.value();
+  return entries;
+}
+
+/// A regular polygon's corners around a centre, vertex 0.
+TriangleMesh wheel(int spokes) {
+  TriangleMesh mesh;
+  mesh.vertices.setZero(spokes + 1, 3);
+  mesh.triangles.resize(spokes, 3);
+  for (int i = 0; i < spokes; ++i) {
+    const double angle = 2 * std::numbers::pi * i / spokes;
+    mesh.vertices.row(i + 1) << std::cos(angle), std::sin(angle), 0;
+    mesh.triangles.row(i) << 0, 1 + i, 1 + (i + 1) % spokes;
+  }
+  return mesh;
+}
+
+int edge_between(const Level& level, int a, int b) {
+  for (int e = 0; e < level.topology.edges.rows(); ++e)
+    if (level.topology.edges(e, 0) == std::min(a, b) && level.topology.edges(e, 1) == std::max(a, b))
+      return e;
+  FAIL("no such edge");
+  return -1;
+}
+
+/// Largest distance from a point of `a` to the nearest of `b`.
+double distance_to(const Positions& a, const Positions& b) {
+  double largest = 0;
+  for (int i = 0; i < a.rows(); ++i)
+    largest = std::max(largest, (b.rowwise() - a.row(i)).rowwise().squaredNorm().minCoeff());
+  return std::sqrt(largest);
+}
+
+}  // namespace
+
+TEST_CASE("Loop stencils of a regular grid", "[refiner][loop]") {
+  // 12 13 14 15
+  //  8  9 10 11   cells cut like '/'
+  //  4  5  6  7
+  //  0  1  2  3
+  const Level level = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way));
+  const Refinement fine = loop.refine(level);
+  CHECK(
+      row(fine, 5) ==
+      Row{{5, 5. / 8}, {0, 1. / 16}, {1, 1. / 16}, {4, 1. / 16}, {6, 1. / 16}, {9, 1. / 16}, {10, 1. / 16}});
+  CHECK(row(fine, 1) == Row{{0, 1. / 8}, {1, 3. / 4}, {2, 1. / 8}});
+  CHECK(row(fine, 8) == Row{{4, 1. / 8}, {8, 3. / 4}, {12, 1. / 8}});
+  for (int corner : {0, 3, 12, 15}) CHECK(row(fine, corner) == Row{{corner, 1}});
+  CHECK(row(fine, 16 + edge_between(level, 5, 10)) ==
+        Row{{5, 3. / 8}, {10, 3. / 8}, {6, 1. / 8}, {9, 1. / 8}});
+  CHECK(row(fine, 16 + edge_between(level, 5, 1)) == Row{{5, 3. / 8}, {1, 3. / 8}, {0, 1. / 8}, {6, 1. / 8}});
+  CHECK(row(fine, 16 + edge_between(level, 2, 3)) == Row{{2, 1. / 2}, {3, 1. / 2}});
+  CHECK(fine.triangles == split_triangles(level));
+}
+
+TEST_CASE("Loop stencils of irregular vertices are Warren's", "[refiner][loop]") {
+  const auto [valence, beta] =
+      GENERATE(table<int, double>({{3, 3. / 16}, {4, 3. / 32}, {5, 3. / 40}, {6, 1. / 16}, {7, 3. / 56}}));
+  const Refinement fine = loop.refine(Level::of(0, wheel(valence)));
+  const Row centre = row(fine, 0);
+  REQUIRE(centre.size() == static_cast<std::size_t>(valence + 1));
+  CHECK(centre.at(0) == Approx(1 - valence * beta).epsilon(1e-15));
+  for (int u = 1; u <= valence; ++u) CHECK(centre.at(u) == Approx(beta).epsilon(1e-15));
+}
+
+TEST_CASE("corners are told by the rest angle", "[refiner][loop]") {
+  // A wheel of k spokes turns by 360°/k at each border vertex.
+  const auto [spokes, angle, corner] = GENERATE(table<int, double, bool>(
+      {{11, 30, true}, {13, 30, false}, {4, 30, true}, {4, 91, false}, {11, 33, false}, {360, 0.5, true}}));
+  const LoopRefiner refiner{LoopRefiner::Parameters{angle}};
+  const Level level = Level::of(0, wheel(spokes));
+  const std::vector<char> corners = refiner.corners(level);
+  CHECK_FALSE(corners[0]);
+  for (int v = 1; v <= spokes; ++v) CHECK(static_cast<bool>(corners[v]) == corner);
+  CHECK(row(refiner.refine(level), 1).size() == (corner ? 1 : 3));
+}
+
+TEST_CASE("a reentrant corner is a corner", "[refiner][loop]") {
+  const Polygon hook{{0, 0}, {1, 0}, {1, .4}, {.4, .4}, {.4, 1}, {0, 1}};
+  const Hierarchy hierarchy = Hierarchy::of(delaunay_polygon({hook}, 120, 0), loop, 3);
+  for (const Level& level : hierarchy.levels) {
+    const std::vector<char> corner = loop.corners(level);
+    CHECK(std::count(corner.begin(), corner.end(), 1) == 6);
+    CHECK(level.vertex_area.sum() == Approx(0.64).epsilon(1e-12));  // straight borders stay
+  }
+}
+
+TEST_CASE("Loop rows sum to one on any mesh", "[refiner][loop]") {
+  const int which = GENERATE(0, 1, 2, 3);
+  const TriangleMesh mesh = which == 0   ? grid({1, 2}, 7, 6, Diagonals::criss_cross)
+                            : which == 1 ? disc(1, 150)
+                            : which == 2 ? random_triangulation({1, 1}, 200, 4)
+                                         : wheel(5);
+  const Level level = Level::of(0, mesh);
+  const Refinement fine = loop.refine(level);
+  REQUIRE(fine.weights.rows() == level.vertex_count() + level.topology.edges.rows());
+  REQUIRE(fine.weights.cols() == level.vertex_count());
+  const Eigen::VectorXd sums = fine.weights * Eigen::VectorXd::Ones(fine.weights.cols());
+  CHECK((sums.array() - 1).abs().maxCoeff() < 1e-15);
+  const Positions rest = fine.weights * mesh.vertices;
+  CHECK(check_mesh({rest, fine.triangles}).empty());
+
+  // Points of an affine image of the coarse mesh go to the same image of the fine one.
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Random();
+  const Eigen::RowVector3d b(3, -1, 2);
+  const Positions image = (mesh.vertices * a).rowwise() + b;
+  CHECK((fine.weights * image - ((rest * a).rowwise() + b)).cwiseAbs().maxCoeff() < 1e-14);
+}
+
+TEST_CASE("Loop reproduces a regular rectangle, also turned and moved", "[refiner][loop]") {
+  const double angle = GENERATE(0, 0.7, 2.5);
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 2).normalized()).toRotationMatrix();
+  const Eigen::RowVector3d shift(0.3, -0.2, angle);
+  const auto rectangle = [&](int columns, int rows) {
+    TriangleMesh mesh = grid({0.7, 1.9}, columns, rows, Diagonals::one_way);
+    mesh.vertices = ((mesh.vertices * turn.transpose()).rowwise() + shift).eval();
+    return mesh;
+  };
+  const Hierarchy hierarchy = Hierarchy::of(rectangle(5, 7), loop, 3);
+  const Positions finest = rectangle(17, 25).vertices;
+  REQUIRE(hierarchy.levels[2].vertex_count() == finest.rows());
+  CHECK(distance_to(hierarchy.levels[2].rest.vertices, finest) < 1e-14);
+  CHECK(distance_to(finest, hierarchy.levels[2].rest.vertices) < 1e-14);
+  const Positions midpoint = hierarchy.midpoints[0] * hierarchy.levels[0].rest.vertices;
+  CHECK((midpoint - hierarchy.levels[1].rest.vertices).cwiseAbs().maxCoeff() < 1e-15);
+}
+
+TEST_CASE("Loop keeps the rectangle of a criss-cross grid but moves its vertices", "[refiner][loop]") {
+  const Hierarchy hierarchy = Hierarchy::of(grid({0.7, 1.9}, 6, 8, Diagonals::criss_cross), loop, 3);
+  for (const Level& level : hierarchy.levels) {
+    CHECK(level.vertex_area.sum() == Approx(0.7 * 1.9).epsilon(1e-13));
+    for (int v = 0; v < level.vertex_count(); ++v) {
+      const auto p = level.rest.vertices.row(v);
+      const double to_side = std::min({p.x(), 0.7 - p.x(), p.y(), 1.9 - p.y()});
+      CHECK((level.topology.on_border[v] ? std::abs(to_side) < 1e-15 : to_side > 0.01));
+    }
+  }
+  const Positions midpoint = hierarchy.midpoints[0] * hierarchy.levels[0].rest.vertices;
+  CHECK((midpoint - hierarchy.levels[1].rest.vertices).cwiseAbs().maxCoeff() > 0.01);
+}
+
+TEST_CASE("Loop levels grow 32², 63², 125², 249²", "[refiner][loop]") {
+  const auto diagonals = GENERATE(Diagonals::one_way, Diagonals::criss_cross);
+  const Hierarchy hierarchy = Hierarchy::of(grid({1, 1}, 32, 32, diagonals), loop, 4);
+  const int sides[] = {32, 63, 125, 249};
+  for (int l = 0; l < 4; ++l) {
+    const Level& level = hierarchy.levels[l];
+    CHECK(level.vertex_count() == sides[l] * sides[l]);
+    CHECK(level.vertex_count() - level.topology.edges.rows() + level.triangle_count() == 1);
+    CHECK(level.vertex_area.sum() == Approx(1).epsilon(1e-12));
+  }
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "core/hierarchy/midpoint.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Midpoint subdivision: splits every triangle in four and leaves the surface where it is.
+class MidpointRefiner : public Refiner {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+
+  explicit MidpointRefiner(const Parameters&) {}
+
+  Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
+};
+
+}  // namespace drape

@@ -1,0 +1,52 @@
+#include "core/numerics/newton.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// How a coarse state becomes the next level's start.
+enum class CarryUp { midpoint, refiner };
+
+/// Coarse to fine, each level under its own energy, in the style of Sensitive Couture (Umetani et al.
+/// 2011): the finest level is plain Newton from a better start.
+class CascadicSolver : public Solver {
+ public:
+  struct Parameters {
+    CarryUp prolongation = CarryUp::midpoint;
+    NewtonParameters newton;
+    static void declare(Declaration<Parameters>& d) {
+      d.add_choice("prolongation", &Parameters::prolongation,
+                   {{"midpoint", CarryUp::midpoint}, {"refiner", CarryUp::refiner}})
+          .meaning("carries a level's state up: by edge midpoints, or by the experiment's refiner")
+          .source("method.md section 3");
+      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+    }
+  };
+  explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
+
+  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+    const Stopwatch clock;
+    const auto& weights = p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints
+                                                               : problem.hierarchy.prolongations;
+    std::vector<LevelResult> results;
+    Positions x = problem.starts[0];
+    for (int l = 0; l <= problem.finest(); ++l) {
+      observer.level_started(l);
+      PlainObjective objective(*problem.models[l]);
+      results.push_back(minimise(objective, x, p_.newton, clock, observer));
+      observer.level_finished(results.back());
+      if (results.back().outcome == Outcome::cancelled) break;
+      if (l < problem.finest()) x = problem.carry_up(weights[l], l, results.back().x);
+    }
+    return results;
+  }
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Solver, drape::CascadicSolver>(
+      "cascadic", "Coarse to fine, each level under its own energy (style of Sensitive Couture).");
+}

@@ -1,0 +1,40 @@
+#include "core/numerics/newton.h"
+
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// Each level on its own, from the scene's start, under its own energy (method.md, section 3).
+class NewtonSolver : public Solver {
+ public:
+  struct Parameters {
+    NewtonParameters newton;
+    static void declare(Declaration<Parameters>& d) {
+      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+    }
+  };
+  explicit NewtonSolver(const Parameters& parameters) : p_(parameters) {}
+
+  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+    const Stopwatch clock;
+    std::vector<LevelResult> results;
+    for (int l = 0; l <= problem.finest(); ++l) {
+      observer.level_started(l);
+      PlainObjective objective(*problem.models[l]);
+      results.push_back(minimise(objective, problem.starts[l], p_.newton, clock, observer));
+      observer.level_finished(results.back());
+      if (results.back().outcome == Outcome::cancelled) break;
+    }
+    return results;
+  }
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Solver, drape::NewtonSolver>(
+      "newton", "Direct solve of every level on its own from the scene's start (C-IPC's stepping without contact).");
+}

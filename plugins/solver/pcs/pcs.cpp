@@ -1,0 +1,62 @@
+#include "core/numerics/newton.h"
+#include "core/plugin/plugin.h"
+#include "proxy_objective.h"
+
+namespace drape {
+
+/// Which matrix makes the directions on the coarse levels.
+enum class ProxyMatrix { coarse, galerkin };
+
+/// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
+/// plain Newton (Zhang et al. 2022; method.md, section 3).
+class PcsSolver : public Solver {
+ public:
+  struct Parameters {
+    ProxyMatrix hessian = ProxyMatrix::galerkin;
+    int depth = 1;
+    NewtonParameters newton;
+    static void declare(Declaration<Parameters>& d) {
+      d.add_choice("hessian", &Parameters::hessian,
+                   {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
+          .meaning("matrix on coarse levels: the plain coarse model's, or a finer one's carried down")
+          .source("PCS section 4.2 for coarse; galerkin is a departure");
+      d.add("depth", &Parameters::depth)
+          .at_least(1).at_most(8)
+          .meaning("levels between the galerkin matrix and the level it is made for, where there are so many");
+      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+    }
+  };
+  explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
+
+  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+    const Stopwatch clock;
+    const int depth = p_.hessian == ProxyMatrix::galerkin ? p_.depth : 0;
+    std::vector<LevelResult> results;
+    Positions x = problem.starts[0];
+    for (int l = 0; l <= problem.finest(); ++l) {
+      observer.level_started(l);
+      if (l < problem.finest()) {
+        ProxyObjective objective(problem, l, depth);
+        results.push_back(minimise(objective, x, p_.newton, clock, observer));
+      } else {
+        PlainObjective objective(*problem.models[l]);
+        results.push_back(minimise(objective, x, p_.newton, clock, observer));
+      }
+      observer.level_finished(results.back());
+      if (results.back().outcome == Outcome::cancelled) break;
+      if (l < problem.finest())
+        x = problem.carry_up(problem.hierarchy.prolongations[l], l, results.back().x);
+    }
+    return results;
+  }
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Solver, drape::PcsSolver>(
+      "pcs", "Progressive cloth simulation: coarse levels minimise the finest level's shell energy.");
+}

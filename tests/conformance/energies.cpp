@@ -1,0 +1,315 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "core/hierarchy/hierarchy.h"
+#include "core/mesh/generate.h"
+#include "core/model/energy.h"
+#include "core/model/refiner.h"
+#include "core/numerics/parallel.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+struct Candidate {
+  std::string name;
+  std::shared_ptr<Energy> energy;
+  bool internal() const { return energy->role() != EnergyRole::external; }
+};
+
+/// What to test an energy with that needs parameters, or whose defaults leave it without effect.
+const std::map<std::string, std::string> settings = {
+    {"constant_load", "{type: constant_load, force_density: [1, 2, 3],"
+                      " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"}};
+
+/// Every registered energy, with its defaults where `settings` says nothing else.
+std::vector<Candidate> all_energies() {
+  std::vector<Candidate> all;
+  for (const RegistryEntry* entry : test_registry().of_kind("energy")) {
+    const auto own = settings.find(entry->name);
+    all.push_back({entry->name, make_plugin_from<Energy>(own == settings.end() ? entry->name : own->second)});
+  }
+  REQUIRE(all.size() >= 3);
+  return all;
+}
+
+/// As stiff in bending as in stretching, on meshes of edges of about 0.1 m, so that no test is blind to either.
+const Material material = [] {
+  Material m;
+  m.thickness = 0.01;
+  m.membrane_modulus = 1e4;
+  m.bending_modulus = 1e7;
+  m.poisson_ratio = 0.3;
+  return m;
+}();
+
+Positions noise(int vertices, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  Positions p(vertices, 3);
+  for (Eigen::Index i = 0; i < p.size(); ++i) p.data()[i] = size * (random() / 2147483648.0 - 1);
+  return p;
+}
+
+Level flat_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 40, 7)); }
+
+Level curved_level() {
+  TriangleMesh mesh = random_triangulation({0.6, 0.5}, 40, 8);
+  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
+    mesh.vertices(i, 2) = 0.2 * std::sin(5 * mesh.vertices(i, 0)) * std::cos(4 * mesh.vertices(i, 1));
+  return Level::of(0, mesh);
+}
+
+/// Null where the energy refuses the level, which must be curved.
+std::unique_ptr<BoundEnergy> bind(const Candidate& candidate, const Level& level) {
+  try {
+    return candidate.energy->bind(level, material);
+  } catch (const std::runtime_error&) {
+    REQUIRE_FALSE(level.rest.vertices.col(2).isZero(0));
+    return nullptr;
+  }
+}
+
+struct State {
+  std::string name;
+  Positions x;
+  double step;  // of finite differences [m], far below the state's smallest length
+};
+
+/// Moves the first vertex of the triangle towards the middle of the opposite edge until `fraction` is left.
+Positions flattened(const Level& level, Positions x, int triangle, double fraction) {
+  const auto v = level.rest.triangles.row(triangle);
+  const Eigen::RowVector3d middle = (x.row(v[1]) + x.row(v[2])) / 2;
+  x.row(v[0]) = middle + fraction * (x.row(v[0]) - middle);
+  return x;
+}
+
+std::vector<State> states(const Level& level) {
+  const Positions& rest = level.rest.vertices;
+  const int n = level.vertex_count();
+  std::vector<State> all;
+  all.push_back({"near rest", rest + noise(n, 0.002, 1), 1e-5});
+  all.push_back({"random", rest + noise(n, 0.02, 2), 1e-5});
+
+  Eigen::Matrix3d deform;
+  deform << 1.7, 0.4, 0, -0.3, 0.6, 0, 0.2, 0.5, 1;
+  Positions strong = rest * deform.transpose() + noise(n, 0.05, 3);
+  for (int i = 0; i < n; ++i) strong(i, 2) += 0.15 * std::sin(12 * rest(i, 0));
+  all.push_back({"strongly deformed", strong, 1e-5});
+
+  Positions folded = rest + noise(n, 0.01, 4);  // about a crease across the middle, nearly shut
+  for (int i = 0; i < n; ++i)
+    if (folded(i, 0) > 0.3) {
+      const double beyond = folded(i, 0) - 0.3;
+      folded(i, 0) = 0.3 - 0.99 * beyond;
+      folded(i, 2) += 0.05 + 0.1 * beyond;
+    }
+  all.push_back({"folded", folded, 1e-6});
+  all.push_back({"near-degenerate", flattened(level, rest + noise(n, 0.01, 5), 11, 0.02), 1e-6});
+  return all;
+}
+
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& a) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+class Threads {
+ public:
+  explicit Threads(int count) { set_thread_count(count); }
+  ~Threads() { set_thread_count(0); }
+};
+
+/// Runs the body on every energy, on the flat and the curved level; returns how many bindings there were.
+template <class Body>
+int for_each_binding(const Body& body) {
+  int bindings = 0;
+  for (const Candidate& candidate : all_energies())
+    for (const Level& level : {flat_level(), curved_level()}) {
+      const auto bound = bind(candidate, level);
+      if (!bound) continue;
+      ++bindings;
+      INFO(candidate.name << " on the " << (level.rest.vertices.col(2).isZero(0) ? "flat" : "curved") << " mesh");
+      body(candidate, level, *bound);
+    }
+  return bindings;
+}
+
+}  // namespace
+
+TEST_CASE("An energy's gradient is that of its value", "[conformance]") {
+  for_each_binding([](const Candidate&, const Level& level, const BoundEnergy& energy) {
+    for (const State& s : states(level)) {
+      INFO(s.name);
+      const Eigen::VectorXd g = flat(gradient_of(energy, s.x));
+      REQUIRE(g.norm() > 0);
+      const auto value = [&](const Positions& x) { return energy.value(x); };
+      const Eigen::VectorXd expected = differences(value, s.x, s.step).transpose();
+      const double rounding = 1e-15 * std::abs(energy.value(s.x)) / s.step * std::sqrt(g.size());
+      CHECK((g - expected).norm() <= 1e-7 * g.norm() + rounding);
+    }
+  });
+}
+
+TEST_CASE("An energy's Hessian is that of its gradient, and symmetric", "[conformance]") {
+  for_each_binding([](const Candidate&, const Level& level, const BoundEnergy& energy) {
+    for (const State& s : states(level)) {
+      INFO(s.name);
+      const BlockMatrix matrix = hessian_of(energy, s.x, Projection::none);
+      for (int i = 0; i < matrix.pattern->rows(); ++i) {
+        const Eigen::Map<const Eigen::Matrix3d> diagonal(matrix.block(matrix.pattern->find(i, i)));
+        REQUIRE((diagonal - diagonal.transpose()).norm() <= 1e-13 * diagonal.norm());
+      }
+      const Eigen::MatrixXd h = dense(matrix);
+      if (energy.stencils().rows() > 0) REQUIRE(h.norm() > 0);
+      const auto gradient = [&](const Positions& x) { return gradient_of(energy, x); };
+      const Eigen::MatrixXd expected = differences(gradient, s.x, s.step);
+      const double rounding = 1e-15 * flat(gradient_of(energy, s.x)).norm() / s.step * std::sqrt(h.rows());
+      CHECK((h - expected).norm() <= 1e-7 * h.norm() + rounding);
+      CHECK((expected - expected.transpose()).norm() <= 1e-7 * h.norm() + rounding);
+    }
+  });
+}
+
+TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact one", "[conformance]") {
+  int indefinite = 0;
+  for_each_binding([&](const Candidate&, const Level& level, const BoundEnergy& energy) {
+    if (energy.stencils().rows() == 0) return;
+    for (const State& s : states(level)) {
+      INFO(s.name);
+      const Eigen::MatrixXd exact = dense(hessian_of(energy, s.x, Projection::none));
+      const Eigen::MatrixXd clamped = dense(hessian_of(energy, s.x, Projection::clamp));
+      const Eigen::MatrixXd absolute = dense(hessian_of(energy, s.x, Projection::absolute));
+      const double rounding = 1e-12 * absolute.norm();
+      CHECK(eigenvalues(clamped).minCoeff() >= -rounding);
+      CHECK(eigenvalues(absolute).minCoeff() >= -rounding);
+      CHECK(eigenvalues(clamped - exact).minCoeff() >= -rounding);
+      CHECK(eigenvalues(absolute - clamped).minCoeff() >= -rounding);
+      indefinite += eigenvalues(exact).minCoeff() < -1e-6 * exact.norm();
+    }
+  });
+  REQUIRE(indefinite > 0);  // else nothing was projected
+}
+
+TEST_CASE("Internal energies do not see rigid motions", "[conformance]") {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const Eigen::RowVector3d shift(0.3, -0.2, 0.7);
+  int internal = 0;
+  for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
+    if (!candidate.internal()) return;
+    ++internal;
+    for (const State& s : states(level)) {
+      INFO(s.name);
+      const Positions moved = (s.x * turn.transpose()).rowwise() + shift;
+      REQUIRE(energy.value(s.x) > 0);
+      CHECK(energy.value(moved) == Approx(energy.value(s.x)).epsilon(1e-9));
+      const Positions g = gradient_of(energy, s.x) * turn.transpose();
+      CHECK((gradient_of(energy, moved) - g).norm() <= 1e-9 * g.norm());
+    }
+  });
+  REQUIRE(internal > 0);
+}
+
+TEST_CASE("add_gradient adds, and returns the value", "[conformance]") {
+  for_each_binding([](const Candidate&, const Level& level, const BoundEnergy& energy) {
+    for (const State& s : states(level)) {
+      INFO(s.name);
+      const Positions before = noise(level.vertex_count(), 1, 6), g = gradient_of(energy, s.x);
+      Positions sum = before;
+      CHECK(energy.add_gradient(s.x, sum) == Approx(energy.value(s.x)).epsilon(1e-13));
+      CHECK((sum - before - g).norm() <= 1e-13 * (g.norm() + before.norm()));
+    }
+  });
+}
+
+TEST_CASE("Energies give the same bits with any number of threads", "[conformance]") {
+  const Level level = Level::of(0, random_triangulation({0.6, 0.5}, 3000, 9));
+  const Positions x = level.rest.vertices + noise(level.vertex_count(), 0.002, 10);
+  for (const Candidate& candidate : all_energies()) {
+    INFO(candidate.name);
+    const auto energy = candidate.energy->bind(level, material);
+    double value = 0;
+    Positions gradient;
+    std::vector<double> hessian;
+    for (int threads : {1, 2, 3}) {
+      INFO(threads << " threads");
+      const Threads scope(threads);
+      REQUIRE(thread_count() == threads);
+      const double v = energy->value(x);
+      const Positions g = gradient_of(*energy, x);
+      const std::vector<double> h = hessian_of(*energy, x, Projection::clamp).values;
+      if (threads == 1) value = v, gradient = g, hessian = h;
+      CHECK(v == value);
+      CHECK(g == gradient);
+      CHECK((h == hessian));
+    }
+  }
+}
+
+TEST_CASE("The rest shape of every level of every hierarchy is free of stress", "[conformance]") {
+  const std::vector<std::pair<std::string, TriangleMesh>> meshes = {
+      {"grid", grid({0.6, 0.5}, 6, 5, Diagonals::one_way)},
+      {"criss-cross", grid({0.6, 0.5}, 6, 5, Diagonals::criss_cross)},
+      {"random triangulation", random_triangulation({0.6, 0.5}, 40, 11)},
+      {"disc", disc(0.4, 40)},
+      {"polygon with a hole",
+       delaunay_polygon({{{0, 0}, {0.8, 0}, {0.6, 0.6}, {0.1, 0.5}}, {{0.3, 0.2}, {0.5, 0.2}, {0.4, 0.35}}}, 60, 1)}};
+  int checked = 0;
+  for (const RegistryEntry* entry : test_registry().of_kind("refiner"))
+    for (const auto& [mesh_name, mesh] : meshes) {
+      const Hierarchy hierarchy = Hierarchy::of(mesh, *make_plugin_from<Refiner>(entry->name), 3);
+      for (const Candidate& candidate : all_energies()) {
+        if (!candidate.internal()) continue;
+        for (const Level& level : hierarchy.levels) {
+          INFO(candidate.name << ", " << mesh_name << " refined by " << entry->name << ", level " << level.index);
+          const auto energy = candidate.energy->bind(level, material);
+          const Positions& rest = level.rest.vertices;
+          const BlockMatrix h = hessian_of(*energy, rest, Projection::none);
+          double stiffness = 0;
+          for (double entry : h.values) stiffness = std::max(stiffness, std::abs(entry));
+          REQUIRE(stiffness > 0);
+          CHECK(gradient_of(*energy, rest).cwiseAbs().maxCoeff() <= 1e-14 * stiffness);
+          CHECK(std::abs(energy->value(rest)) <= 1e-26 * stiffness * level.triangle_count());
+          ++checked;
+        }
+      }
+    }
+  REQUIRE(checked >= 2 * 5 * 3 * 3);
+}
+
+TEST_CASE("A collapsed triangle has an energy that is a number or +infinity", "[conformance]") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Level level = flat_level();
+  const auto v = level.rest.triangles.row(11);
+  int infinite = 0;
+  for (const Candidate& candidate : all_energies()) {
+    if (!candidate.internal()) continue;
+    INFO(candidate.name);
+    const auto energy = candidate.energy->bind(level, material);
+    const auto flat_to = [&](double fraction) {
+      return energy->value(flattened(level, level.rest.vertices, 11, fraction));
+    };
+    const bool unbounded = flat_to(1e-12) - flat_to(1e-6) > 0.1 * (flat_to(1e-6) - flat_to(1));
+
+    std::vector<Positions> collapsed(3, level.rest.vertices);
+    collapsed[0].row(v[1]) = collapsed[0].row(v[0]);
+    collapsed[1].row(v[1]) = collapsed[1].row(v[2]) = collapsed[1].row(v[0]);
+    collapsed[2].row(v[0]) << 0, 0, 0;  // three vertices on a line, with coordinates that round to nothing
+    collapsed[2].row(v[1]) << 0.25, 0, 0;
+    collapsed[2].row(v[2]) << 0.5, 0, 0;
+    for (const Positions& x : collapsed) {
+      Positions g = Positions::Zero(x.rows(), 3);
+      const double value = energy->value(x), returned = energy->add_gradient(x, g);
+      CHECK_FALSE(std::isnan(value));
+      CHECK(value >= 0);
+      CHECK((value == returned || returned == Approx(value).epsilon(1e-13)));
+      if (unbounded) CHECK(value == infinity);
+    }
+    infinite += unbounded;
+  }
+  REQUIRE(infinite >= 1);
+}

@@ -1,0 +1,103 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+
+#include "core/model/metric.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Two states of one curved cloth without folds or collapsed triangles.
+struct Fixture {
+  Solved s = scene_from(R"(
+name: metrics
+cloth: {shape: rectangle, size: [1, 0.75], triangulation: random, vertices: 60}
+levels: 2
+energies: [neo_hookean, hinge, gravity]
+pins: [{point: [0, 0, 0]}]
+methods: {newton: {}}
+)");
+  Positions a = bent(0.1, 3), b = bent(0.08, 4);
+
+  Positions bent(double height, double waves) const {
+    Positions x = s.rest();
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      x(i, 2) = height * std::sin(waves * x(i, 0)) * std::cos(2 * x(i, 1)), x(i, 0) *= 1.1;
+    return x;
+  }
+  MetricInput pair(const Positions& x, const Positions& other) const { return {s.level(), s.model(), x, &other}; }
+  MetricInput state(const Positions& x) const { return {s.level(), s.model(), x, nullptr}; }
+};
+
+std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics(MetricScope scope) {
+  std::vector<std::pair<std::string, std::shared_ptr<Metric>>> chosen;
+  for (const RegistryEntry* entry : test_registry().of_kind("metric"))
+    if (const auto metric = make_plugin_from<Metric>(entry->name); metric->scope() == scope)
+      chosen.emplace_back(entry->name, metric);
+  REQUIRE(chosen.size() >= 2);
+  return chosen;
+}
+
+void check_form(const MetricResult& result, int vertices) {
+  REQUIRE_FALSE(result.values.empty());
+  std::set<std::string> names;
+  for (const MetricValue& v : result.values) {
+    INFO(v.name);
+    CHECK(std::isfinite(v.value));
+    CHECK_FALSE(v.unit.empty());
+    CHECK(names.insert(v.name).second);
+  }
+  for (const MetricField& f : result.fields) {
+    INFO(f.name);
+    CHECK(f.values.size() == vertices);
+    CHECK(f.values.allFinite());
+    CHECK_FALSE(f.unit.empty());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("Metrics give finite, named values with units", "[conformance]") {
+  const Fixture f;
+  for (const auto& [name, metric] : metrics(MetricScope::state)) {
+    INFO(name);
+    check_form(metric->evaluate(f.state(f.a)), f.s.level().vertex_count());
+  }
+  for (const auto& [name, metric] : metrics(MetricScope::pair)) {
+    INFO(name);
+    check_form(metric->evaluate(f.pair(f.a, f.b)), f.s.level().vertex_count());
+  }
+}
+
+TEST_CASE("A state does not differ from itself", "[conformance]") {
+  const Fixture f;
+  for (const auto& [name, metric] : metrics(MetricScope::pair)) {
+    const MetricResult same = metric->evaluate(f.pair(f.a, f.a)), other = metric->evaluate(f.pair(f.a, f.b));
+    REQUIRE(same.values.size() == other.values.size());
+    for (std::size_t i = 0; i < same.values.size(); ++i) {
+      INFO(name << ": " << same.values[i].name);
+      CHECK(std::abs(same.values[i].value) <= 1e-14);
+      CHECK(std::abs(other.values[i].value) > 1e-6);
+    }
+  }
+}
+
+TEST_CASE("Metrics of a pair do not see a rigid motion of both", "[conformance]") {
+  const Fixture f;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix();
+  const auto moved = [&](const Positions& x) -> Positions {
+    return (x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.5, -0.3, 0.2);
+  };
+  const Positions a = moved(f.a), b = moved(f.b);
+  for (const auto& [name, metric] : metrics(MetricScope::pair)) {
+    const MetricResult before = metric->evaluate(f.pair(f.a, f.b)), after = metric->evaluate(f.pair(a, b));
+    REQUIRE(before.values.size() == after.values.size());
+    for (std::size_t i = 0; i < before.values.size(); ++i) {
+      INFO(name << ": " << before.values[i].name);
+      CHECK(after.values[i].value == Approx(before.values[i].value).epsilon(1e-9));
+    }
+  }
+}

@@ -1,0 +1,86 @@
+#include <catch2/catch.hpp>
+
+#include "core/numerics/parallel.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double tolerance = 1e-6;
+
+/// A square that hangs from the corners of one side and from the middle of the opposite one, pulled together.
+std::string hanging_square(const std::string& solver) {
+  return R"(
+name: hanging_square
+cloth: {shape: square, side: 0.3, triangulation: one_way, columns: 8, rows: 8}
+levels: 3
+material: {density: 472.6, thickness: 3.18e-4, membrane_modulus: 8e4, bending_modulus: 8e6, poisson_ratio: 0.243}
+start: {scale: [0.9, 0.9, 1], perturbation: 1e-3}
+pins:
+  - {point: [0, 0, 0]}
+  - {point: [0.3, 0, 0]}
+  - {point: [0, 0.3, 0]}
+  - {point: [0.3, 0.3, 0]}
+energies: [neo_hookean, hinge, gravity]
+newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-6}
+methods: {)" +
+         solver + ": {}}\n";
+}
+
+std::vector<std::string> solvers() {
+  std::vector<std::string> names;
+  for (const RegistryEntry* entry : test_registry().of_kind("solver")) names.push_back(entry->name);
+  REQUIRE(names.size() >= 3);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("Every solver converges, to an equilibrium of the plain finest model", "[conformance]") {
+  for (const std::string& name : solvers()) {
+    INFO(name);
+    const Solved s = solve_yaml(hanging_square(name));
+    REQUIRE(s.levels.size() == 3);
+    for (const LevelResult& level : s.levels) {
+      INFO("level " << level.level << ": " << level.message);
+      CHECK(level.outcome == Outcome::converged);
+      CHECK(level.force_residual <= tolerance);
+      CHECK(level.iterations > 0);
+    }
+    CHECK(s.model().force_residual(s.x()) <= tolerance * (1 + 1e-9));
+    REQUIRE(s.model().force_residual(s.scene->starts.back()) > 100 * tolerance);
+  }
+}
+
+TEST_CASE("No solver moves a fixed vertex", "[conformance]") {
+  for (const std::string& name : solvers()) {
+    const Solved s = solve_yaml(hanging_square(name));
+    for (const LevelResult& level : s.levels) {
+      const auto& fixed = s.scene->models[level.level]->fixed();
+      int held = 0;
+      for (Eigen::Index i = 0; i < level.x.rows(); ++i) {
+        if (!fixed[i]) continue;
+        ++held;
+        INFO(name << ", level " << level.level << ", vertex " << i);
+        CHECK(level.x.row(i) == s.scene->starts[level.level].row(i));
+      }
+      REQUIRE(held == 4);
+    }
+  }
+}
+
+TEST_CASE("Solvers give the same bits from run to run, and with any number of threads", "[conformance]") {
+  for (const std::string& name : solvers()) {
+    INFO(name);
+    std::vector<Positions> finest;
+    for (int threads : {1, 1, 2}) {
+      set_thread_count(threads);
+      finest.push_back(solve_yaml(hanging_square(name)).x());
+    }
+    set_thread_count(0);
+    REQUIRE(finest[0].norm() > 0);
+    CHECK(finest[0] == finest[1]);
+    CHECK(finest[0] == finest[2]);
+  }
+}

@@ -1,0 +1,19 @@
+// A plugin whose only fault is a name that good.cpp has too.
+
+#include "core/model/refiner.h"
+#include "core/plugin/plugin.h"
+
+namespace {
+
+class Duplicate final : public drape::Refiner {
+ public:
+  struct Parameters {
+    static void declare(drape::Declaration<Parameters>&) {}
+  };
+  explicit Duplicate(const Parameters&) {}
+  drape::Refinement refine(const drape::Level&) const override { return {}; }
+};
+
+}  // namespace
+
+DRAPE_PLUGIN(registry) { registry.add<drape::Refiner, Duplicate>("good", "Another one of that name."); }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "tests/support/dense_matrix.h"
+
+inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drape::Positions& x) {
+  drape::Positions g = drape::Positions::Zero(x.rows(), 3);
+  energy.add_gradient(x, g);
+  return g;
+}
+
+inline drape::BlockMatrix hessian_of(const drape::BoundEnergy& energy, const drape::Positions& x,
+                                     drape::Projection projection) {
+  const drape::Stencils stencils = energy.stencils();
+  drape::BlockMatrix matrix(drape::BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
+  matrix.set_zero();
+  if (stencils.rows() == 0) return matrix;
+  const drape::BlockSlots slots(*matrix.pattern, stencils);
+  drape::BlockSink sink(slots, matrix);
+  energy.add_hessian(x, projection, sink);
+  return matrix;
+}
+
+/// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,
+/// and column (or entry) 3 i + c of the result is its derivative by coordinate c of vertex i.
+template <class Function>
+Eigen::MatrixXd differences(const Function& f, drape::Positions x, double h) {
+  const auto at = [&](double* coordinate, double offset) {
+    const double old = *coordinate;
+    *coordinate = old + offset;
+    const auto y = f(x);
+    *coordinate = old;
+    return y;
+  };
+  Eigen::MatrixXd result;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    double* coordinate = x.data() + i;
+    Eigen::VectorXd column;
+    if constexpr (std::is_arithmetic_v<decltype(f(x))>) {
+      column.resize(1);
+      column[0] = (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) / (12 * h);
+    } else {
+      const drape::Positions d =
+          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) / (12 * h);
+      column = Eigen::Map<const Eigen::VectorXd>(d.data(), d.size());
+    }
+    if (i == 0) result.resize(column.size(), x.size());
+    result.col(i) = column;
+  }
+  return result;
+}
+
+/// n×3 as one column of 3n.
+inline Eigen::VectorXd flat(const drape::Positions& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()); }

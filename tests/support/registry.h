@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "core/experiment/yaml_file.h"
+#include "core/plugin/loader.h"
+#include "core/plugin/make.h"
+#include "core/plugin/registry.h"
+
+/// Everything that the build's plugins offer.
+inline const drape::Registry& test_registry() {
+  static const drape::Registry* registry = [] {
+    auto* r = new drape::Registry;  // like the libraries, it stays for good
+    drape::load_plugins(*r, {DRAPE_BUILD_PLUGIN_DIR});
+    return r;
+  }();
+  return *registry;
+}
+
+/// All faults in one exception.
+inline void throw_errors(const drape::ConfigErrors& errors) {
+  if (errors.empty()) return;
+  std::string text;
+  for (const auto& error : errors) text += (text.empty() ? "" : "\n") + error.text();
+  throw std::runtime_error(text);
+}
+
+/// The plugin that a line of YAML describes, as `{type: loop, corner_angle: 20}`.
+template <class Interface>
+std::shared_ptr<Interface> make_plugin_from(const std::string& yaml) {
+  drape::ConfigErrors errors;
+  const drape::ConfigNode node = drape::parse_yaml("plugin: " + yaml, "test", errors);
+  throw_errors(errors);
+  auto object = drape::make_from<Interface>(test_registry(), *node.find("plugin"), errors);
+  throw_errors(errors);
+  return object;
+}

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+#include "tests/support/registry.h"
+
+/// An experiment, its scene, and what one method made of it.
+struct Solved {
+  drape::Experiment experiment;
+  std::unique_ptr<drape::Scene> scene;
+  std::vector<drape::LevelResult> levels;
+
+  const drape::Level& level() const { return scene->hierarchy.levels.back(); }
+  const drape::LevelModel& model() const { return *scene->models.back(); }
+  const drape::Positions& rest() const { return level().rest.vertices; }
+  const drape::Positions& x() const { return levels.back().x; }
+};
+
+inline drape::Experiment experiment_from(const std::string& text) {
+  std::string name = (std::filesystem::temp_directory_path() / "drape_test_XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0) throw std::runtime_error(name + ": cannot be made");
+  close(file);
+  std::ofstream(name) << text;
+  drape::ConfigErrors errors;
+  auto experiment = drape::read_experiment(name, {}, test_registry(), errors);
+  std::filesystem::remove(name);
+  throw_errors(errors);
+  return std::move(*experiment);
+}
+
+inline Solved scene_from(const std::string& text) {
+  Solved s{experiment_from(text), nullptr, {}};
+  drape::ConfigErrors errors;
+  s.scene = drape::build_scene(s.experiment, errors);
+  throw_errors(errors);
+  return s;
+}
+
+/// Runs one of the experiment's methods, silently; the first one if no name is given.
+inline void run_method(Solved& s, const std::string& name = "") {
+  for (const auto& [own_name, solver] : s.experiment.methods) {
+    if (!name.empty() && own_name != name) continue;
+    drape::Observer silent;
+    s.levels = solver->solve(s.scene->problem(), silent);
+    return;
+  }
+  throw std::runtime_error("the experiment has no method " + name);
+}
+
+inline Solved solve_yaml(const std::string& text, const std::string& method = "") {
+  Solved s = scene_from(text);
+  run_method(s, method);
+  return s;
+}

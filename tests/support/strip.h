@@ -1,0 +1,87 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tests/support/solve.h"
+
+/// The shortest text that reads back as the same number.
+inline std::string text(double number) { return drape::ConfigNode::of(number).scalar; }
+
+inline std::string text(const Eigen::Vector3d& v) {
+  return "[" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
+}
+
+/// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack: mirrored at
+/// its middle line, so that bending does not twist it. Its cells are far longer than wide: with wide ones
+/// the diagonals would bend along (see docs/validation.md, "What the hinge model's stiffness is").
+///
+/// The hinges of column j carry the curvature from half a cell before it to half a cell behind. With columns
+/// 0 and 1 pinned, the first hinges that can bend are those of column 1, and the clamp is at half a cell. The
+/// free end is column `cells`, so (cells - 1/2) cells make the free length.
+struct Strip {
+  int cells;
+  double length = 1;         ///< L, free [m]
+  double density = 1000;     ///< ρ [kg/m³]
+  double thickness = 0.01;   ///< d [m]
+  double membrane_modulus = 1e9;  ///< [Pa]
+  double slenderness = 0.06;  ///< width of a cell over its length
+  double stiffness = 1;      ///< EI per width that the strip shall have, D_eff = 6 k = E_bend d³ / 4 [N m]
+
+  double cell() const { return length / (cells - 0.5); }
+  double total() const { return cells * cell(); }
+  double width() const { return 2 * slenderness * cell(); }
+  double bending_modulus() const { return 4 * stiffness / std::pow(thickness, 3); }
+
+  /// `energies` and `more` are YAML: a list, and further keys of the experiment.
+  std::string yaml(const std::string& energies, const std::string& more) const {
+    return "name: strip\ncloth: {shape: rectangle, triangulation: criss_cross, size: [" + text(total()) + ", " +
+           text(width()) + "], columns: " + std::to_string(cells + 1) + ", rows: 3}\nlevels: 1\n" +
+           "material: {density: " + text(density) + ", thickness: " + text(thickness) + ", membrane_modulus: " +
+           text(membrane_modulus) + ", bending_modulus: " + text(bending_modulus()) + ", poisson_ratio: 0}\n" +
+           "pins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) + ", 1, 1]}]\n" +
+           "energies: " + energies + "\nmethods: {newton: {}}\n" + more;
+  }
+
+  /// A load [N] spread evenly over the free end, as an item of `energies`.
+  std::string end_load(const Eigen::Vector3d& force) const {
+    std::string points;
+    for (int j = 0; j < 3; ++j)
+      points += (j ? ", " : "") + std::string("{point: ") + text({total(), j * width() / 2, 0}) + ", force: " +
+                text(force * (j == 1 ? 0.5 : 0.25)) + "}";
+    return "{type: constant_load, points: [" + points + "]}";
+  }
+};
+
+/// Vertex of the middle line at a column of a solved strip.
+inline Eigen::Vector3d place(const Solved& s, int cells, int column) {
+  return s.x().row(column + cells + 1).transpose();
+}
+
+/// Angle of the last segment below the horizontal [degrees].
+inline double tip_angle(const Solved& s, int cells) {
+  const Eigen::Vector3d d = place(s, cells, cells) - place(s, cells, cells - 1);
+  return std::atan2(-d.z(), d.x()) * 180 / M_PI;
+}
+
+/// Prints a row of a table.
+template <class... Values>
+void row(const char* format, Values... values) {
+  std::printf(format, values...);
+  std::printf("\n");
+}
+
+/// Errors of successive refinements by two must fall, about as fast as the order says.
+inline void check_order(const std::vector<double>& errors, double order) {
+  REQUIRE(errors.size() >= 3);
+  for (std::size_t i = 1; i < errors.size(); ++i) {
+    INFO("error " << errors[i - 1] << " → " << errors[i]);
+    CHECK(errors[i] < errors[i - 1]);
+  }
+  const double last = std::log2(errors[errors.size() - 2] / errors.back());
+  CHECK(last > order - 0.4);
+  CHECK(last < order + 0.6);
+}

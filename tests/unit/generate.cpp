@@ -1,0 +1,174 @@
+#include "core/mesh/generate.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "core/hierarchy/level.h"
+#include "core/mesh/check.h"
+#include "core/mesh/delaunay.h"
+
+using namespace drape;
+
+namespace {
+
+/// Signed area of a flat mesh.
+double signed_area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    const auto v = mesh.triangles.row(t);
+    const Eigen::RowVector3d a = mesh.vertices.row(v[1]) - mesh.vertices.row(v[0]);
+    const Eigen::RowVector3d b = mesh.vertices.row(v[2]) - mesh.vertices.row(v[0]);
+    sum += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  return sum;
+}
+
+int euler_characteristic(const TriangleMesh& mesh) {
+  const auto n = static_cast<int>(mesh.vertices.rows());
+  const Topology topology = Topology::of(mesh.triangles, n);
+  return n - static_cast<int>(topology.edges.rows() - mesh.triangles.rows());
+}
+
+bool same(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.vertices.rows() == b.vertices.rows() && a.triangles.rows() == b.triangles.rows() &&
+         a.vertices == b.vertices && a.triangles == b.triangles;
+}
+
+/// What every pattern must be: sound, flat, counter-clockwise, in one piece with this many holes.
+void require_pattern(const TriangleMesh& mesh, double area, int holes, double angle) {
+  REQUIRE(mesh.vertices.rows() > 0);
+  CHECK(check_mesh(mesh).empty());
+  CHECK((mesh.vertices.col(2).array() == 0).all());
+  CHECK(signed_area(mesh) == Approx(area).epsilon(1e-12));
+  CHECK(euler_characteristic(mesh) == 1 - holes);
+  CHECK(smallest_angle(mesh) > angle);
+}
+
+const Polygon square{{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+const Polygon hole{{.3, .3}, {.5, .3}, {.5, .6}, {.3, .6}};
+
+}  // namespace
+
+TEST_CASE("a grid counts vertices, not cells", "[generate]") {
+  const auto diagonals = GENERATE(Diagonals::one_way, Diagonals::criss_cross);
+  const TriangleMesh mesh = grid({2, 1}, 32, 32, diagonals);
+  CHECK(mesh.vertices.rows() == 1024);
+  CHECK(mesh.triangles.rows() == 2 * 31 * 31);
+  CHECK(mesh.vertices.row(0) == Eigen::RowVector3d(0, 0, 0));
+  CHECK(mesh.vertices.row(1023) == Eigen::RowVector3d(2, 1, 0));
+  require_pattern(mesh, 2, 0, 26);
+}
+
+TEST_CASE("diagonals go one way or criss-cross", "[generate]") {
+  const auto valence = [](Diagonals diagonals, int v) {
+    const TriangleMesh mesh = grid({1, 1}, 6, 6, diagonals);
+    return Topology::of(mesh.triangles, 36).vertex_vertices.size(v);
+  };
+  for (int v : {7, 8, 13, 14}) CHECK(valence(Diagonals::one_way, v) == 6);
+  CHECK(valence(Diagonals::criss_cross, 7) == 8);   // (1, 1)
+  CHECK(valence(Diagonals::criss_cross, 8) == 4);   // (2, 1)
+  CHECK(valence(Diagonals::criss_cross, 13) == 4);  // (1, 2)
+  CHECK(valence(Diagonals::criss_cross, 14) == 8);  // (2, 2)
+}
+
+TEST_CASE("Delaunay patterns meet the count, the area and the angle", "[generate]") {
+  const int count = GENERATE(150, 1000, 4000);
+  const auto near = [&](const TriangleMesh& mesh) {
+    return std::abs(mesh.vertices.rows() - count) <= 0.15 * count;
+  };
+
+  const TriangleMesh plain = delaunay_polygon({square}, count, 1);
+  CHECK(near(plain));
+  require_pattern(plain, 1, 0, 20);
+
+  Polygon backwards(hole.rbegin(), hole.rend());
+  const TriangleMesh holed = delaunay_polygon({square, backwards}, count, 1);
+  CHECK(near(holed));
+  require_pattern(holed, 0.94, 1, 20);
+  CHECK(same(holed, delaunay_polygon({square, backwards}, count, 1)));
+
+  const TriangleMesh other = delaunay_polygon({square}, count, 2);
+  CHECK(near(other));
+  CHECK_FALSE(same(plain, other));
+}
+
+TEST_CASE("a disc's border is on the circle, its spacing that of the inside", "[generate]") {
+  const int count = GENERATE(200, 1500);
+  const TriangleMesh mesh = disc(0.6, count);
+  CHECK(std::abs(mesh.vertices.rows() - count) <= 0.15 * count);
+  CHECK(same(mesh, disc(0.6, count)));
+
+  const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+  int border_vertices = 0;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) {
+    if (!topology.on_border[v]) continue;
+    ++border_vertices;
+    CHECK(mesh.vertices.row(v).norm() == Approx(0.6).epsilon(1e-12));
+  }
+  double border = 0, inside = 0;
+  int inner_edges = 0;
+  for (int e = 0; e < topology.edges.rows(); ++e) {
+    const double length =
+        (mesh.vertices.row(topology.edges(e, 0)) - mesh.vertices.row(topology.edges(e, 1))).norm();
+    if (topology.edge_triangles(e, 1) == -1)
+      border += length / border_vertices;
+    else
+      inside += length, ++inner_edges;
+  }
+  CHECK(border == Approx(inside / inner_edges).epsilon(0.1));
+  const double corner = 2 * std::numbers::pi / border_vertices;
+  require_pattern(mesh, 0.6 * 0.6 / 2 * border_vertices * std::sin(corner), 0, 20);
+}
+
+TEST_CASE("random triangulations are exact in number and the same for one seed", "[generate]") {
+  const unsigned seed = GENERATE(range(0u, 6u));
+  const TriangleMesh mesh = random_triangulation({0.5, 2}, 1600, seed);
+  CHECK(mesh.vertices.rows() == 1600);
+  require_pattern(mesh, 1, 0, 15);
+  CHECK(same(mesh, random_triangulation({0.5, 2}, 1600, seed)));
+  CHECK_FALSE(same(mesh, random_triangulation({0.5, 2}, 1600, seed + 1)));
+
+  const Positions& x = mesh.vertices;
+  for (const auto& [cx, cy] : {std::pair{0., 0.}, {.5, 0.}, {.5, 2.}, {0., 2.}})
+    CHECK((x.rowwise() - Eigen::RowVector3d(cx, cy, 0)).rowwise().norm().minCoeff() == 0);
+}
+
+TEST_CASE("random numbers do not depend on the standard library", "[generate]") {
+  Random random(5489);
+  for (int i = 1; i < 10000; ++i) random.unit();
+  // The C++ standard's check of mt19937_64: its 10000th number is 9981545732273789042.
+  CHECK(random.unit() == static_cast<double>(9981545732273789042ull >> 11) * 0x1.0p-53);
+}
+
+TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]") {
+  CHECK_THROWS_WITH(grid({1, 0}, 3, 3, Diagonals::one_way), "grid: the size must be positive");
+  CHECK_THROWS_WITH(grid({1, 1}, 1, 3, Diagonals::one_way), "grid: at least 2 × 2 vertices are needed");
+  CHECK_THROWS_WITH(disc(-1, 100), "disc: the radius must be positive");
+  CHECK_THROWS_WITH(
+      random_triangulation({1, 1}, 4, 0),
+      "random triangulation: 4 vertices leave none for the inside of this rectangle; ask for more");
+
+  const auto mesh = [](const std::vector<Polygon>& loops) { return delaunay_polygon(loops, 100, 0); };
+  CHECK_THROWS_WITH(mesh({}), "polygon: there is no loop");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}}}),
+                    "polygon: loop 0 (the outer border) has fewer than three points");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}),
+                    "polygon: loop 0 (the outer border) crosses or touches itself");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, 0}, {2, 0}}}),
+                    "polygon: loop 0 (the outer border) crosses or touches itself");
+  CHECK_THROWS_WITH(mesh({{{0, 0}, {1, NAN}, {2, 0}}}),
+                    "polygon: loop 0 (the outer border) has a coordinate that is not finite");
+  CHECK_THROWS_WITH(mesh({square, {{2, 2}, {3, 2}, {3, 3}}}), "polygon: loop 1 (a hole) lies outside loop 0");
+  CHECK_THROWS_WITH(mesh({square, hole, {{.9, .5}, {1.2, .5}, {.9, .6}}}),
+                    "polygon: loop 2 (a hole) crosses or touches loop 0");
+  CHECK_THROWS_WITH(mesh({square, hole, {{.4, .4}, {.45, .4}, {.4, .5}}}),
+                    "polygon: loop 2 (a hole) and loop 1 lie one inside the other");
+  CHECK_THROWS_WITH(delaunay_polygon({square}, 2, 0), "polygon: at least three vertices are needed");
+
+  Polygon comb;  // 43 corners
+  for (int i = 0; i < 20; ++i) comb.insert(comb.end(), {{i / 20., 0}, {(i + 0.5) / 20, 0.1}});
+  comb.insert(comb.end(), {{1, 0}, {1, 1}, {0, 1}});
+  CHECK_THROWS_WITH(delaunay_polygon({comb}, 20, 0),
+                    Catch::StartsWith("polygon: about 20 vertices cannot be had; nearest is "));
+}

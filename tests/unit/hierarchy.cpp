@@ -1,0 +1,94 @@
+#include "core/hierarchy/hierarchy.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/hierarchy/midpoint.h"
+#include "core/mesh/check.h"
+#include "core/mesh/generate.h"
+
+using namespace drape;
+
+namespace {
+
+struct Midpoint : Refiner {
+  Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
+};
+
+/// Pulls every vertex half-way to vertex 0, so that P and U differ.
+struct Shrinking : Refiner {
+  Refinement refine(const Level& coarse) const override {
+    Refinement refinement = midpoint_refinement(coarse);
+    ProlongationMatrix first(refinement.weights.rows(), refinement.weights.cols());
+    for (int v = 0; v < first.rows(); ++v) first.insert(v, 0) = 0.5;
+    refinement.weights = 0.5 * refinement.weights + first;
+    return refinement;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("children follow the contract of Refinement", "[hierarchy]") {
+  const Level coarse = Level::of(0, grid({2, 1}, 4, 3, Diagonals::criss_cross));
+  const Triangles fine = split_triangles(coarse);
+  const int n = coarse.vertex_count();
+  REQUIRE(fine.rows() == 4 * coarse.triangle_count());
+  const Refinement refinement = midpoint_refinement(coarse);
+  CHECK(refinement.triangles == fine);
+  CHECK(refinement.weights.rows() == n + coarse.topology.edges.rows());
+  CHECK(refinement.weights.cols() == n);
+
+  for (int t = 0; t < coarse.triangle_count(); ++t) {
+    const auto e = coarse.topology.triangle_edges.row(t);
+    for (int k = 0; k < 3; ++k) CHECK(fine(4 * t + k, k) == coarse.rest.triangles(t, k));
+    CHECK(fine.row(4 * t + 3) == Eigen::RowVector3i(n + e[0], n + e[1], n + e[2]));
+  }
+  const TriangleMesh mesh{refinement.weights * coarse.rest.vertices, fine};
+  CHECK(check_mesh(mesh).empty());  // flat: orientation is kept
+  for (int v = 0; v < n; ++v) CHECK(mesh.vertices.row(v) == coarse.rest.vertices.row(v));
+  for (int i = 0; i < coarse.topology.edges.rows(); ++i) {
+    const auto ends = coarse.topology.edges.row(i);
+    CHECK(mesh.vertices.row(n + i) ==
+          0.5 * (coarse.rest.vertices.row(ends[0]) + coarse.rest.vertices.row(ends[1])));
+  }
+}
+
+TEST_CASE("levels grow 32², 63², 125², 249²", "[hierarchy]") {
+  const Hierarchy hierarchy = Hierarchy::of(grid({1, 1}, 32, 32, Diagonals::one_way), Midpoint(), 4);
+  REQUIRE(hierarchy.level_count() == 4);
+  REQUIRE(hierarchy.prolongations.size() == 3);
+  REQUIRE(hierarchy.midpoints.size() == 3);
+  const int sides[] = {32, 63, 125, 249};
+  for (int l = 0; l < 4; ++l) {
+    const Level& level = hierarchy.levels[l];
+    CHECK(level.index == l);
+    CHECK(level.vertex_count() == sides[l] * sides[l]);
+    CHECK(level.triangle_count() == 2 * (sides[l] - 1) * (sides[l] - 1));
+    CHECK(level.vertex_count() - level.topology.edges.rows() + level.triangle_count() == 1);
+    CHECK(level.vertex_area.sum() == Approx(1).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("rest shapes and positions follow the same operators", "[hierarchy]") {
+  const Hierarchy hierarchy = Hierarchy::of(grid({1, 2}, 4, 5, Diagonals::criss_cross), Shrinking(), 3);
+  const Positions& coarsest = hierarchy.levels[0].rest.vertices;
+  for (int l = 0; l < 3; ++l) CHECK(hierarchy.prolong(coarsest, 0, l) == hierarchy.levels[l].rest.vertices);
+
+  const Positions x = Positions::Random(hierarchy.levels[1].vertex_count(), 3);
+  CHECK(hierarchy.prolong(x, 1, 1) == x);
+  CHECK(hierarchy.prolong(x, 1, 2) == Positions(hierarchy.prolongations[1] * x));
+  CHECK(hierarchy.midpoints[1].isApprox(midpoint_refinement(hierarchy.levels[1]).weights));
+  CHECK_FALSE(hierarchy.midpoints[1].isApprox(hierarchy.prolongations[1]));
+
+  CHECK_THROWS_WITH(hierarchy.prolong(x, 1, 3), "prolong: levels 1 to 3 of a hierarchy of 3");
+  CHECK_THROWS_WITH(hierarchy.prolong(x, 2, 1), "prolong: levels 2 to 1 of a hierarchy of 3");
+  CHECK_THROWS_WITH(hierarchy.prolong(coarsest, 1, 2),
+                    "prolong: 20 positions for the 63 vertices of level 1");
+}
+
+TEST_CASE("a faulty coarsest mesh is refused", "[hierarchy]") {
+  TriangleMesh mesh = grid({1, 1}, 3, 3, Diagonals::one_way);
+  CHECK_THROWS_WITH(Hierarchy::of(mesh, Midpoint(), 0), "hierarchy: at least one level is needed");
+  mesh.triangles.row(2) = mesh.triangles.row(2).reverse().eval();
+  CHECK_THROWS_WITH(Hierarchy::of(mesh, Midpoint(), 2),
+                    Catch::StartsWith("rest shape of level 0: edge (") && Catch::EndsWith("more faults)"));
+}

@@ -1,0 +1,313 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/io.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A directory of one test, removed with it.
+struct Scratch {
+  fs::path root = fs::temp_directory_path() / ("drape_mesh_io_" + std::to_string(::getpid()));
+  Scratch() { fs::create_directories(root); }
+  ~Scratch() { fs::remove_all(root); }
+
+  fs::path file(const std::string& name, const std::string& bytes) const {
+    std::ofstream(root / name, std::ios::binary) << bytes;
+    return root / name;
+  }
+};
+
+std::string bytes_of(const fs::path& path) {
+  std::ostringstream out;
+  out << std::ifstream(path, std::ios::binary).rdbuf();
+  return out.str();
+}
+
+bool same_bits(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.vertices.rows() == b.vertices.rows() && a.triangles.rows() == b.triangles.rows() &&
+         std::memcmp(a.vertices.data(), b.vertices.data(), a.vertices.size() * sizeof(double)) == 0 &&
+         a.triangles == b.triangles;
+}
+
+/// Awkward numbers: no short decimals, tiny, huge, minus zero, denormal.
+TriangleMesh awkward_mesh() {
+  TriangleMesh mesh = random_triangulation({1. / 3, 1}, 60, 7);
+  mesh.vertices(3, 2) = -0.0;
+  mesh.vertices(4, 2) = 1e-300;
+  mesh.vertices(5, 2) = -1.7976931348623157e308;
+  mesh.vertices(6, 2) = std::numeric_limits<double>::denorm_min();
+  return mesh;
+}
+
+/// The mesh of most reading tests: a square of two triangles.
+void check_square(const TriangleMesh& mesh) {
+  Positions vertices(4, 3);
+  vertices << 0, 0, 0, 1, 0, 0, 1, 1.5, 0, 0, 1, -0.25;
+  Triangles triangles(2, 3);
+  triangles << 0, 1, 2, 0, 2, 3;
+  REQUIRE(mesh.vertices.rows() == 4);
+  REQUIRE(mesh.triangles.rows() == 2);
+  CHECK(mesh.vertices == vertices);
+  CHECK(mesh.triangles == triangles);
+}
+
+template <class Number>
+void append(std::string& bytes, Number number, bool big_endian) {
+  char raw[sizeof number];
+  std::memcpy(raw, &number, sizeof number);
+  if (big_endian) std::reverse(raw, raw + sizeof number);
+  bytes.append(raw, sizeof number);
+}
+
+}  // namespace
+
+TEST_CASE("PLY and OBJ read back to the same bits", "[io]") {
+  const Scratch scratch;
+  const std::string name = GENERATE("mesh.ply", "mesh.obj", "MESH.PLY");
+  const TriangleMesh mesh = awkward_mesh();
+  write_mesh(scratch.root / name, mesh);
+  CHECK(same_bits(read_mesh(scratch.root / name), mesh));
+  CHECK_FALSE(fs::exists(scratch.root / (name + ".part")));
+}
+
+TEST_CASE("fields of a PLY read back to the same bits", "[io]") {
+  const Scratch scratch;
+  const TriangleMesh mesh = awkward_mesh();
+  VertexFields fields{{"mean_curvature", mesh.vertices.col(0) / 7}, {"rest.z", mesh.vertices.col(2)}};
+  fields[0].values[1] = std::numeric_limits<double>::quiet_NaN();
+  write_ply(scratch.root / "m.ply", mesh, fields);
+  CHECK(same_bits(read_mesh(scratch.root / "m.ply"), mesh));
+  const VertexFields back = read_ply_fields(scratch.root / "m.ply");
+  REQUIRE(back.size() == 2);
+  for (int i = 0; i < 2; ++i) {
+    CHECK(back[i].name == fields[i].name);
+    REQUIRE(back[i].values.size() == 60);
+    CHECK(std::memcmp(back[i].values.data(), fields[i].values.data(), 60 * sizeof(double)) == 0);
+  }
+  write_ply(scratch.root / "m.ply", mesh);
+  CHECK(read_ply_fields(scratch.root / "m.ply").empty());
+}
+
+TEST_CASE("OBJ faces in all their forms", "[io]") {
+  const Scratch scratch;
+  const std::string vertices =
+      "# a square\r\no cloth\nv 0 0 0\nv +1 0 0 1.0\nvt 0 0\nvn 0 0 1\n  v 1 15e-1 0\nv 0 1 -.25 # last\n";
+  const std::string faces =
+      GENERATE("f 1 2 3\nf 1 3 4\n", "f 1/1 2/1 3/1\nf 1/1/1 3/1/1 4/1/1", "f 1//1 2//1 3//1\nf -4 -2 -1\n",
+               "s off\nf 1 2 3 4\n", "f 1 2 3\r\nf 1 3 4\r\n");
+  check_square(read_mesh(scratch.file("m.obj", vertices + faces)));
+}
+
+TEST_CASE("OFF with and without colours, normals, comments", "[io]") {
+  const Scratch scratch;
+  const std::string text = GENERATE("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1.5 0\n0 1 -0.25\n3 0 1 2\n3 0 2 3\n",
+                                    "OFF 4 1 5\n\n0 0 0\n1 0 0\n1 1.5 0\n0 1 -0.25\n4 0 1 2 3 255 0 0\n",
+                                    "COFF\n# colours\n4 2 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1.5 0 1 0 0 "
+                                    "1\n0 1 -0.25 1 0 0 1\n3 0 1 2\n3 0 2 3");
+  check_square(read_mesh(scratch.file("m.off", text)));
+}
+
+TEST_CASE("PLY as text", "[io]") {
+  const Scratch scratch;
+  const fs::path path = scratch.file(
+      "m.ply",
+      "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info none\r\nelement vertex 4\r\nproperty "
+      "float x\r\n"
+      "property float32 y\r\nproperty list uchar int seen\r\nproperty double z\r\nproperty uchar red\r\n"
+      "element face 1\r\nproperty uchar flags\r\nproperty list uint8 uint vertex_index\r\n"
+      "element edge 1\r\nproperty int a\r\nend_header\r\n"
+      "0 0 0 0 255\r\n1 0 2 7 8 0 254\r\n1 1.5 1 9 0 253\r\n0 1 0 -0.25 252\r\n7 4 0 1 2 3\r\n-1\r\n");
+  check_square(read_mesh(path));
+  const VertexFields fields = read_ply_fields(path);
+  REQUIRE(fields.size() == 1);
+  CHECK(fields[0].name == "red");
+  CHECK(fields[0].values == Eigen::Vector4d(255, 254, 253, 252));
+}
+
+TEST_CASE("PLY in binary of either byte order and mixed types", "[io]") {
+  const Scratch scratch;
+  const bool big = GENERATE(false, true);
+  std::string bytes =
+      std::string("ply\nformat binary_") + (big ? "big" : "little") +
+      "_endian 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty short n\n"
+      "property float z\nelement face 2\nproperty list ushort uint vertex_indices\nend_header\n";
+  const float x[] = {0, 1, 1, 0}, z[] = {0, 0, 0, -0.25};
+  const double y[] = {0, 0, 1.5, 1};
+  for (int v = 0; v < 4; ++v) {
+    append(bytes, x[v], big);
+    append(bytes, y[v], big);
+    append(bytes, static_cast<std::int16_t>(-300 * v), big);
+    append(bytes, z[v], big);
+  }
+  for (const auto& t : {std::array{0u, 1u, 2u}, {0u, 2u, 3u}}) {
+    append(bytes, std::uint16_t{3}, big);
+    for (std::uint32_t v : t) append(bytes, v, big);
+  }
+  const fs::path path = scratch.file("m.ply", bytes);
+  check_square(read_mesh(path));
+  CHECK(read_ply_fields(path)[0].values == Eigen::Vector4d(0, -300, -600, -900));
+
+  const fs::path cut = scratch.file("cut.ply", bytes.substr(0, bytes.size() - 1));
+  CHECK_THROWS_WITH(read_mesh(cut), cut.string() + ": face 1: the file ends");
+}
+
+TEST_CASE("malformed files are refused with file and line", "[io]") {
+  const Scratch scratch;
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const auto [name, text, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
+      {"a.obj", "v 0 0 0\nv 1 zero 0\n", ":2: 'zero' is not a number"},
+      {"a.obj", "v 0 0\n", ":1: a vertex needs three coordinates"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\n\nf 1 2 3\n", ":4: face names vertex 3, but 2 vertices precede it"},
+      {"a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 -3\n", ":3: face names vertex -3, but 2 vertices precede it"},
+      {"a.obj", "v 0 0 0\nf 0 1 1\n", ":2: face names vertex 0, but 1 vertices precede it"},
+      {"a.obj", "v 0 0 0\nf 1 1\n", ":2: a face needs at least three vertices"},
+      {"a.obj", "v 0 0 0\nf 1 a/1 1\n", ":2: 'a' is not an integer"},
+      {"a.off", "", ":0: the file ends where OFF is expected"},
+      {"a.off", "ply\n", ":1: an OFF file begins with OFF, not 'ply'"},
+      {"a.off", "OFF BINARY\n", ":1: binary OFF is not read; convert it to text or to PLY"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", ":4: the file ends before vertex 2"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1 is not in 0 … 0"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", ":4: a face of 3 vertices names fewer"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n2 0 0\n", ":4: a face needs at least three vertices"},
+      {"a.off", "OFF\n999999999 1 0\n", ":2: the file has no room for 999999999 vertices"},
+      {"a.ply", "plyy\n", ":1: a PLY file begins with a line 'ply'"},
+      {"a.ply", "ply\nformat ascii 2.0\n",
+       ":2: expected 'format ascii|binary_little_endian|binary_big_endian 1.0'"},
+      {"a.ply", "ply\nelement vertex 1\nproperty half x\n", ":3: unknown property type 'half'"},
+      {"a.ply", "ply\nelement vertex 1\nproperty list float int x\n",
+       ":3: the length of a list must be an integer"},
+      {"a.ply", "ply\nelement vertex 1\nproperty list int x\n",
+       ":3: expected 'property TYPE NAME' or 'property list TYPE TYPE NAME'"},
+      {"a.ply", "ply\nproperty int x\n", ":2: a property stands before the first element"},
+      {"a.ply", "ply\nelement vertex 99999999\n", ":2: the file has no room for 99999999 elements 'vertex'"},
+      {"a.ply", "ply\nformat ascii 1.0\nhello\n", ":3: unknown header line 'hello'"},
+      {"a.ply", "ply\nformat ascii 1.0\n", ":2: the header has no end_header"},
+      {"a.ply", "ply\nend_header\n", ":2: the header has no format line"},
+      {"a.ply", "ply\nformat ascii 1.0\nend_header\n", ":3: the header must have one element 'vertex'"},
+      {"a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float z\nend_header\n",
+       ": vertices have no property 'y'"},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: face 0: vertex 3 is not in 0 … 2"},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n", ":13: face 0: a face needs at least three vertices"},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", ":13: the file ends where face 0 is expected"},
+      {"a.ply", ply + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", ":11: 'x' is not a number"},
+  }));
+  const fs::path path = scratch.file(name, text);
+  CHECK_THROWS_WITH(read_mesh(path), path.string() + message);
+}
+
+TEST_CASE("unknown formats and missing files name what to do", "[io]") {
+  CHECK_THROWS_WITH(read_mesh("cloth.stl"),
+                    "cloth.stl: unknown mesh format '.stl'; known are .obj, .off, .ply");
+  CHECK_THROWS_WITH(write_mesh("cloth.off", {}),
+                    "cloth.off: unknown mesh format '.off'; known are .obj, .ply");
+  CHECK_THROWS_WITH(read_mesh("no/such.ply"), "cannot read no/such.ply: No such file or directory");
+  CHECK_THROWS_WITH(write_mesh("no/such.ply", {}), "cannot write no/such.ply: No such file or directory");
+}
+
+TEST_CASE("a write that fails leaves the old file and no part", "[io]") {
+  const Scratch scratch;
+  fs::create_directories(scratch.root / "m.ply" / "full");  // a directory cannot be replaced by a file
+  CHECK_THROWS_WITH(write_mesh(scratch.root / "m.ply", awkward_mesh()),
+                    "cannot write " + (scratch.root / "m.ply").string() + ": Is a directory");
+  CHECK_FALSE(fs::exists(scratch.root / "m.ply.part"));
+  CHECK(fs::exists(scratch.root / "m.ply" / "full"));
+  if (fs::exists("/dev/full")) {
+    fs::create_symlink("/dev/full", scratch.root / "n.ply.part");
+    CHECK_THROWS_WITH(write_mesh(scratch.root / "n.ply", awkward_mesh()),
+                      "cannot write " + (scratch.root / "n.ply").string() + ": No space left on device");
+    CHECK_FALSE(fs::exists(scratch.root / "n.ply"));
+  }
+}
+
+TEST_CASE("fields must fit the mesh", "[io]") {
+  const TriangleMesh mesh = grid({1, 1}, 2, 2, Diagonals::one_way);
+  const Eigen::VectorXd four = Eigen::VectorXd::Ones(4);
+  CHECK_THROWS_WITH(write_ply("m.ply", mesh, {{"h", Eigen::VectorXd::Ones(3)}}),
+                    "cannot write m.ply: field 'h' has 3 values for 4 vertices");
+  CHECK_THROWS_WITH(write_ply("m.ply", mesh, {{"mean h", four}}),
+                    "cannot write m.ply: field 'mean h' needs a name without white space");
+  CHECK_THROWS_WITH(write_vtp("m.vtp", mesh, {{"h", four}, {"h", four}}),
+                    "cannot write m.vtp: field 'h' has a name that is taken");
+  CHECK_THROWS_WITH(write_ply("m.ply", mesh, {{"x", four}}),
+                    "cannot write m.ply: field 'x' has a name that is taken");
+}
+
+namespace {
+
+/// The numbers of a DataArray with this attribute text: base64 of a byte count and the data.
+template <class Number>
+std::vector<Number> data_array(const std::string& xml, const std::string& attribute) {
+  const std::size_t tag = xml.find(attribute);
+  REQUIRE(tag != std::string::npos);
+  const std::size_t begin = xml.find('>', tag) + 1;
+  const std::string text = xml.substr(begin, xml.find('<', begin) - begin);
+  REQUIRE(text.size() % 4 == 0);
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int held = 0;
+  for (char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+    held += 6;
+    if (held >= 8) bytes += static_cast<char>(bits >> (held -= 8) & 255);
+  }
+  std::uint64_t size = 0;
+  REQUIRE(bytes.size() >= 8);
+  std::memcpy(&size, bytes.data(), 8);
+  REQUIRE(size == bytes.size() - 8);
+  std::vector<Number> numbers(size / sizeof(Number));
+  std::memcpy(numbers.data(), bytes.data() + 8, size);
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("VTP arrays decode to the mesh and its fields", "[io]") {
+  const Scratch scratch;
+  const int rows = GENERATE(2, 3, 4);  // different remainders of the byte counts by three
+  const TriangleMesh mesh = grid({1. / 3, 1}, 2, rows, Diagonals::one_way);
+  write_vtp(scratch.root / "m.vtp", mesh, {{"a<b&\"", mesh.vertices.col(0)}});
+  const std::string xml = bytes_of(scratch.root / "m.vtp");
+  const auto n = mesh.vertices.rows(), m = mesh.triangles.rows();
+  CHECK(xml.find("<Piece NumberOfPoints=\"" + std::to_string(n) + "\" NumberOfPolys=\"" + std::to_string(m) +
+                 "\">") != std::string::npos);
+  CHECK(xml.find("type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"") !=
+        std::string::npos);
+  CHECK(data_array<double>(xml, "Name=\"Points\"") ==
+        std::vector<double>(mesh.vertices.data(), mesh.vertices.data() + 3 * n));
+  CHECK(data_array<std::int64_t>(xml, "Name=\"connectivity\"") ==
+        std::vector<std::int64_t>(mesh.triangles.data(), mesh.triangles.data() + 3 * m));
+  const auto offsets = data_array<std::int64_t>(xml, "Name=\"offsets\"");
+  REQUIRE(offsets.size() == static_cast<std::size_t>(m));
+  for (int t = 0; t < m; ++t) CHECK(offsets[t] == 3 * (t + 1));
+  const Eigen::VectorXd column = mesh.vertices.col(0);
+  CHECK(data_array<double>(xml, "Name=\"a&lt;b&amp;&quot;\"") ==
+        std::vector<double>(column.data(), column.data() + n));
+}
+
+TEST_CASE("a ParaView collection lists times and files", "[io]") {
+  const Scratch scratch;
+  write_pvd(scratch.root / "run.pvd", {{0, "frames/0.vtp"}, {0.1, "frames/1.vtp"}});
+  CHECK(bytes_of(scratch.root / "run.pvd") ==
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "<Collection>\n"
+        "<DataSet timestep=\"0\" part=\"0\" file=\"frames/0.vtp\"/>\n"
+        "<DataSet timestep=\"0.1\" part=\"0\" file=\"frames/1.vtp\"/>\n"
+        "</Collection>\n</VTKFile>\n");
+}

@@ -1,0 +1,183 @@
+#include "core/plugin/registry.h"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+#include "core/experiment/yaml_file.h"
+#include "core/model/refiner.h"
+#include "core/plugin/describe.h"
+#include "core/plugin/make.h"
+
+using namespace drape;
+
+namespace {
+
+int alive = 0;
+
+// A second base moves Refiner away from the object's own address: a wrong cast would not go unseen.
+struct Ballast {
+  virtual ~Ballast() = default;
+  double weight = 0;
+};
+
+class Loop final : public Ballast, public Refiner {
+ public:
+  struct Parameters {
+    double corner_angle = 30;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("corner_angle", &Parameters::corner_angle).unit("deg").above(0).at_most(180)
+          .meaning("sharper corners stay | sharp").source("Loop 1987");
+    }
+  };
+  explicit Loop(const Parameters& p) : angle_(p.corner_angle) {
+    if (angle_ == 90) throw std::runtime_error("right angles do not work");
+    ++alive;
+  }
+  ~Loop() override { --alive; }
+  Refinement refine(const Level&) const override { return {{}, ProlongationMatrix(int(angle_), 1)}; }
+
+ private:
+  double angle_;
+};
+
+struct Linear final : Refiner {
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+  explicit Linear(const Parameters&) {}
+  Refinement refine(const Level&) const override { return {}; }
+};
+
+Registry filled() {
+  Registry registry;
+  registry.current_library = "/lib/a.so";
+  registry.add<Refiner, Loop>("loop", "Loop subdivision.");
+  registry.add<Refiner, Linear>("linear", "Midpoints.");
+  return registry;
+}
+
+ConfigNode node_of(const std::string& yaml) {
+  ConfigErrors errors;
+  const ConfigNode top = parse_yaml("x: " + yaml, "a.yaml", errors);
+  REQUIRE(errors.empty());
+  return *top.find("x");
+}
+
+/// The one error of making a refiner from the text.
+std::string fault(const std::string& yaml) {
+  ConfigErrors errors;
+  CHECK_FALSE(make_from<Refiner>(filled(), node_of(yaml), errors));
+  REQUIRE(errors.size() == 1);
+  return errors[0].text();
+}
+
+}  // namespace
+
+TEST_CASE("entries are found by kind and name, and listed by name") {
+  const Registry registry = filled();
+  REQUIRE(registry.find("refiner", "loop"));
+  CHECK(registry.find("refiner", "loop")->library == "/lib/a.so");
+  CHECK_FALSE(registry.find("energy", "loop"));
+  const auto refiners = registry.of_kind("refiner");
+  REQUIRE(refiners.size() == 2);
+  CHECK(refiners[0]->name == "linear");
+  CHECK(refiners[1]->name == "loop");
+  CHECK(registry.of_kind("energy").empty());
+}
+
+TEST_CASE("a name can be registered once") {
+  Registry registry = filled();
+  registry.current_library = "/lib/b.so";
+  CHECK_THROWS_WITH((registry.add<Refiner, Linear>("loop", "Not the same.")),
+                    "refiner \"loop\" of /lib/b.so is already registered by /lib/a.so;"
+                    " rename it or take one of them out of the search path");
+}
+
+TEST_CASE("a node makes the object it names, with its parameters") {
+  const Registry registry = filled();
+  ConfigErrors errors;
+  ConfigNode resolved;
+  {
+    const auto plain = make_from<Refiner>(registry, node_of("loop"), errors, &resolved);
+    REQUIRE(plain);
+    CHECK(alive == 1);
+    CHECK(plain->refine(Level()).weights.rows() == 30);
+    CHECK(resolved.one_line() == "{type: loop, corner_angle: 30}");
+    const ConfigNode node = node_of("{corner_angle: 45, type: loop}");
+    const auto set = make_from<Refiner>(registry, node, errors, &resolved);
+    REQUIRE(set);
+    CHECK(set->refine(Level()).weights.rows() == 45);
+    CHECK(resolved.one_line() == "{type: loop, corner_angle: 45}");
+  }
+  CHECK(errors.empty());
+  CHECK(alive == 0);
+}
+
+TEST_CASE("what a node gets wrong is told with its place") {
+  CHECK(fault("lopo") == "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
+  CHECK(fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
+  CHECK(fault("{corner_angle: 3}") ==
+        "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
+  CHECK(fault("[loop]") ==
+        "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
+  CHECK(fault("{type: loop, corner: 3}") ==
+        "a.yaml:1:17: unknown key \"corner\" in loop; known keys are type, corner_angle");
+  CHECK(fault("{type: loop, corner_angel: 3}") ==
+        "a.yaml:1:17: unknown key \"corner_angel\" in loop; did you mean \"corner_angle\"?");
+  CHECK(fault("{type: loop, corner_angle: 0}") ==
+        "a.yaml:1:31: \"corner_angle\" must be above 0 deg, not 0");
+  CHECK(fault("{type: loop, type: loop}") ==
+        "a.yaml:1:17: repeated key \"type\" in loop; it is first set at a.yaml:1:5");
+  CHECK(fault("{type: loop, corner_angle: 90}") == "a.yaml:1:4: loop: right angles do not work");
+  CHECK(alive == 0);
+
+  ConfigErrors errors;
+  CHECK_FALSE(make_from<Refiner>(Registry(), node_of("loop"), errors));
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0].text() == "a.yaml:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded");
+}
+
+TEST_CASE("an entry describes itself for the terminal and for the reference page") {
+  const Registry registry = filled();
+  CHECK(describe(*registry.find("refiner", "loop")) ==
+        "refiner loop: Loop subdivision.\n"
+        "from /lib/a.so\n"
+        "\n"
+        "  name          type    default  unit  range\n"
+        "  corner_angle  number  30       deg   > 0, <= 180\n"
+        "      sharper corners stay | sharp [Loop 1987]\n");
+  CHECK(describe(*registry.find("refiner", "linear")) ==
+        "refiner linear: Midpoints.\nfrom /lib/a.so\n\n  no parameters\n");
+  CHECK(describe_markdown(*registry.find("refiner", "loop")) ==
+        "### refiner `loop`\n\nLoop subdivision.\n\n"
+        "| name | type | default | unit | range | meaning | source |\n"
+        "|---|---|---|---|---|---|---|\n"
+        "| `corner_angle` | number | `30` | deg | > 0, <= 180 "
+        "| sharper corners stay \\| sharp | Loop 1987 |\n");
+}
+
+TEST_CASE("the JSON schema of a node allows the registered plugins and their parameters") {
+  struct Top {
+    ConfigNode refiner = ConfigNode::of("loop");
+    std::vector<ConfigNode> refiners;
+    static void declare(Declaration<Top>& d) {
+      d.add_node("refiner", &Top::refiner).plugin("refiner");
+      d.add_node("refiners", &Top::refiners).plugin("refiner");
+    }
+  };
+  const Registry registry = filled();
+  const auto schema = json_schema(schema_of<Top>(), &registry);
+  const auto& one = schema["properties"]["refiner"];
+  CHECK(one["default"] == "loop");
+  REQUIRE(one["anyOf"].size() == 3);
+  CHECK(one["anyOf"][0] == nlohmann::ordered_json::parse(R"({"enum": ["linear", "loop"]})"));
+  CHECK(one["anyOf"][2] == nlohmann::ordered_json::parse(R"({
+    "type": "object",
+    "properties": {
+      "type": {"type": "string", "enum": ["loop"], "description": "which refiner"},
+      "corner_angle": {"type": "number", "exclusiveMinimum": 0.0, "maximum": 180.0,
+                       "description": "sharper corners stay | sharp [deg]", "default": 30}},
+    "additionalProperties": false, "required": ["type"], "description": "Loop subdivision."})"));
+  CHECK(schema["properties"]["refiners"]["items"]["anyOf"] == one["anyOf"]);
+  CHECK(json_schema(schema_of<Top>())["properties"]["refiners"]["items"] == nlohmann::ordered_json::object());
+}

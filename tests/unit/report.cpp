@@ -1,0 +1,442 @@
+#include "core/report/report.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/file.h"
+#include "core/mesh/io.h"
+#include "core/mesh/topology.h"
+#include "core/report/chart_data.h"
+#include "core/report/colours.h"
+#include "core/report/html.h"
+#include "core/report/pictures.h"
+#include "core/report/render.h"
+#include "core/report/tables.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+TriangleMesh flat_sheet(int n) {
+  TriangleMesh mesh{Positions(n * n, 3), Triangles(2 * (n - 1) * (n - 1), 3)};
+  for (int i = 0; i < n * n; ++i) mesh.vertices.row(i) << (i % n) / (n - 1.0), (i / n) / (n - 1.0), 0;
+  for (int i = 0, t = 0; i < n * (n - 1); ++i) {
+    if (i % n == n - 1) continue;
+    mesh.triangles.row(t++) << i, i + 1, i + n + 1;
+    mesh.triangles.row(t++) << i, i + n + 1, i + n;
+  }
+  return mesh;
+}
+
+/// The 1→4 split at midpoints, numbered as Refinement is.
+TriangleMesh split(const TriangleMesh& coarse) {
+  const int n = static_cast<int>(coarse.vertices.rows());
+  const Topology topology = Topology::of(coarse.triangles, n);
+  TriangleMesh fine{Positions(n + topology.edges.rows(), 3), Triangles(4 * coarse.triangles.rows(), 3)};
+  fine.vertices.topRows(n) = coarse.vertices;
+  for (int e = 0; e < topology.edges.rows(); ++e) {
+    fine.vertices.row(n + e) =
+        (coarse.vertices.row(topology.edges(e, 0)) + coarse.vertices.row(topology.edges(e, 1))) / 2;
+  }
+  for (int t = 0; t < coarse.triangles.rows(); ++t) {
+    const auto v = coarse.triangles.row(t);
+    const Eigen::RowVector3i m = topology.triangle_edges.row(t).array() + n;
+    fine.triangles.row(4 * t) << v[0], m[2], m[1];
+    fine.triangles.row(4 * t + 1) << v[1], m[0], m[2];
+    fine.triangles.row(4 * t + 2) << v[2], m[1], m[0];
+    fine.triangles.row(4 * t + 3) = m;
+  }
+  return fine;
+}
+
+Positions rippled(const Positions& rest, double waves) {
+  Positions x = rest;
+  x.col(2) = 0.08 * (waves * rest.col(0).array()).sin();
+  return x;
+}
+
+Eigen::VectorXd ripple_curvature(const Positions& rest, double waves) {
+  return -0.08 * waves * waves * (waves * rest.col(0).array()).sin();
+}
+
+/// A run of two methods on two levels, in a folder of its own that goes with it.
+struct SampleRun {
+  fs::path folder = fs::temp_directory_path() / "drape_report_test";
+  Json results;
+
+  SampleRun() {
+    fs::remove_all(folder);
+    for (const char* name : {"levels", "fields", "rest"}) fs::create_directories(folder / name);
+    const TriangleMesh rest[2] = {flat_sheet(13), split(flat_sheet(13))};
+    for (int l = 0; l < 2; ++l) write_ply(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
+    results = {{"experiment", "sample"},
+               {"description", "A rippled sheet."},
+               {"complete", true},
+               {"machine", {{"cpu", "test processor"}, {"cores", 2}, {"threads", 1}}},
+               {"version", "drape 0.0.0"},
+               {"tolerance", {{"force_residual", 1e-3}}},
+               {"table1_scene", "Drape over Sphere in Figure 6"}};
+    std::string steps =
+        "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_"
+        "size\n";
+    for (const std::string method : {"newton", "pcs"}) {
+      const double waves[2] = {20, method == "pcs" ? 20.0 : 11.0};
+      Json& entry = results["methods"][method];
+      entry = {{"status", "converged"}, {"seconds", 12.345}, {"peak_memory_bytes", 123456789}};
+      for (int l = 0; l < 2; ++l) {
+        const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
+        write_ply(folder / mesh, {rippled(rest[l].vertices, waves[l]), rest[l].triangles});
+        entry["levels"].push_back({{"level", l},
+                                   {"vertices", rest[l].vertices.rows()},
+                                   {"triangles", rest[l].triangles.rows()},
+                                   {"status", "converged"},
+                                   {"steps", 17},
+                                   {"newton_iterations", 1234},
+                                   {"seconds", 6.1},
+                                   {"seconds_by_phase", {{"factorise", 3.5}, {"assemble", 1.5}}},
+                                   {"energy", -0.7654 - l},
+                                   {"energy_on_finest", method == "pcs" ? -1.7654 : -1.5432},
+                                   {"force_residual", 8.76e-4},
+                                   {"largest_stretch", 1.0432},
+                                   {"intersections", nullptr},
+                                   {"energy_parts", {{"membrane", 0.4321}, {"gravity", -2.345}}},
+                                   {"mesh", mesh}});
+        for (int k = 0; k < 3; ++k) {
+          steps += method + "," + std::to_string(l) + "," + std::to_string(k) + ",0," +
+                   std::to_string(k + 1) + "," + std::to_string(1.0 / (1 << k)) + ",0.1," +
+                   std::to_string(0.5 / (k + 1)) + ",1,,0.5\n";
+        }
+      }
+      const std::string fields = "fields/" + method + "_l0_l1.ply";
+      const Eigen::VectorXd coarse = ripple_curvature(rest[1].vertices, waves[0]);
+      const Eigen::VectorXd fine = ripple_curvature(rest[1].vertices, waves[1]);
+      write_ply(folder / fields, {rippled(rest[1].vertices, waves[1]), rest[1].triangles},
+                {{"H_difference", (coarse - fine) / 2},
+                 {"principal_curvature", fine},
+                 {"principal_curvature_other", coarse}});
+      const double factor = method == "pcs" ? 1 : 10;
+      entry["consistency"].push_back({{"coarse", 0},
+                                      {"fine", 1},
+                                      {"d_H_fit", 13.57 * factor},
+                                      {"d_H_ddg", 24.68 * factor},
+                                      {"d_K_fit", 31415.9 * factor},
+                                      {"d_K_ddg", 27182.8 * factor},
+                                      {"distance_rms", 0.0123},
+                                      {"fields", fields}});
+    }
+    write_file(folder / "steps.csv", steps);
+    write_file(folder / "config.yaml", "cloth: {size: 1 m}\n");
+  }
+  ~SampleRun() { fs::remove_all(folder); }
+
+  /// The page without Chart.js and the script, after writing the report.
+  std::string page() const {
+    write_file(folder / "results.json", results.dump());
+    write_report(folder);
+    const std::string text = read_file(folder / "report.html");
+    const std::size_t scripts = text.find("<script>");
+    REQUIRE(scripts != std::string::npos);
+    return text.substr(0, scripts);
+  }
+};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// The page without its pictures' bytes, in which any short word may turn up.
+std::string words_of(std::string page) {
+  for (std::size_t at = page.find("base64,"); at != std::string::npos; at = page.find("base64,", at)) {
+    at += 7;
+    page.erase(at, page.find('"', at) - at);
+  }
+  return page;
+}
+
+int occurrences(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+/// Standard deviation of the brightness in the picture's middle.
+double contrast(const Image& image) {
+  double sum = 0, squares = 0;
+  int count = 0;
+  for (int y = image.height / 3; y < 2 * image.height / 3; ++y) {
+    for (int x = image.width / 3; x < 2 * image.width / 3; ++x) {
+      const double value = image.pixels[3 * (std::size_t(y) * image.width + x) + 1];
+      sum += value, squares += value * value, ++count;
+    }
+  }
+  return std::sqrt(squares / count - sum / count * sum / count);
+}
+
+}  // namespace
+
+TEST_CASE("a report holds the figures of its run") {
+  const SampleRun run;
+  const std::string page = run.page();
+
+  CHECK(contains(page, "2 of 2 methods converged"));
+  CHECK(contains(page, "<b>pcs</b> ends with the lowest energy (-1.77 J, newton 0.222 J above)"));
+  CHECK(contains(page, "<b>pcs</b> changes its mean curvature least"));
+  CHECK(contains(page, "<td>12.3</td>"));                               // seconds
+  CHECK(contains(page, "<td>2\u202f468</td>"));                         // iterations, both levels
+  CHECK(contains(page, "<td>8.76e-4</td>"));                            // force residual
+  CHECK(contains(page, "<td>123 MB</td>"));                             // peak memory
+  CHECK(contains(page, "<td><strong>13.6</strong></td><td>136</td>"));  // pcs leads, the lower is bold
+  CHECK(contains(page, "<td><strong>2.72e4</strong></td><td>2.72e5</td>"));
+  CHECK(contains(page, "<td>0.432</td>"));                                   // an energy part
+  CHECK(contains(page, "<td><strong>105</strong></td><td>1400</td>"));       // Table 1, 0 → 1, d_H_fit
+  CHECK(contains(page, "<td><strong>2.54e4</strong></td><td>9.14e5</td>"));  // … d_K_fit, the last column
+  CHECK(contains(page, "cloth: {size: 1 m}"));
+  CHECK(contains(page, "169 vertices"));
+  const std::string words = words_of(page);
+  CHECK(words.size() < page.size() / 2);
+  for (const char* bad : {"NaN", ">nan", ">inf", "-inf", "{{", "}}\n", "http:", "https:"}) {
+    INFO(bad);
+    CHECK_FALSE(contains(words, bad));
+  }
+  CHECK(contains(read_file(run.folder / "report.html"), "Chart.js v3"));
+  CHECK(fs::file_size(run.folder / "report.html") < 25'000'000);
+}
+
+TEST_CASE("the pictures of a report are drawn, stored and inlined") {
+  const SampleRun run;
+  const std::string page = run.page();
+  const PictureSet set = draw_pictures(read_run(run.folder));
+  CHECK(set.notes.empty());
+  CHECK(set.maps_on_rest);
+  CHECK(set.H_difference_scale > 10);
+  REQUIRE(set.pictures.size() == 2 * (2 + 1 + 2));
+  for (const auto& [name, picture] : set.pictures) {
+    INFO(name);
+    const std::string file = read_file(run.folder / "pictures" / name);
+    CHECK(file.substr(1, 3) == "PNG");
+    CHECK(contains(page, html::base64(file)));
+    // PCS keeps its ripples, so its difference is one colour all over.
+    if (name == "pcs_l0_l1_H_difference.png") {
+      CHECK(contrast(picture.image) < 1);
+    } else {
+      CHECK(contrast(picture.image) > 5);
+    }
+  }
+  CHECK(occurrences(page, "<img width") == 10);
+  CHECK(occurrences(page, "alt=\"\"") == 0);
+  const auto pixels = [&set](const char* name) { return set.find(name)->image.pixels; };
+  CHECK(pixels("pcs_l1.png") == pixels("pcs_l1.png"));
+  CHECK(pixels("pcs_l1.png") != pixels("newton_l1.png"));
+  CHECK(pixels("pcs_l1.png") != pixels("pcs_l1_folds.png"));
+}
+
+TEST_CASE("a report of a partial run has dashes and sentences instead") {
+  SampleRun run;
+  Json& newton = run.results["methods"]["newton"];
+
+  SECTION("a method that has just started") {
+    run.results["complete"] = false;
+    newton = {{"status", "running"}};
+    const std::string page = run.page();
+    CHECK(contains(page, "The run is not complete"));
+    CHECK(contains(page, "1 of 2 methods converged"));
+    CHECK(contains(page, "no picture"));
+    CHECK(contains(page, "<td>–</td>"));
+  }
+  SECTION("null figures and missing keys") {
+    for (auto& [key, value] : newton["levels"][1].items()) {
+      if (key != "level") value = nullptr;
+    }
+    newton["consistency"][0]["d_H_fit"] = nullptr;
+    newton["levels"][0].erase("energy_parts");
+    newton["seconds"] = std::nan("");
+    const std::string page = run.page();
+    CHECK(contains(page, "<td>13.6</td><td>–</td>"));  // nothing to compare with: not bold
+    CHECK_FALSE(contains(words_of(page), "NaN"));
+  }
+  SECTION("no fields, steps, configuration and rest shapes") {
+    for (const char* name : {"fields", "rest", "levels", "steps.csv", "config.yaml"})
+      fs::remove_all(run.folder / name);
+    const std::string page = run.page();
+    CHECK(contains(page, "No curvature differences were stored"));
+    CHECK(contains(page, "No principal curvatures were stored"));
+    CHECK(contains(page, "config.yaml was not stored."));
+    CHECK_FALSE(contains(page, "<img width"));
+  }
+  SECTION("nothing but a name") {
+    run.results = {{"experiment", "early"}};
+    CHECK(contains(run.page(), "holds no method's results yet"));
+  }
+  SECTION("a mesh cut short and one with holes in its numbers") {
+    fs::resize_file(run.folder / "levels/newton_l1.ply",
+                    fs::file_size(run.folder / "levels/newton_l1.ply") / 2);
+    TriangleMesh mesh = read_mesh(run.folder / "levels/pcs_l1.ply");
+    mesh.vertices(5, 1) = std::nan("");
+    write_ply(run.folder / "levels/pcs_l1.ply", mesh);
+    const std::string page = run.page();
+    CHECK(contains(page, "newton_l1.ply"));
+    CHECK(contains(page, "Not drawn"));
+    CHECK(contrast(draw_pictures(read_run(run.folder)).find("pcs_l1.png")->image) > 5);
+  }
+  SECTION("a last line of steps cut off") {
+    write_file(run.folder / "steps.csv", read_file(run.folder / "steps.csv") + "pcs,1,9");
+    run.page();
+    const RunData data = read_run(run.folder);
+    REQUIRE(data.iterations.size() == 4);
+    CHECK(data.iterations[1].method == "pcs");
+    CHECK(data.iterations[1].rows.size() == 3);
+  }
+}
+
+TEST_CASE("names in a report cannot break the page or leave its folder") {
+  SampleRun run;
+  const std::string evil = "../<b>\"x'</script>&";
+  run.results["experiment"] = evil;
+  run.results["description"] = evil;
+  run.results["methods"][evil] = run.results["methods"]["pcs"];
+  run.results["methods"][evil]["status"] = evil;
+  run.results["methods"][evil]["levels"][0]["energy_parts"][evil] = 1;
+  write_file(run.folder / "config.yaml", "# " + evil);
+  const std::string page = run.page();
+  CHECK_FALSE(contains(page, evil));
+  CHECK_FALSE(contains(page, "<b>\""));
+  CHECK(contains(page, "<h1>../&lt;b&gt;&quot;x&#39;&lt;/script&gt;&amp;</h1>"));
+  CHECK(fs::exists(run.folder / "pictures" / "____b__x___script___l0.png"));
+  CHECK_FALSE(contains(chart_data(read_run(run.folder)), "<"));
+}
+
+TEST_CASE("a report needs results.json") {
+  const SampleRun run;
+  CHECK_THROWS_WITH(write_report(run.folder), Catch::Contains("no results.json"));
+  write_file(run.folder / "results.json", "{\"experiment\": ");
+  CHECK_THROWS_WITH(write_report(run.folder), Catch::Contains("not a JSON object"));
+  CHECK_FALSE(fs::exists(run.folder / "report.html"));
+}
+
+TEST_CASE("chart data compares energies of one level only, and never the proxy with the plain energy") {
+  SampleRun run;
+  run.results["methods"]["pcs"]["levels"][0]["level"] = 0;
+  write_file(run.folder / "results.json", run.results.dump());
+  write_file(run.folder / "steps.csv",
+             "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy\n"
+             "pcs,0,0,0,1,5,1,1,1,-9\npcs,0,1,0,2,4,1,0.1,1,-10\n"
+             "pcs,1,0,0,3,2,1,1,1,\npcs,1,1,0,4,1,1,0.1,1,\n"
+             "newton,1,0,0,3,3,1,1,1,\nnewton,1,1,0,4,1.5,1,0.1,1,\nnewton,0,0,0,1,7,1,1,1,\n");
+  const Json data = Json::parse(chart_data(read_run(run.folder)));
+  REQUIRE(data["series"].size() == 4);
+  CHECK(data["series"][0]["gap"] == Json({1, 0}));
+  CHECK(data["series"][1]["gap"] == Json({1, 0}));
+  CHECK(data["series"][2]["gap"] == Json::array({0}));
+  CHECK(data["series"][3]["gap"] == Json({2, 0.5}));
+  CHECK(data["series"][3]["residual"] == Json({1, 0.1}));
+  CHECK(data["phases"]["values"][0] == Json({3.5, 3.5, 3.5, 3.5}));
+  CHECK(data["tolerance"] == 1e-3);
+}
+
+TEST_CASE("Table 1 says what the supplement says: PCS lower in every measure") {
+  int rows = 0;
+  for (const Table1Block& block : table1()) {
+    REQUIRE(block.rows.size() % 2 == 0);
+    for (std::size_t k = 0; k < block.rows.size(); k += 2) {
+      const Table1Row &pcs = block.rows[k], &other = block.rows[k + 1];
+      INFO(block.scene << " " << pcs.coarse << " to " << pcs.fine);
+      CHECK(pcs.method == "PCS");
+      CHECK(std::pair(pcs.coarse, pcs.fine) == std::pair(other.coarse, other.fine));
+      CHECK(pcs.d_H_fit < other.d_H_fit);
+      CHECK(pcs.d_H_ddg < other.d_H_ddg);
+      CHECK(pcs.d_K_fit < other.d_K_fit);
+      CHECK(pcs.d_K_ddg < other.d_K_ddg);
+      rows += 2;
+    }
+  }
+  CHECK(rows == 20);
+  REQUIRE(table1_block("Bunny in Figure 12"));
+  CHECK(table1_block("Bunny in Figure 12")->rows[1].d_K_ddg == 1.10e8);
+  CHECK_FALSE(table1_block(""));
+}
+
+TEST_CASE("figures in a report have three digits") {
+  const std::pair<double, const char*> cases[] = {
+      {0, "0"},         {403.4, "403"},     {9999, "1.00e4"},   {1234, "1230"},    {0.02134, "0.0213"},
+      {0.9996, "1.00"}, {7.21e5, "7.21e5"}, {-1.2345, "-1.23"}, {4e-4, "4.00e-4"}, {99.96, "100"}};
+  for (const auto& [value, text] : cases) CHECK(html::figure(value) == text);
+  CHECK(html::figure({}) == "–");
+  CHECK(html::count(1234567) == "1\u202f234\u202f567");
+  CHECK(html::count(123) == "123");
+  CHECK(html::bytes(2.5e9) == "2.50 GB");
+  CHECK(html::base64("light work.") == "bGlnaHQgd29yay4=");
+  CHECK(html::base64("light wor") == "bGlnaHQgd29y");
+  CHECK(html::base64("light wo") == "bGlnaHQgd28=");
+  CHECK_THROWS_WITH(html::fill("a {{b}} c", {}), Catch::Contains("{{b}}"));
+}
+
+TEST_CASE("the camera sees all of every state and wastes no picture") {
+  const TriangleMesh sheet = flat_sheet(9);
+  Positions other = rippled(sheet.vertices, 9).array() * 1.7 + 0.4;
+  other(3, 0) = std::numeric_limits<double>::infinity();
+  const Camera camera = Camera::around({&sheet.vertices, &other}, {0.55, -1, 0.68}, 9.0 / 7);
+  double reach = 0;
+  for (const Positions* x : {&sheet.vertices, static_cast<const Positions*>(&other)}) {
+    for (int i = 0; i < x->rows(); ++i) {
+      if (!x->row(i).allFinite()) continue;
+      const Eigen::Vector4d p = camera.projection * camera.view * x->row(i).transpose().homogeneous();
+      CHECK(p[3] > 0);
+      CHECK((p / p[3]).head<3>().cwiseAbs().maxCoeff() < 1);
+      reach = std::max(reach, (p / p[3]).head<2>().cwiseAbs().maxCoeff());
+    }
+  }
+  CHECK(reach > 0.9);
+  const Camera map = Camera::facing(sheet, 1);
+  const Eigen::Vector4d corner = map.projection * map.view * Eigen::Vector4d(1, 1, 0, 1);
+  CHECK(corner[0] == Approx(1 / 1.06));  // x to the right and y up, the margin around
+  CHECK(corner[1] == Approx(1 / 1.06));
+}
+
+TEST_CASE("a drawing shows its colours and both sides of the cloth") {
+  TriangleMesh sheet = flat_sheet(5);
+  const Renderer renderer(60, 60);
+  const auto middle = [&](const Drawing& drawing, const Camera& camera) {
+    const Image image = renderer.draw(drawing, camera);
+    const unsigned char* p = &image.pixels[3 * (30 * 60 + 30)];
+    return Eigen::Vector3i(p[0], p[1], p[2]);
+  };
+  Eigen::VectorXd values = Eigen::VectorXd::Constant(25, 2);
+  const Colours red = diverging_colours(values, 2), blue = diverging_colours(-values, 2);
+  const Camera flat = Camera::facing(sheet, 1);
+  CHECK(middle({sheet, nullptr, &red, false, false}, flat) == Eigen::Vector3i(103, 0, 31));
+  CHECK(middle({sheet, nullptr, &blue, false, false}, flat) == Eigen::Vector3i(5, 48, 97));
+  CHECK(middle({sheet, nullptr, &red, false, false}, flat) == Eigen::Vector3i(103, 0, 31));
+
+  const Camera above = Camera::around({&sheet.vertices}, {0.2, -0.3, 1}, 1);
+  const Eigen::Vector3i front = middle({sheet}, above);
+  CHECK(front[0] > front[2] + 10);  // warm
+  sheet.triangles.col(1).swap(sheet.triangles.col(2));
+  const Eigen::Vector3i back = middle({sheet}, above);
+  CHECK(back[2] > back[0] + 5);  // cool
+  CHECK(std::min(front.minCoeff(), back.minCoeff()) > 90);
+  CHECK(middle({sheet, nullptr, nullptr, true}, above).sum() <= back.sum());
+}
+
+TEST_CASE("colour maps are symmetric around their middle and clamp at their ends") {
+  Eigen::VectorXd v(5);
+  v << 0, 1, 5, -1, std::nan("");
+  const Colours map = diverging_colours(v, 1);
+  CHECK(map.row(0).minCoeff() > 0.95f);
+  CHECK(map.row(1) == map.row(2));
+  CHECK(map.row(1)[0] > map.row(1)[2]);
+  CHECK(map.row(3)[2] > map.row(3)[0]);
+  CHECK(map.allFinite());
+  const Colours folds = fold_colours(v, 2);
+  CHECK(folds.row(0) == folds.row(1));
+  CHECK(folds.row(2) != folds.row(0));
+  const Eigen::VectorXd ramp = Eigen::VectorXd::LinSpaced(101, -100, 0);
+  CHECK(magnitude_quantile({&ramp, &v}, 1) == 100);
+  CHECK(magnitude_quantile({&ramp}, 0.5) == 50);
+  CHECK(magnitude_quantile({}, 0.5) == 0);
+}

@@ -1,0 +1,106 @@
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/numerics/symmetric_eigen.h"
+
+using namespace drape;
+
+namespace {
+
+/// V diag(values) Vᵀ with random orthonormal V.
+template <int N>
+Eigen::Matrix<double, N, N> with_eigenvalues(const Eigen::Matrix<double, N, 1>& values, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Eigen::Matrix<double, N, N> a;
+  for (int i = 0; i < N * N; ++i) a.data()[i] = normal(random);
+  const Eigen::Matrix<double, N, N> v = Eigen::HouseholderQR<Eigen::Matrix<double, N, N>>(a).householderQ();
+  const Eigen::Matrix<double, N, N> m = v * values.asDiagonal() * v.transpose();
+  return (m + m.transpose()) / 2;
+}
+
+/// Random, repeated, tiny beside large, and vanishing eigenvalues.
+template <int N>
+std::vector<Eigen::Matrix<double, N, N>> matrices() {
+  std::vector<Eigen::Matrix<double, N, N>> all;
+  using Values = Eigen::Matrix<double, N, 1>;
+  for (unsigned seed = 1; seed <= 8; ++seed) all.push_back(with_eigenvalues<N>(Values::Random(), seed));
+  Values v = Values::LinSpaced(-1, 1);
+  all.push_back(with_eigenvalues<N>(v.array().sign(), 10));
+  all.push_back(with_eigenvalues<N>(v.array().pow(15), 11));
+  v.setZero();
+  all.push_back(with_eigenvalues<N>(v, 12));
+  v[0] = -3;
+  all.push_back(with_eigenvalues<N>(v, 13));
+  all.push_back(1e-20 * all[0]);
+  all.push_back(1e20 * all[0]);
+  all.push_back(Eigen::Matrix<double, N, N>(Values::Random().asDiagonal()));
+  return all;
+}
+
+template <int N>
+void check_map() {
+  const auto all = matrices<N>();
+  const int count = static_cast<int>(all.size());
+  for (int m = 0; m < count; ++m) {
+    INFO("matrix " << m << " of size " << N);
+    SymmetricMatrix<N, double> one;
+    SymmetricMatrix<N, Pack<4>> four;  // this one and those after it
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i <= j; ++i) {
+        one(i, j) = all[m](i, j);
+        for (int lane = 0; lane < 4; ++lane) four(i, j).v[lane] = all[(m + lane) % count](i, j);
+      }
+    map_eigenvalues(one, [](double e) { return std::max(e, 0.0); });
+    map_eigenvalues(four, [](Pack<4> e) { return max(e, Pack<4>(0.0)); });
+    for (int lane = -1; lane < 4; ++lane) {
+      const auto& original = all[(m + std::max(lane, 0)) % count];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(original);
+      const Eigen::Matrix<double, N, N> expected = eigen.eigenvectors() *
+                                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
+                                                   eigen.eigenvectors().transpose();
+      Eigen::Matrix<double, N, N> found;
+      for (int j = 0; j < N; ++j)
+        for (int i = 0; i < N; ++i) found(i, j) = lane < 0 ? one(i, j) : four(i, j)[lane];
+      CHECK((found - expected).norm() <= 1e-12 * original.norm());
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("map_eigenvalues gives V f(Λ) Vᵀ, one matrix or one a lane") {
+  check_map<2>();
+  check_map<3>();
+  check_map<6>();
+  check_map<9>();
+  check_map<12>();
+}
+
+TEST_CASE("map_eigenvalues ends, whatever it is given") {
+  SymmetricMatrix<3, double> a = {{1, NAN, 2, 0, 0, 1}};
+  map_eigenvalues(a, [](double e) { return e; });
+  SUCCEED();
+}
+
+TEST_CASE("The certificate of positive semidefiniteness holds for every lane") {
+  const auto certified = [](const Eigen::Matrix<double, 6, 6>& m, double other_lane) {
+    SymmetricMatrix<6, Pack<2>> a;
+    for (int j = 0; j < 6; ++j)
+      for (int i = 0; i <= j; ++i) {
+        a(i, j).v[0] = i == j ? other_lane : 0;
+        a(i, j).v[1] = m(i, j);
+      }
+    return positive_semidefinite(a);
+  };
+  Eigen::Matrix<double, 6, 1> values;
+  values << 1, 2, 3, 0, 0, 0.5;
+  CHECK(certified(with_eigenvalues<6>(values, 1), 1));
+  CHECK_FALSE(certified(with_eigenvalues<6>(values, 1), -1));
+  for (const double negative : {-1e-10, -1e-6, -1.0}) {
+    values[3] = negative;
+    CHECK_FALSE(certified(with_eigenvalues<6>(values, 1), 1));
+  }
+  CHECK_FALSE(certified(Eigen::Matrix<double, 6, 6>::Constant(NAN), 1));
+}

@@ -1,0 +1,109 @@
+#include "core/mesh/topology.h"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <set>
+#include <utility>
+
+#include "core/mesh/generate.h"
+
+using namespace drape;
+
+namespace {
+
+Triangles two_triangles() {
+  Triangles t(2, 3);
+  t << 0, 1, 2, 2, 1, 3;
+  return t;
+}
+
+std::vector<int> row(const AdjacencyList& list, int i) { return {list.begin(i), list.end(i)}; }
+
+}  // namespace
+
+TEST_CASE("the topology of two triangles", "[topology]") {
+  const Topology topology = Topology::of(two_triangles(), 5);
+
+  Eigen::MatrixXi edges(5, 2), triangle_edges(2, 3), edge_triangles(5, 2);
+  edges << 1, 2, 0, 2, 0, 1, 1, 3, 2, 3;
+  triangle_edges << 0, 1, 2, 3, 4, 0;
+  edge_triangles << 0, 1, 0, -1, 0, -1, 1, -1, 1, -1;
+  CHECK(topology.edges == edges);
+  CHECK(topology.triangle_edges == triangle_edges);
+  CHECK(topology.edge_triangles == edge_triangles);
+  CHECK(topology.on_border == std::vector<char>{1, 1, 1, 1, 0});
+  CHECK(row(topology.vertex_vertices, 1) == std::vector<int>{0, 2, 3});
+  CHECK(row(topology.vertex_vertices, 3) == std::vector<int>{1, 2});
+  CHECK(row(topology.vertex_triangles, 2) == std::vector<int>{0, 1});
+  CHECK(row(topology.vertex_triangles, 4).empty());
+}
+
+TEST_CASE("hinges keep the mesh's orientation", "[topology]") {
+  const Triangles two = two_triangles();
+  const auto hinges = Topology::of(two, 4).hinges(two);
+  REQUIRE(hinges.rows() == 1);
+  CHECK(hinges.row(0) == Eigen::RowVector4i(1, 2, 0, 3));
+
+  const TriangleMesh mesh = grid({1, 1}, 6, 5, Diagonals::criss_cross);
+  const Topology topology = Topology::of(mesh.triangles, 30);
+  const auto many = topology.hinges(mesh.triangles);
+  REQUIRE(many.rows() == topology.edges.rows() - 2 * (5 + 4));
+  std::set<std::vector<int>> rotations;
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k)
+      rotations.insert(
+          {mesh.triangles(t, k), mesh.triangles(t, (k + 1) % 3), mesh.triangles(t, (k + 2) % 3)});
+  for (int h = 0; h < many.rows(); ++h) {
+    CHECK(rotations.count({many(h, 0), many(h, 1), many(h, 2)}) == 1);
+    CHECK(rotations.count({many(h, 1), many(h, 0), many(h, 3)}) == 1);
+  }
+}
+
+TEST_CASE("topology of a grid is consistent", "[topology]") {
+  const auto diagonals = GENERATE(Diagonals::one_way, Diagonals::criss_cross);
+  const TriangleMesh mesh = grid({1, 2}, 7, 9, diagonals);
+  const Topology topology = Topology::of(mesh.triangles, 63);
+  CHECK(63 - topology.edges.rows() + mesh.triangles.rows() == 1);  // Euler characteristic of a disc
+
+  int next = 0;  // edges are numbered in order of first appearance
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int e = topology.triangle_edges(t, k);
+      REQUIRE(e <= next);
+      if (e == next) ++next;
+      const std::set<int> ends{topology.edges(e, 0), topology.edges(e, 1)};
+      CHECK(ends == std::set<int>{mesh.triangles(t, (k + 1) % 3), mesh.triangles(t, (k + 2) % 3)});
+      CHECK((topology.edge_triangles(e, 0) == t || topology.edge_triangles(e, 1) == t));
+    }
+  CHECK(next == topology.edges.rows());
+  for (int v = 0; v < 63; ++v) {
+    const bool border = v % 7 == 0 || v % 7 == 6 || v / 7 == 0 || v / 7 == 8;
+    CHECK(static_cast<bool>(topology.on_border[v]) == border);
+    const auto neighbours = row(topology.vertex_vertices, v), around = row(topology.vertex_triangles, v);
+    CHECK(std::is_sorted(neighbours.begin(), neighbours.end()));
+    CHECK(std::is_sorted(around.begin(), around.end()));
+    CHECK(neighbours.size() == around.size() + border);
+  }
+}
+
+TEST_CASE("topology refuses what it cannot represent", "[topology]") {
+  Triangles t(3, 3);
+  t << 0, 1, 2, 1, 0, 3, 0, 1, 4;
+  CHECK_THROWS_WITH(Topology::of(t, 5), "topology: edge (0, 1) has more than two triangles");
+  CHECK_THROWS_WITH(Topology::of(t, 4), "topology: triangle 2 has a vertex outside 0 … 3");
+  t.row(1) << 1, 1, 3;
+  CHECK_THROWS_WITH(Topology::of(t, 5), "topology: triangle 1 repeats a vertex");
+}
+
+TEST_CASE("a fan of a hundred thousand triangles takes no quadratic time", "[topology]") {
+  const int count = 100000;
+  Triangles fan(count, 3);
+  for (int t = 0; t < count; ++t) fan.row(t) << 0, 1 + t, 1 + (t + 1) % count;
+  const auto start = std::chrono::steady_clock::now();
+  const Topology topology = Topology::of(fan, count + 1);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  CHECK(topology.vertex_vertices.size(0) == count);
+  CHECK_FALSE(topology.on_border[0]);
+  CHECK(seconds < 2);  // linear: hundredths of a second; quadratic: minutes
+}

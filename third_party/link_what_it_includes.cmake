@@ -1,0 +1,21 @@
+# Links a target with those of the optional libraries that files in its folders include, so that no
+# plugin needs a line of CMake for them.
+#
+#   drape_link_what_it_includes(<target> <.cpp and .h files>...)
+function(drape_link_what_it_includes target)
+  foreach(file IN LISTS ARGN)
+    file(STRINGS ${file} includes REGEX "^#include <(CGAL|fcl|ccd)/")
+    if(includes MATCHES "<CGAL/")
+      target_link_libraries(${target} PRIVATE drape_cgal)
+      # Exact predicates rest on directed rounding: no folding of constants, no fused multiply-add.
+      set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON
+        COMPILE_OPTIONS "-frounding-math;-ftrapping-math;-ffp-contract=off")
+    endif()
+    if(includes MATCHES "<fcl/")
+      target_link_libraries(${target} PRIVATE fcl)
+    endif()
+    if(includes MATCHES "<ccd/")
+      target_link_libraries(${target} PRIVATE ccd)
+    endif()
+  endforeach()
+endfunction()
