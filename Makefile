@@ -22,20 +22,22 @@ setup:
 	@third_party/setup
 
 configure: setup
-	@cmake --preset $(PRESET) --log-level=WARNING
+	@cmake --preset $(PRESET) --log-level=WARNING >/dev/null
 
 build: configure
 	@cmake --build $(BUILD) -j $(JOBS)
 
 demo: build
-	$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/pinned_square
+	$(BUILD)/bin/drape run configs/pinned_square.yaml --blas-threads 2 --out results/pinned_square --overwrite
 	@echo "Open results/pinned_square/report.html in a browser."
 
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
 bench: build
-	$(BUILD)/bin/drape_bench
+	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
+	-$(BUILD)/bin/drape run configs/pinned_square.yaml --blas-threads 2 --out results/bench_pinned_square --overwrite
+	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square
 
 format: setup
 	@clang-format --dry-run -Werror $(SOURCES)
@@ -43,10 +45,9 @@ format: setup
 fix-format: setup
 	@clang-format -i $(SOURCES)
 
-# Without OpenMP, in which clang captures no structured bindings.
 lint: setup
-	@cmake --preset lint --log-level=ERROR
-	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-fno-openmp '$(LINT)'
+	@cmake --preset lint --log-level=ERROR >/dev/null
+	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
 
 clean:
 	rm -rf build build-debug build-asan build-lint

@@ -11,8 +11,8 @@
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 #include "plugins/energy/stvk/stvk_kernel.h"
 
-// Elements of a square of 313² vertices, 195K triangles and 293K hinges, wrinkled and noisy enough that most of
-// their Hessians are indefinite. Arguments: threads. "per_element" is wall time over elements.
+// Elements of a square of 313² vertices, 195K triangles and 293K hinges, wrinkled and noisy enough that most
+// of their Hessians are indefinite. Arguments: threads. "per_element" is wall time over elements.
 
 using namespace drape;
 
@@ -22,7 +22,8 @@ struct Cloth {
   Level level;
   Positions x;
 
-  explicit Cloth(int n) : level(Level::of(0, grid({1, 1}, n, n, Diagonals::one_way))), x(level.rest.vertices) {
+  explicit Cloth(int n)
+      : level(Level::of(0, grid({1, 1}, n, n, Diagonals::one_way))), x(level.rest.vertices) {
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0, 0.15 / (n - 1));
     for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += noise(random);
@@ -40,12 +41,14 @@ const BoundEnergy& energy() {
   static const ElementEnergy<Kernel> made = [] {
     const Positions& rest = cloth().level.rest.vertices;
     const bool triangles = Kernel::vertices == 3;
-    const Stencils elements = triangles ? Stencils(cloth().level.rest.triangles)
-                                        : Stencils(cloth().level.topology.hinges(cloth().level.rest.triangles));
+    const Stencils elements = triangles
+                                  ? Stencils(cloth().level.rest.triangles)
+                                  : Stencils(cloth().level.topology.hinges(cloth().level.rest.triangles));
     std::vector<typename Kernel::Rest> numbers;
     for (Eigen::Index e = 0; e < elements.rows(); ++e) {
       Eigen::Vector3d d[3];
-      for (int k = 1; k < Kernel::vertices; ++k) d[k - 1] = rest.row(elements(e, k)) - rest.row(elements(e, 0));
+      for (int k = 1; k < Kernel::vertices; ++k)
+        d[k - 1] = rest.row(elements(e, k)) - rest.row(elements(e, 0));
       if constexpr (Kernel::vertices == 3)
         numbers.push_back(Kernel::rest(d[0], d[1], 3.18e-4, 8e4, 0.243));
       else
@@ -58,8 +61,8 @@ const BoundEnergy& energy() {
 
 void finish(benchmark::State& state, double elements) {
   set_thread_count(0);
-  state.counters["per_element"] =
-      benchmark::Counter(elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_element"] = benchmark::Counter(
+      elements, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 template <class Kernel>
@@ -106,7 +109,8 @@ void shell_gradient(benchmark::State& state) {
 
 void shell_hessian(benchmark::State& state) {
   const BoundEnergy &membrane = energy<NeoHookeanKernel>(), &bending = energy<HingeKernel>();
-  BlockMatrix matrix(BlockPattern::of(cloth().level.vertex_count(), {membrane.stencils(), bending.stencils()}));
+  BlockMatrix matrix(
+      BlockPattern::of(cloth().level.vertex_count(), {membrane.stencils(), bending.stencils()}));
   const BlockSlots membrane_slots(*matrix.pattern, membrane.stencils());
   const BlockSlots bending_slots(*matrix.pattern, bending.stencils());
   set_thread_count(static_cast<int>(state.range(0)));
@@ -121,14 +125,16 @@ void shell_hessian(benchmark::State& state) {
 }
 
 void block_pattern(benchmark::State& state) {
-  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(), energy<HingeKernel>().stencils()};
+  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(),
+                                          energy<HingeKernel>().stencils()};
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(BlockPattern::of(cloth().level.vertex_count(), stencils));
   finish(state, cloth().level.vertex_count());
 }
 
 void block_slots(benchmark::State& state) {
-  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(), energy<HingeKernel>().stencils()};
+  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(),
+                                          energy<HingeKernel>().stencils()};
   const auto pattern = BlockPattern::of(cloth().level.vertex_count(), stencils);
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state)
@@ -148,11 +154,11 @@ void parallel_launch(benchmark::State& state) {
 
 BENCHMARK(shell_gradient)->DRAPE_THREADS;
 BENCHMARK(shell_hessian)->DRAPE_THREADS;
-#define DRAPE_KERNEL(Kernel)                                               \
-  BENCHMARK_TEMPLATE(value, Kernel)->DRAPE_THREADS;                        \
-  BENCHMARK_TEMPLATE(gradient, Kernel)->DRAPE_THREADS;                     \
-  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::none)->DRAPE_THREADS;    \
-  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::clamp)->DRAPE_THREADS;   \
+#define DRAPE_KERNEL(Kernel)                                             \
+  BENCHMARK_TEMPLATE(value, Kernel)->DRAPE_THREADS;                      \
+  BENCHMARK_TEMPLATE(gradient, Kernel)->DRAPE_THREADS;                   \
+  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::none)->DRAPE_THREADS;  \
+  BENCHMARK_TEMPLATE(hessian, Kernel, Projection::clamp)->DRAPE_THREADS; \
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::absolute)->DRAPE_THREADS
 DRAPE_KERNEL(NeoHookeanKernel);
 DRAPE_KERNEL(StvkKernel);

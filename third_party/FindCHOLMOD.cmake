@@ -3,7 +3,8 @@
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
 find_library(CHOLMOD_LIBRARY cholmod)
 if(CHOLMOD_INCLUDE_DIR)
-  file(STRINGS ${CHOLMOD_INCLUDE_DIR}/cholmod_core.h version_lines REGEX "#define CHOLMOD_(MAIN|SUB|SUBSUB)_VERSION")
+  file(STRINGS ${CHOLMOD_INCLUDE_DIR}/cholmod_core.h version_lines
+       REGEX "#define CHOLMOD_(MAIN|SUB|SUBSUB)_VERSION")
   string(REGEX REPLACE "[^0-9;]" "" CHOLMOD_VERSION "${version_lines}")
   string(REPLACE ";" "." CHOLMOD_VERSION "${CHOLMOD_VERSION}")
 endif()

@@ -8,6 +8,7 @@
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
 #include "core/experiment/runner.h"
+#include "core/numerics/block_cholesky.h"
 #include "core/numerics/parallel.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
@@ -29,6 +30,11 @@ void on_signal(int number) {
   stop_signal = number;
 }
 
+std::string positive_integer(const std::string& text) {
+  const std::optional<int> number = parse_integer(text);
+  return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+}
+
 struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
@@ -37,9 +43,10 @@ struct ConfigArguments {
   void add_to(CLI::App& command) {
     command.add_option("config", config, "experiment file (YAML)")->required();
     command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
-        ->type_name("KEY=VALUE");
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
     command.add_option("--levels", levels, "number of levels, in place of the experiment's")
-        ->check(CLI::PositiveNumber);
+        ->check(positive_integer);
   }
 
   Overrides overrides() const {
@@ -47,7 +54,8 @@ struct ConfigArguments {
     for (const std::string& set : sets) {
       const std::size_t equals = set.find('=');
       if (equals == std::string::npos || equals == 0)
-        throw std::runtime_error("--set " + set + ": write it as key=value, as in --set newton.step_size=0.1");
+        throw std::runtime_error("--set " + set +
+                                 ": write it as key=value, as in --set newton.step_size=0.1");
       all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
     }
     if (levels > 0) all.emplace_back("levels", std::to_string(levels));
@@ -77,13 +85,16 @@ struct Loaded {
 int run(const ConfigArguments& arguments, RunOptions options, const Registry& registry) {
   Loaded loaded(arguments, registry);
   if (loaded.exit_code) return loaded.exit_code;
-  if (options.out.empty()) options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
+  if (options.out.empty())
+    options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   options.stop = [] { return stop_signal != 0; };
   const bool converged = run_experiment(*loaded.experiment, *loaded.scene, options);
-  if (options.report) std::cout << "report: " << (options.out / "report.html").string() << "\n";
-  else std::cout << "results: " << (options.out / "results.json").string() << "\n";
+  if (options.report)
+    std::cout << "report: " << (options.out / "report.html").string() << "\n";
+  else
+    std::cout << "results: " << (options.out / "results.json").string() << "\n";
   if (stop_signal) {
     std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
     return 128 + stop_signal;
@@ -102,6 +113,9 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
 }
 
 int list(const std::string& kind, const Registry& registry) {
+  const std::vector<std::string> all(std::begin(kinds), std::end(kinds));
+  if (!kind.empty() && std::find(all.begin(), all.end(), kind) == all.end())
+    throw std::runtime_error("there is no kind \"" + kind + "\"; the kinds are " + joined(all));
   for (const char* k : kinds) {
     if (!kind.empty() && kind != k) continue;
     std::cout << k << "\n";
@@ -141,22 +155,41 @@ int reference(const Registry& registry) {
   return 0;
 }
 
+void require_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  if (std::find(commands.begin(), commands.end(), word) != commands.end()) return;
+  const std::string near = nearest_word(word, commands);
+  throw std::runtime_error(
+      "there is no command \"" + word + "\"; " +
+      (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
+}
+
 int main_checked(int argc, char** argv) {
-  CLI::App app("drape: progressive cloth quasistatics");
+  CLI::App app("drape: progressive cloth quasistatics", "drape");
   app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
+  app.failure_message([](const CLI::App* app, const CLI::Error& error) {
+    const std::string command =
+        app->get_subcommands().empty() ? "" : " " + app->get_subcommands()[0]->get_name();
+    return std::string("error: ") + error.what() + "; see `drape" + command + " --help`\n";
+  });
 
   ConfigArguments arguments;
   RunOptions options;
   std::string methods, out;
-  int threads = 0;
+  int threads = 0, blas = 1;
   CLI::App* run_command = app.add_subcommand("run", "run an experiment and write its results and report");
   arguments.add_to(*run_command);
   run_command->add_option("--out", out, "results folder (default: results/NAME)");
-  run_command->add_option("--method", options.methods, "only these of the experiment's methods")->delimiter(',');
-  run_command->add_option("--threads", threads, "threads (default: one a core)")->check(CLI::PositiveNumber);
-  run_command->add_flag("--overwrite", options.overwrite, "replace the results of an earlier run in the folder");
+  run_command->add_option("--method", options.methods, "only these of the experiment's methods")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  run_command->add_option("--threads", threads, "threads (default: one a core)")->check(positive_integer);
+  run_command->add_option("--blas-threads", blas, "threads within a factorisation (default: 1)")
+      ->check(positive_integer);
+  run_command->add_flag("--overwrite", options.overwrite,
+                        "replace the results of an earlier run in the folder");
   run_command->add_flag("--quiet", options.quiet, "no progress on standard error");
   run_command->add_flag("!--no-report", options.report, "leave out report.html and its pictures");
 
@@ -166,15 +199,22 @@ int main_checked(int argc, char** argv) {
 
   std::string kind, plugin, run_folder;
   CLI::App* list_command = app.add_subcommand("list", "list what experiments can choose by name");
-  list_command->add_option("kind", kind, "only this kind")
-      ->check(CLI::IsMember(std::vector<std::string>(std::begin(kinds), std::end(kinds))));
-  CLI::App* describe_command = app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s)");
+  list_command->add_option("kind", kind, "only this kind");
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s)");
   describe_command->add_option("plugin", plugin, "name of the plugin")->required();
   CLI::App* report_command = app.add_subcommand("report", "write the report of a results folder again");
   report_command->add_option("folder", run_folder, "results folder")->required();
-  CLI::App* schema_command = app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
-  CLI::App* reference_command = app.add_subcommand("reference", "print the configuration reference (Markdown)");
+  CLI::App* schema_command =
+      app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
+  CLI::App* reference_command =
+      app.add_subcommand("reference", "print the configuration reference (Markdown)");
 
+  if (argc < 2) {
+    std::cerr << app.help();
+    return exit_bad_input;
+  }
+  if (argv[1][0] != '-') require_command(app, argv[1]);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -182,6 +222,7 @@ int main_checked(int argc, char** argv) {
   }
 
   set_thread_count(threads);
+  set_blas_threads(blas);
   if (*report_command) {
     write_report(run_folder);
     std::cout << "report: " << (std::filesystem::path(run_folder) / "report.html").string() << "\n";

@@ -1,6 +1,9 @@
 #include "core/experiment/experiment.h"
 
+#include <algorithm>
+#include <cctype>
 #include <set>
+#include <tuple>
 
 #include "core/experiment/yaml_file.h"
 #include "core/plugin/make.h"
@@ -8,7 +11,10 @@
 namespace drape {
 
 void LoopParameters::declare(Declaration<LoopParameters>& d) {
-  d.add("points", &LoopParameters::points).unit("m").meaning("x0, y0, x1, y1, … around the outline").required();
+  d.add("points", &LoopParameters::points)
+      .unit("m")
+      .meaning("x0, y0, x1, y1, … around the outline")
+      .required();
 }
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
@@ -24,11 +30,15 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .choices({"one_way", "criss_cross", "random"})
       .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
-      .at_least(3).at_most(1e7).meaning("about how many vertices the coarsest level has");
+      .at_least(3)
+      .at_most(1e7)
+      .meaning("about how many vertices the coarsest level has");
   d.add("columns", &ClothParameters::columns)
-      .at_least(0).meaning("vertices along the width of a grid; 0 takes it from `vertices`");
+      .at_least(0)
+      .meaning("vertices along the width of a grid; 0 takes it from `vertices`");
   d.add("rows", &ClothParameters::rows)
-      .at_least(0).meaning("vertices along the height of a grid; 0 takes it from `vertices`");
+      .at_least(0)
+      .meaning("vertices along the height of a grid; 0 takes it from `vertices`");
   d.add("seed", &ClothParameters::seed).at_least(0).meaning("of a random triangulation");
 }
 
@@ -37,23 +47,30 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("rotate", &StartParameters::rotate).unit("°").meaning("then turned about x, y, z, in this order");
   d.add("translate", &StartParameters::translate).unit("m").meaning("then moved");
   d.add("perturbation", &StartParameters::perturbation)
-      .unit("m").at_least(0)
+      .unit("m")
+      .at_least(0)
       .meaning("amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
-      .unit("m").above(0).meaning("wavelength of the noise");
+      .unit("m")
+      .above(0)
+      .meaning("wavelength of the noise");
   d.add("seed", &StartParameters::seed).at_least(0).meaning("of the noise");
 }
 
 void PinParameters::declare(Declaration<PinParameters>& d) {
   d.add("region", &PinParameters::region)
       .choices({"nearest", "ball", "box", "border", "vertices"})
-      .meaning("which vertices: the one nearest to `point`, those within `radius` of it, those in a box, the "
-               "border, or by index on the coarsest level");
+      .meaning(
+          "which vertices: the one nearest to `point`, those within `radius` of it, those in a box, the "
+          "border, or by index on the coarsest level");
   d.add("point", &PinParameters::point).unit("m").meaning("of nearest and ball, in the rest shape");
   d.add("radius", &PinParameters::radius).unit("m").at_least(0).meaning("of a ball");
   d.add("lower", &PinParameters::lower).unit("m").meaning("corner of a box, in the rest shape");
   d.add("upper", &PinParameters::upper).unit("m").meaning("opposite corner of a box");
   d.add("vertices", &PinParameters::vertices).meaning("indices, from 0");
+  d.add("move", &PinParameters::move)
+      .unit("m")
+      .meaning("held at the rest place moved by this; without it, where the start puts them");
 }
 
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
@@ -62,17 +79,24 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add("table1_scene", &ExperimentParameters::table1_scene)
       .meaning("block of the supplement's Table 1 that the report sets beside the result");
   d.add_section("cloth", &ExperimentParameters::cloth).meaning("the coarsest level");
-  d.add("levels", &ExperimentParameters::levels).at_least(1).at_most(10).meaning("each 1→4 finer than the last");
+  d.add("levels", &ExperimentParameters::levels)
+      .at_least(1)
+      .at_most(10)
+      .meaning("each 1→4 finer than the last");
   d.add_section("material", &ExperimentParameters::material).meaning("of the cloth");
   d.add_section("start", &ExperimentParameters::start).meaning("where the cloth starts");
-  d.add_sections("pins", &ExperimentParameters::pins).meaning("vertices held where the start puts them");
+  d.add_sections("pins", &ExperimentParameters::pins).meaning("vertices held in place");
   d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
   d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
   d.add_node("contact", &ExperimentParameters::contact).plugin("contact").meaning("none if not given");
-  d.add_section("newton", &ExperimentParameters::newton).meaning("of every method, where it says nothing else");
+  d.add_section("newton", &ExperimentParameters::newton)
+      .meaning("of every method, where it says nothing else");
   d.add_node("methods", &ExperimentParameters::methods)
-      .required().meaning("a map: the method's name, then its solver; without `type`, the name is the solver's");
-  d.add_node("metrics", &ExperimentParameters::metrics).plugin("metric").meaning("all that there are if not given");
+      .required()
+      .meaning("a map: the method's name, then its solver; without `type`, the name is the solver's");
+  d.add_node("metrics", &ExperimentParameters::metrics)
+      .plugin("metric")
+      .meaning("all that there are if not given");
   d.add("reference", &ExperimentParameters::reference)
       .meaning("method whose finest state the others' are measured against");
 }
@@ -80,6 +104,19 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
 namespace {
 
 ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
+
+/// Names of experiments and methods become names of files, and cells of steps.csv.
+void check_name(const std::string& what, const std::string& name, const Location& where,
+                ConfigErrors& errors) {
+  const bool usable =
+      !name.empty() && name[0] != '.' && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
+      });
+  if (!usable)
+    errors.push_back({where, what + " \"" + name +
+                                 "\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
+                                 "not beginning with \".\""});
+}
 
 /// Entries of `base` that `over` lacks are added to it, maps within maps likewise.
 void fill_in(ConfigNode& over, const ConfigNode& base) {
@@ -111,6 +148,11 @@ class Maker {
     for (const ConfigNode& node : e_.parameters.energies)
       if (auto energy = make<Energy>(node, energies)) e_.energies.push_back({name_of(node), energy});
     set("energies", energies);
+    const ConfigNode* written = e_.source.find("energies");
+    if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
+      errors_.push_back({written->where,
+                         "\"energies\" must name at least one energy, as in "
+                         "\"energies: [neo_hookean, hinge, gravity]\""});
 
     e_.refiner = make_one<Refiner>("refiner", e_.parameters.refiner, "loop");
     e_.contact = make_one<ContactModel>("contact", e_.parameters.contact, "none");
@@ -152,8 +194,9 @@ class Maker {
     const ConfigNode* common = e_.source.find("newton");
     if (methods.kind != ConfigNode::Kind::map || methods.entries.empty()) {
       if (e_.source.find("methods"))
-        errors_.push_back({methods.where, "\"methods\" must be a map of at least one method, as in "
-                                          "\"methods: {pcs: {}, newton: {}}\""});
+        errors_.push_back({methods.where,
+                           "\"methods\" must be a map of at least one method, as in "
+                           "\"methods: {pcs: {}, newton: {}}\""});
       return;
     }
     ConfigNode resolved_map;
@@ -174,9 +217,11 @@ class Maker {
         }
       }
       ConfigNode resolved;
+      check_name("method", name, written.where, errors_);
       if (!names.insert(name).second)
         errors_.push_back({written.where, "method \"" + name + "\" is given twice; rename one of them"});
-      if (auto solver = make_from<Solver>(registry_, node, errors_, &resolved)) e_.methods.emplace_back(name, solver);
+      if (auto solver = make_from<Solver>(registry_, node, errors_, &resolved))
+        e_.methods.emplace_back(name, solver);
       resolved_map.add(name, resolved);
     }
     set("methods", resolved_map);
@@ -211,12 +256,21 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
   const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&e.parameters, e.source, errors);
   e.resolved = schema.write(&e.parameters);
+  if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
+    check_name("name", e.parameters.name, name->where, errors);
   Maker(registry, errors, e).make_all();
   // The common newton section is read once for itself and once in each method: say each fault once.
   std::set<std::string> said;
   ConfigErrors once;
   for (const ConfigError& error : errors)
     if (said.insert(error.text()).second) once.push_back(error);
+  // In the order of the file; what was given beside it comes after.
+  std::stable_sort(once.begin(), once.end(), [&](const ConfigError& a, const ConfigError& b) {
+    const auto order = [&](const Location& l) {
+      return std::tuple(l.file != e.source.where.file, l.line, l.column);
+    };
+    return order(a.where) < order(b.where);
+  });
   errors = std::move(once);
   if (!errors.empty()) return std::nullopt;
   return e;

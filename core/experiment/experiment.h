@@ -51,13 +51,14 @@ struct StartParameters {
   static void declare(Declaration<StartParameters>& d);
 };
 
-/// Vertices held where the start puts them, by region of the rest shape, on every level.
+/// Vertices held in place, by region of the rest shape, on every level.
 struct PinParameters {
   std::string region = "nearest";
   Eigen::Vector3d point{0, 0, 0};
   double radius = 0;
   Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
   std::vector<int> vertices;
+  std::optional<Eigen::Vector3d> move;
   static void declare(Declaration<PinParameters>& d);
 };
 

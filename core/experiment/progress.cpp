@@ -39,15 +39,17 @@ double Progress::seconds_to_go() const {
 }
 
 void Progress::draw(const IterationRow& row) {
-  const double part = std::clamp(std::log(first_residual_ / row.force_residual) / std::log(first_residual_ / tolerance_), 0.0, 1.0);
+  const double part = std::clamp(
+      std::log(first_residual_ / row.force_residual) / std::log(first_residual_ / tolerance_), 0.0, 1.0);
   constexpr int width = 16;
   std::string bar;
   for (int k = 0; k < width; ++k) bar += k < part * width ? "█" : "░";
   char to_go[32] = "";
   if (const double s = seconds_to_go(); s >= 0) std::snprintf(to_go, sizeof to_go, "  about %.0f s to go", s);
   clear_line();
-  std::fprintf(stderr, "%-9s level %d/%d %s step %-4d residual %.2e  energy %.6g J%s%s", method_.c_str(), row.level,
-               levels_ - 1, bar.c_str(), row.step, row.force_residual, row.energy, to_go, terminal_ ? "" : "\n");
+  std::fprintf(stderr, "%-9s level %d/%d %s step %-4d residual %.2e  energy %.6g J%s%s", method_.c_str(),
+               row.level, levels_ - 1, bar.c_str(), row.step, row.force_residual, row.energy, to_go,
+               terminal_ ? "" : "\n");
   std::fflush(stderr);
   drawn_ = terminal_;
 }
@@ -60,8 +62,8 @@ void Progress::clear_line() {
 void Progress::level_finished(const LevelResult& r) {
   if (quiet_) return;
   clear_line();
-  std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s  residual %.2e%s%s\n", method_.c_str(), r.level,
-               levels_ - 1, to_string(r.outcome), r.steps, r.seconds, r.force_residual,
+  std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s  residual %.2e%s%s\n", method_.c_str(),
+               r.level, levels_ - 1, to_string(r.outcome), r.steps, r.seconds, r.force_residual,
                r.message.empty() ? "" : "  ", r.message.c_str());
 }
 

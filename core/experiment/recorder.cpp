@@ -7,6 +7,7 @@
 
 #include "core/experiment/machine.h"
 #include "core/mesh/io.h"
+#include "core/numerics/block_cholesky.h"
 #include "core/numerics/parallel.h"
 #include "core/version.h"
 
@@ -21,7 +22,8 @@ nlohmann::ordered_json finite_or_null(double value) {
 /// The member of an object that a metric's name stands for; "a.b" is member b of member a.
 nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
   const std::size_t dot = name.find('.');
-  return dot == std::string::npos ? object[name] : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
+  return dot == std::string::npos ? object[name]
+                                  : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
 }
 
 }  // namespace
@@ -29,7 +31,8 @@ nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::str
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
     : folder_(folder), experiment_(experiment), scene_(scene) {
   steps_.open(folder.file("steps.csv"));
-  steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_size\n";
+  steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
+            "step_size\n";
   log_.open(folder.file("log.jsonl"));
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
@@ -37,18 +40,22 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["complete"] = false;
   results_["version"] = std::string("drape ") + version();
   results_["commit"] = commit();
-  results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
+  results_["machine"] = {{"cpu", cpu_name()},
+                         {"cores", core_count()},
+                         {"threads", thread_count()},
+                         {"blas_threads", blas_threads()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
   results_["table1_scene"] = p.table1_scene;
   results_["methods"] = Json::object();
+  save();
   for (const Level& level : scene.hierarchy.levels)
     write_ply(folder.file("rest/l" + std::to_string(level.index) + ".ply"), level.rest);
-  save();
   log({{"event", "run_started"}, {"experiment", p.name}});
 }
 
 void Recorder::log(Json entry) {
-  const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  const double now =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   entry["time"] = now;
   log_ << entry.dump() << std::endl;
 }
@@ -62,7 +69,10 @@ std::string Recorder::file_of(const std::string& method, int level, const char* 
 void Recorder::method_started(const std::string& method) {
   method_ = method;
   reset_peak_memory();
-  method_entry() = {{"status", "running"}, {"seconds", 0.0}, {"peak_memory_bytes", 0}, {"levels", Json::array()},
+  method_entry() = {{"status", "running"},
+                    {"seconds", 0.0},
+                    {"peak_memory_bytes", 0},
+                    {"levels", Json::array()},
                     {"consistency", Json::array()}};
   save();
   log({{"event", "method_started"}, {"method", method}});
@@ -115,8 +125,23 @@ void Recorder::level_finished(const LevelResult& r) {
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = peak_memory_bytes();
   save();
-  log({{"event", "level_finished"}, {"method", method_}, {"level", r.level}, {"status", to_string(r.outcome)},
-       {"message", r.message}, {"seconds", r.seconds}});
+  log({{"event", "level_finished"},
+       {"method", method_},
+       {"level", r.level},
+       {"status", to_string(r.outcome)},
+       {"message", r.message},
+       {"seconds", r.seconds}});
+}
+
+MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
+                               Json& entry) {
+  try {
+    return metric.evaluate(input);
+  } catch (const std::exception& error) {
+    entry["not_measured"][name] = error.what();
+    log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", error.what()}});
+    return {};
+  }
 }
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
@@ -126,7 +151,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
-        metric->evaluate({scene_.hierarchy.levels[level], *scene_.models[level], x, &other});
+        measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.models[level], x, &other}, row);
     for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
     for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
   }
@@ -142,13 +167,16 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
   Outcome worst = Outcome::converged;
   const int finest = static_cast<int>(scene_.models.size()) - 1;
   std::vector<std::pair<double, std::string>> frames;
-  for (const LevelResult& r : results) {
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const LevelResult& r = results[i];
     if (r.outcome != Outcome::converged) worst = r.outcome;
+    Json& state = entry["levels"][i];
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :
-             metric->evaluate({scene_.hierarchy.levels[r.level], *scene_.models[r.level], r.x}).values)
-          at_dotted(entry["levels"][r.level], v.name) = finite_or_null(v.value);
+             measure(name, *metric, {scene_.hierarchy.levels[r.level], *scene_.models[r.level], r.x}, state)
+                 .values)
+          at_dotted(state, v.name) = finite_or_null(v.value);
     frames.emplace_back(r.level, file_of(method_, r.level, ".vtp").substr(7));
   }
   write_pvd(folder_.file("levels/" + method_ + ".pvd"), frames);
@@ -174,6 +202,7 @@ void Recorder::run_finished(bool complete) {
   if (reference)
     for (const auto& [method, x] : finest_)
       if (&x != reference) {
+        method_ = method;
         Json row = compare(static_cast<int>(scene_.models.size()) - 1, x, *reference, "");
         row["against"] = experiment_.parameters.reference;
         results_["methods"][method]["reference"] = row;

@@ -30,6 +30,8 @@ class Recorder : public Observer {
   Json& method_entry() { return results_["methods"][method_]; }
   std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);
+  /// A metric's result; one that cannot measure the state leaves a note in `entry` and the run goes on.
+  MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
   void log(Json entry);
   void save() const;

@@ -19,18 +19,26 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
   fs::create_directories(path_, error);
   const std::string name = path_.string();
   if (error || !fs::is_directory(path_))
-    throw std::runtime_error(name + ": cannot make the results folder" + (error ? " (" + error.message() + ")" : "") +
-                             "; name another with --out");
-  if (fs::exists(file("results.json")) && !overwrite)
-    throw std::runtime_error(name + ": holds the results of another run; name another folder with --out, or "
-                                    "replace them with --overwrite");
+    throw std::runtime_error(name + ": cannot make the results folder" +
+                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+  const bool earlier_run = fs::exists(file("results.json"));
+  if (earlier_run && !overwrite)
+    throw std::runtime_error(name +
+                             ": holds the results of another run; name another folder with --out, or "
+                             "replace them with --overwrite");
+  for (const char* own : own_names)
+    if (!earlier_run && fs::exists(file(own)))
+      throw std::runtime_error(file(own).string() +
+                               ": is there already, and not from a run; "
+                               "name another results folder with --out");
   const fs::path probe = file("writable.part");
   {
     std::ofstream out(probe);
-    if (!out.put('\n')) throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
+    if (!out.put('\n'))
+      throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
   }
   fs::remove(probe, error);
-  if (overwrite)
+  if (earlier_run)
     for (const char* own : own_names) fs::remove_all(file(own), error);
   for (const char* folder : {"levels", "fields", "rest"}) fs::create_directories(file(folder));
 }

@@ -10,7 +10,8 @@ namespace drape {
 class RunFolder {
  public:
   /// Makes the folder. Throws std::runtime_error when it cannot be written to, or when it holds results
-  /// already and `overwrite` is false; with `overwrite`, an earlier run's files in it are removed.
+  /// already and `overwrite` is false, or other files under the names that a run uses; with `overwrite`, an
+  /// earlier run's files in it are removed.
   RunFolder(std::filesystem::path path, bool overwrite);
 
   const std::filesystem::path& path() const { return path_; }

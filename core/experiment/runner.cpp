@@ -47,14 +47,23 @@ void require_methods(const Experiment& experiment, const std::vector<std::string
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
 }
 
+/// The resolved experiment as it is read from the results folder: a mesh file is the copy that lies there.
+ConfigNode saved_config(const Experiment& experiment) {
+  ConfigNode config = experiment.resolved;
+  ConfigErrors none;
+  if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  return config;
+}
+
 }  // namespace
 
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
   require_methods(experiment, options.methods);
   const RunFolder folder(options.out, options.overwrite);
-  folder.write_text("config.yaml", to_yaml(experiment.resolved));
+  folder.write_text("config.yaml", to_yaml(saved_config(experiment)));
   Recorder recorder(folder, experiment, scene);
-  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet);
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
+                    options.quiet);
   RunObserver observer(recorder, progress, options.stop);
   const Problem problem = scene.problem();
 

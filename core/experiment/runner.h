@@ -10,12 +10,12 @@
 namespace drape {
 
 struct RunOptions {
-  std::filesystem::path out;          ///< results folder
-  std::vector<std::string> methods;   ///< which to run, in the experiment's order; empty for all
-  bool overwrite = false;             ///< replace the results of an earlier run in `out`
-  bool quiet = false;                 ///< no progress
-  bool report = true;                 ///< write report.html and its pictures at the end
-  std::function<bool()> stop;         ///< asked after every step; may be empty
+  std::filesystem::path out;         ///< results folder
+  std::vector<std::string> methods;  ///< which to run, in the experiment's order; empty for all
+  bool overwrite = false;            ///< replace the results of an earlier run in `out`
+  bool quiet = false;                ///< no progress
+  bool report = true;                ///< write report.html and its pictures at the end
+  std::function<bool()> stop;        ///< asked after every step; may be empty
 };
 
 /// Runs the methods one after another and writes everything down as it goes. Returns true when every

@@ -18,16 +18,23 @@ Location place_of(const Experiment& e, const std::string& key) {
 
 TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
   const double density = std::sqrt(c.vertices / (size.x() * size.y()));
-  const int columns = c.columns > 0 ? c.columns : std::max(2, static_cast<int>(std::lround(density * size.x())));
+  const int columns =
+      c.columns > 0 ? c.columns : std::max(2, static_cast<int>(std::lround(density * size.x())));
   const int rows = c.rows > 0 ? c.rows : std::max(2, static_cast<int>(std::lround(density * size.y())));
-  return grid(size, columns, rows, c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
+  return grid(size, columns, rows,
+              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
 }
 
-TriangleMesh make_cloth(const ClothParameters& c, const std::filesystem::path& config) {
+/// Relative to the config.
+std::filesystem::path mesh_file(const Experiment& e) {
+  return std::filesystem::path(e.source.where.file).parent_path() / e.parameters.cloth.file;
+}
+
+TriangleMesh make_cloth(const Experiment& e) {
+  const ClothParameters& c = e.parameters.cloth;
   if (c.shape == "file") {
     if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
-    const std::filesystem::path given(c.file);
-    return read_mesh(given.is_absolute() ? given : config.parent_path() / given);
+    return read_mesh(mesh_file(e));
   }
   if (c.shape == "disc") return disc(c.radius, c.vertices);
   if (c.shape == "polygon") {
@@ -87,11 +94,11 @@ Positions make_start(const Positions& rest, const std::vector<char>& fixed, cons
   return x;
 }
 
-/// Flags the vertices of one pin; returns how many there are.
-int apply_pin(const PinParameters& pin, const Level& level, std::vector<char>& fixed) {
+/// The vertices of one pin.
+std::vector<int> pinned_by(const PinParameters& pin, const Level& level) {
   const Positions& X = level.rest.vertices;
-  int count = 0;
-  auto hold = [&](Eigen::Index i) { fixed[i] = 1, ++count; };
+  std::vector<int> held;
+  auto hold = [&](Eigen::Index i) { held.push_back(static_cast<int>(i)); };
   if (pin.region == "nearest") {
     Eigen::Index nearest = 0;
     (X.rowwise() - pin.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
@@ -104,11 +111,13 @@ int apply_pin(const PinParameters& pin, const Level& level, std::vector<char>& f
     for (Eigen::Index i = 0; i < X.rows(); ++i) {
       const Eigen::Vector3d p = X.row(i);
       const bool in_ball = (p - pin.point).norm() <= pin.radius * (1 + 1e-12);
-      const bool in_box = (p.array() >= pin.lower.array() - 1e-12).all() && (p.array() <= pin.upper.array() + 1e-12).all();
-      if (pin.region == "border" ? level.topology.on_border[i] : pin.region == "ball" ? in_ball : in_box) hold(i);
+      const bool in_box =
+          (p.array() >= pin.lower.array() - 1e-12).all() && (p.array() <= pin.upper.array() + 1e-12).all();
+      if (pin.region == "border" ? level.topology.on_border[i] : pin.region == "ball" ? in_ball : in_box)
+        hold(i);
     }
   }
-  return count;
+  return held;
 }
 
 }  // namespace
@@ -123,37 +132,52 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors) {
   const ExperimentParameters& p = e.parameters;
   TriangleMesh cloth;
   try {
-    cloth = make_cloth(p.cloth, e.source.where.file);
+    cloth = make_cloth(e);
   } catch (const std::exception& error) {
     errors.push_back({place_of(e, "cloth"), error.what()});
     return nullptr;
   }
-  std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
+  const std::string file = p.cloth.shape == "file" ? mesh_file(e).string() + ": " : "";
   for (const std::string& fault : check_mesh(cloth)) errors.push_back({place_of(e, "cloth"), file + fault});
   if (!errors.empty()) return nullptr;
 
   auto scene = std::make_unique<Scene>();
-  scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
+  try {
+    scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
+  } catch (const std::exception& error) {
+    errors.push_back({place_of(e, "cloth"), error.what()});
+    return nullptr;
+  }
   const ConfigNode* pins = e.source.find("pins");
   for (const Level& level : scene->hierarchy.levels) {
     std::vector<char> fixed(level.vertex_count(), 0);
+    std::vector<std::vector<int>> held;
     for (std::size_t k = 0; k < p.pins.size(); ++k) {
-      const bool coarsest = level.index == 0;
-      if (apply_pin(p.pins[k], level, fixed) == 0 && coarsest)
-        errors.push_back({pins->items[k].where, "pin " + std::to_string(k) + " (" + p.pins[k].region +
-                                                    ") holds no vertex of the coarsest level; widen its region"});
+      held.push_back(pinned_by(p.pins[k], level));
+      for (int v : held.back()) fixed[v] = 1;
+      if (level.index > 0) continue;
+      const std::string pin = "pin " + std::to_string(k) + " (" + p.pins[k].region + ")";
+      const bool by_index = p.pins[k].region == "vertices";
+      if (by_index ? p.pins[k].vertices.empty() : held.back().empty())
+        errors.push_back(
+            {pins->items[k].where, pin + " holds no vertex of the coarsest level; " +
+                                       (by_index ? "list some under \"vertices\"" : "widen its region")});
       for (int v : p.pins[k].vertices)
-        if (coarsest && p.pins[k].region == "vertices" && (v < 0 || v >= level.vertex_count()))
-          errors.push_back({pins->items[k].where,
-                            "pin " + std::to_string(k) + " names vertex " + std::to_string(v) +
-                                ", but the coarsest level has " + std::to_string(level.vertex_count())});
+        if (by_index && (v < 0 || v >= level.vertex_count()))
+          errors.push_back({pins->items[k].where, pin + " names vertex " + std::to_string(v) +
+                                                      ", but those of the coarsest level go from 0 to " +
+                                                      std::to_string(level.vertex_count() - 1)});
     }
     if (!errors.empty()) return nullptr;
-    scene->starts.push_back(make_start(level.rest.vertices, fixed, p.start));
+    Positions start = make_start(level.rest.vertices, fixed, p.start);
+    for (std::size_t k = 0; k < p.pins.size(); ++k)
+      if (p.pins[k].move)
+        for (int v : held[k]) start.row(v) = level.rest.vertices.row(v) + p.pins[k].move->transpose();
+    scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(std::make_unique<LevelModel>(level, p.material, e.energies, std::move(fixed)));
     } catch (const std::exception& error) {
-      errors.push_back({place_of(e, "energies"), "level " + std::to_string(level.index) + ": " + error.what()});
+      errors.push_back({place_of(e, "energies"), error.what()});
       return nullptr;
     }
   }

@@ -68,6 +68,8 @@ class Converter {
       }
       node.add(entry.first.Scalar(), convert(entry.second));
       node.key_places.back() = where;
+      // yaml-cpp puts a missing value where the next thing stands.
+      if (ConfigNode& value = node.entries.back().second; value.kind == Kind::null) value.where = where;
     }
   }
 
@@ -138,8 +140,9 @@ ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
   std::ifstream stream(file);
   const bool directory = std::filesystem::is_directory(file);
   if (!stream || directory || (stream.peek() != EOF && !(text << stream.rdbuf()))) {
-    const std::string why = directory ? "is a folder, not a file"
-                            : std::filesystem::exists(file) ? "cannot be read" : "no such file";
+    const std::string why = directory                       ? "is a folder, not a file"
+                            : std::filesystem::exists(file) ? "cannot be read"
+                                                            : "no such file";
     errors.push_back({{file.string(), 0, 0}, why});
     return {};
   }
@@ -152,12 +155,12 @@ bool set_path(ConfigNode& root, const std::string& path, const std::string& valu
   ConfigNode* node = &root;
   ConfigNode parsed = parse_value(value, where.file, errors);
   if (errors.size() != before) return false;
-  std::istringstream words(path + ".");
+  if (path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos) {
+    errors.push_back({where, "the path has an empty name"});
+    return false;
+  }
+  std::istringstream words(path);
   for (std::string word; std::getline(words, word, '.');) {
-    if (word.empty()) {
-      errors.push_back({where, "the path has an empty name"});
-      return false;
-    }
     const size_t size = node->items.size();
     node = step(*node, word, where);
     if (!node) {

@@ -29,8 +29,10 @@ void write_block(const ConfigNode& node, const std::string& indent, std::string&
   for (const ConfigNode& item : node.items) {
     begin_line();
     text += "- ";
-    if (fits_a_line(item)) text += item.one_line() + "\n";
-    else write_block(item, indent + "  ", text);
+    if (fits_a_line(item))
+      text += item.one_line() + "\n";
+    else
+      write_block(item, indent + "  ", text);
   }
   for (const auto& [key, value] : node.entries) {
     begin_line();

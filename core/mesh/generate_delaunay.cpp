@@ -82,7 +82,8 @@ void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulati
   for (const Polygon& loop : loops) {
     std::vector<Point> points;
     for (std::size_t i = 0; i < loop.size(); ++i) {
-      const Eigen::Vector2d a = loop[i], along = loop[(i + 1) % loop.size()] - a;
+      const Eigen::Vector2d& a = loop[i];
+      const Eigen::Vector2d along = loop[(i + 1) % loop.size()] - a;
       const auto pieces = std::max(1L, std::lround(along.norm() / spacing));
       for (long k = 0; k < pieces; ++k) {
         const Eigen::Vector2d p = a + along * (static_cast<double>(k) / static_cast<double>(pieces));

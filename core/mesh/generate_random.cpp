@@ -10,13 +10,15 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Border vertices of a rectangle, counter-clockwise from (0, 0), sides cut evenly.
+/// Border vertices of a rectangle, counter-clockwise from (0, 0), sides cut evenly. The last division of a
+/// side must give its end to the bit, or the corner stands beside it: fractions first, then the length.
 Points rectangle_border(const Eigen::Vector2d& size, int columns, int rows) {
   Points points;
-  for (int i = 0; i < columns; ++i) points.emplace_back(size.x() * i / columns, 0);
-  for (int j = 0; j < rows; ++j) points.emplace_back(size.x(), size.y() * j / rows);
-  for (int i = columns; i > 0; --i) points.emplace_back(size.x() * i / columns, size.y());
-  for (int j = rows; j > 0; --j) points.emplace_back(0, size.y() * j / rows);
+  for (int i = 0; i < columns; ++i) points.emplace_back(size.x() * (static_cast<double>(i) / columns), 0);
+  for (int j = 0; j < rows; ++j) points.emplace_back(size.x(), size.y() * (static_cast<double>(j) / rows));
+  for (int i = columns; i > 0; --i)
+    points.emplace_back(size.x() * (static_cast<double>(i) / columns), size.y());
+  for (int j = rows; j > 0; --j) points.emplace_back(0, size.y() * (static_cast<double>(j) / rows));
   return points;
 }
 

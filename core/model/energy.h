@@ -9,7 +9,7 @@
 
 namespace drape {
 
-/// What to do with negative eigenvalues of an element's Hessian (method.md, section 5).
+/// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5).
 enum class Projection { clamp, absolute, none };
 
 /// The part an energy plays in the report; `external` ones define the load of the force residual.

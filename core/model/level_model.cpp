@@ -73,10 +73,14 @@ double LevelModel::load_norm(const Positions& x) const {
 }
 
 double LevelModel::external_force_norm(const Positions& x) const {
-  Positions g = Positions::Zero(x.rows(), 3);
+  double sum = 0;
   for (const Term& term : terms_)
-    if (term.role == EnergyRole::external) term.energy->add_gradient(x, g);
-  return free_norm(g, fixed_);
+    if (term.role == EnergyRole::external) {
+      Positions g = Positions::Zero(x.rows(), 3);
+      term.energy->add_gradient(x, g);
+      sum += free_norm(g, fixed_);
+    }
+  return sum;
 }
 
 double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {

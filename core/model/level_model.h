@@ -19,7 +19,7 @@ struct NamedEnergy {
 };
 
 /// The plain model of one level: the sum E_l of its energies, its lumped masses and its fixed vertices
-/// (method.md, section 1). Immutable; refers to `level`, which must outlive it.
+/// (docs/method.md, section 1). Immutable; refers to `level`, which must outlive it.
 class LevelModel {
  public:
   /// `fixed` has one flag a vertex: 1 where it is held at its place.
@@ -40,9 +40,10 @@ class LevelModel {
 
   /// Energy of each term, in the order given [J].
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
-  /// Norm over free vertices of the external forces at x [N].
+  /// Norm over free vertices of the external forces at x [N], summed over the external energies: loads
+  /// that balance each other are still the scale of what is to be balanced.
   double load_norm(const Positions& x) const;
-  /// ‖∇E_l(x)‖ over the load, on free vertices [1] (method.md, section 2); see residual_scale.
+  /// ‖∇E_l(x)‖ over the load, on free vertices [1] (docs/method.md, section 2); see residual_scale.
   double force_residual(const Positions& x) const;
 
   /// What a gradient's norm is divided by: the external load, or without one the forces that hold the
@@ -64,8 +65,8 @@ class LevelModel {
   Eigen::VectorXd masses_;
   std::vector<Term> terms_;
   std::shared_ptr<const BlockPattern> pattern_;
-  bool load_is_constant_ = true;      // whether every external energy is linear
-  double constant_load_norm_ = 0;     // then the norm of its forces
+  bool load_is_constant_ = true;   // whether every external energy is linear
+  double constant_load_norm_ = 0;  // then the norm of its forces
 };
 
 /// Norm of the rows of g whose vertex is free (fixed[i] == 0).

@@ -6,11 +6,11 @@ namespace drape {
 
 /// One isotropic cloth. Moduli are bulk (Young) moduli, as in the supplement's Table 2.
 struct Material {
-  double density = 472.6;          ///< ρ [kg/m³]
-  double thickness = 3.18e-4;      ///< d [m]
-  double membrane_modulus = 8e4;   ///< E_mem [Pa]
-  double bending_modulus = 8e4;    ///< E_bend [Pa]
-  double poisson_ratio = 0.243;    ///< ν [1]
+  double density = 472.6;         ///< ρ [kg/m³]
+  double thickness = 3.18e-4;     ///< d [m]
+  double membrane_modulus = 8e4;  ///< E_mem [Pa]
+  double bending_modulus = 8e4;   ///< E_bend [Pa]
+  double poisson_ratio = 0.243;   ///< ν [1]
 
   static void declare(Declaration<Material>& d);
 

@@ -42,9 +42,9 @@ enum class MetricScope {
 
 /// What a metric may look at: a state on one level and, for pairs, another on the same level.
 struct MetricInput {
-  const Level& level;           ///< the (fine) level; area weights are level.vertex_area
-  const LevelModel& model;      ///< the plain model of that level
-  const Positions& x;           ///< n×3, the state on it
+  const Level& level;                ///< the (fine) level; area weights are level.vertex_area
+  const LevelModel& model;           ///< the plain model of that level
+  const Positions& x;                ///< n×3, the state on it
   const Positions* other = nullptr;  ///< n×3, pairs only: what x is measured against
 };
 

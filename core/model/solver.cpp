@@ -12,11 +12,16 @@ Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const 
 
 const char* to_string(Outcome outcome) {
   switch (outcome) {
-    case Outcome::converged: return "converged";
-    case Outcome::out_of_steps: return "out_of_steps";
-    case Outcome::stalled: return "stalled";
-    case Outcome::cancelled: return "cancelled";
-    case Outcome::infeasible: return "infeasible";
+    case Outcome::converged:
+      return "converged";
+    case Outcome::out_of_steps:
+      return "out_of_steps";
+    case Outcome::stalled:
+      return "stalled";
+    case Outcome::cancelled:
+      return "cancelled";
+    case Outcome::infeasible:
+      return "infeasible";
   }
   return "";
 }

@@ -30,26 +30,26 @@ const char* to_string(Outcome outcome);
 /// One Newton iteration, as observers see it.
 struct IterationRow {
   int level = 0, step = 0, iteration = 0;
-  double seconds = 0;                 ///< since the method's start
-  double energy = 0;                  ///< E_l, the plain energy of the level [J]
-  std::optional<double> proxy_energy; ///< F_l where the method minimises that [J]
-  double decrement = 0;               ///< ‖p‖ / (h √n) [m/s]
-  double force_residual = 0;          ///< of what is minimised, after the iteration [1]
-  double step_length = 0;             ///< α of the line search
-  double step_size = 0;               ///< h [s]; +∞ for the static form
+  double seconds = 0;                  ///< since the method's start
+  double energy = 0;                   ///< E_l, the plain energy of the level [J]
+  std::optional<double> proxy_energy;  ///< F_l where the method minimises that [J]
+  double decrement = 0;                ///< ‖p‖ / (h √n) [m/s]
+  double force_residual = 0;           ///< of what is minimised, after the iteration [1]
+  double step_length = 0;              ///< α of the line search
+  double step_size = 0;                ///< h [s]; +∞ for the static form
 };
 
 /// The state a method reached on one level and how.
 struct LevelResult {
   int level = 0;
   Outcome outcome = Outcome::converged;
-  std::string message;                ///< what stopped it, where that is not convergence
+  std::string message;  ///< what stopped it, where that is not convergence
   Positions x;
   int steps = 0, iterations = 0, factorisations = 0;
   double seconds = 0;
   std::map<std::string, double> seconds_by_phase;
   double decrement = 0;
-  double force_residual = 0;          ///< of what was minimised [1]
+  double force_residual = 0;  ///< of what was minimised [1]
 };
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.

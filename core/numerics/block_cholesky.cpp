@@ -11,7 +11,18 @@ extern "C" void openblas_set_num_threads(int);
 
 namespace drape {
 
-void set_blas_threads(int threads) { openblas_set_num_threads(threads); }
+namespace {
+
+int chosen_blas_threads = 1;
+
+}  // namespace
+
+void set_blas_threads(int threads) {
+  chosen_blas_threads = threads;
+  openblas_set_num_threads(threads);
+}
+
+int blas_threads() { return chosen_blas_threads; }
 
 struct BlockCholesky::Cholmod {
   cholmod_common common;
@@ -45,8 +56,7 @@ struct BlockCholesky::Cholmod {
 };
 
 BlockCholesky::BlockCholesky() : c_(std::make_unique<Cholmod>()) {
-  static const bool once = (set_blas_threads(1), true);
-  (void)once;
+  openblas_set_num_threads(chosen_blas_threads);  // OpenBLAS itself would take every core
 }
 
 BlockCholesky::~BlockCholesky() = default;

@@ -13,7 +13,8 @@ namespace {
 struct VertexElements {
   std::vector<int> start, rows;
 
-  VertexElements(int vertex_count, const Stencils& stencils) : start(vertex_count + 1), rows(stencils.size()) {
+  VertexElements(int vertex_count, const Stencils& stencils)
+      : start(vertex_count + 1), rows(stencils.size()) {
     for (Eigen::Index i = 0; i < stencils.size(); ++i) ++start[stencils.data()[i] + 1];
     for (int v = 0; v < vertex_count; ++v) start[v + 1] += start[v];
     std::vector<int> end(start.begin(), start.end() - 1);
@@ -66,7 +67,8 @@ RowColumns collect_rows(int begin, int end, int vertex_count, const std::vector<
 
 }  // namespace
 
-std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count, const std::vector<Stencils>& stencils) {
+std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
+                                                     const std::vector<Stencils>& stencils) {
   std::vector<VertexElements> elements;
   for (const Stencils& s : stencils) {
     require_vertices(vertex_count, s);
@@ -111,9 +113,8 @@ BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> p) : pattern(std::m
 }
 
 void BlockMatrix::set_zero() {
-  parallel_for(static_cast<int>(values.size() / 9), 65536, [&](int begin, int end) {
-    std::fill(block(begin), block(end), 0.0);
-  });
+  parallel_for(static_cast<int>(values.size() / 9), 65536,
+               [&](int begin, int end) { std::fill(block(begin), block(end), 0.0); });
 }
 
 void BlockMatrix::multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
@@ -146,10 +147,11 @@ BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)
       int* slots = slots_.data() + static_cast<std::size_t>(e) * pairs_;
       for (Eigen::Index b = 0; b < stencils.cols(); ++b)
         for (Eigen::Index a = 0; a <= b; ++a) {
-          const int i = stencils(e, a), j = stencils(e, b), slot = pattern.find(std::min(i, j), std::max(i, j));
+          const int i = stencils(e, a), j = stencils(e, b),
+                    slot = pattern.find(std::min(i, j), std::max(i, j));
           if (slot < 0)
-            throw std::runtime_error("block pattern has no block for vertices " + std::to_string(i) + " and " +
-                                     std::to_string(j) + " of element " + std::to_string(e));
+            throw std::runtime_error("block pattern has no block for vertices " + std::to_string(i) +
+                                     " and " + std::to_string(j) + " of element " + std::to_string(e));
           *slots++ = i <= j ? slot : ~slot;
         }
     }

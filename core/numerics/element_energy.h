@@ -17,7 +17,7 @@ namespace drape {
 /// project_hessian of a kernel's Hessian at the differences d.
 template <class Kernel, int Size, class T>
 void project(const Eigen::Matrix<T, 3, 1>* d, SymmetricMatrix<Size, T>& h, Projection projection) {
-  if constexpr (requires(Eigen::Matrix<T, 3, 1>* n) { Kernel::null_direction(d, n); }) {
+  if constexpr (requires(Eigen::Matrix<T, 3, 1> * n) { Kernel::null_direction(d, n); }) {
     Eigen::Matrix<T, 3, 1> n[Size / 3];
     Kernel::null_direction(d, n);
     project_hessian(h, projection, n[0].data());
@@ -34,14 +34,16 @@ void project(const Eigen::Matrix<T, 3, 1>* d, SymmetricMatrix<Size, T>& h, Proje
 ///     T value(const Vector3<T>* d, const T* rest);
 ///     T gradient(const Vector3<T>* d, const T* rest, Vector3<T>* g);      // by d_i; returns the value
 ///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h);     // upper 3×3 blocks
-///     void null_direction(const Vector3<T>* d, Vector3<T>* n);            // optional: what the Hessian takes to 0
+///     void null_direction(const Vector3<T>* d, Vector3<T>* n);            // optional: what the Hessian
+///     takes to 0
 ///
 /// A value that is not a number counts as +∞.
 template <class Kernel, int W = native_pack_width>
 class ElementEnergy final : public BoundEnergy {
  public:
   /// Elements m×k, the rest numbers of each, and rest positions n×3 to order the elements by.
-  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, const Positions& places)
+  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest,
+                const Positions& places)
       : order_(ElementOrder::of(elements, places)), stencils_(elements.rows(), k) {
     for (Eigen::Index e = 0; e < elements.rows(); ++e) stencils_.row(e) = elements.row(order_.elements[e]);
     for (int c = 0; c < order_.chunks(); ++c) {
@@ -112,8 +114,8 @@ class ElementEnergy final : public BoundEnergy {
   struct Elements {
     T rest[rest_size];
     int vertices[k][W];  ///< where their coordinates start: 3 times the index
-    int first;   ///< row of stencils_ in lane 0
-    int active;  ///< lanes that count
+    int first;           ///< row of stencils_ in lane 0
+    int active;          ///< lanes that count
   };
 
   template <class Body>

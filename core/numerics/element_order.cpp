@@ -37,7 +37,8 @@ std::vector<int> along_morton_curve(const Stencils& stencils, const Positions& r
 }
 
 /// The lowest colour that no chunk with a common vertex has, for chunks of `size` elements.
-std::vector<int> colour_chunks(const Stencils& stencils, const std::vector<int>& order, int size, int vertex_count) {
+std::vector<int> colour_chunks(const Stencils& stencils, const std::vector<int>& order, int size,
+                               int vertex_count) {
   std::vector<std::uint64_t> used(vertex_count, 0);  // of each vertex, a bit a colour
   std::vector<int> colours;
   int overflow = 64;  // where 64 colours do not do, a chunk gets one of its own

@@ -32,7 +32,7 @@ void for_each_term(const BlockPattern& fine, const ProlongationMatrix& P, Visit 
 
 }  // namespace
 
-GalerkinProduct::GalerkinProduct(std::shared_ptr<const BlockPattern> fine, const ProlongationMatrix& weights) {
+GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const ProlongationMatrix& weights) {
   const int n = static_cast<int>(weights.cols());
   ProlongationMatrix P = weights;
   P.makeCompressed();
@@ -47,7 +47,7 @@ GalerkinProduct::GalerkinProduct(std::shared_ptr<const BlockPattern> fine, const
     row.erase(std::unique(row.begin(), row.end()), row.end());
     unique_size[a] = row.size();
   };
-  for_each_term(*fine, P, [&](int a, int b, int, bool, double) {
+  for_each_term(fine, P, [&](int a, int b, int, bool, double) {
     if (columns[a].back() == b) return;
     columns[a].push_back(b);
     if (columns[a].size() > 2 * unique_size[a] + 64) tidy(a);
@@ -62,12 +62,12 @@ GalerkinProduct::GalerkinProduct(std::shared_ptr<const BlockPattern> fine, const
   coarse_ = std::make_shared<BlockPattern>(std::move(row_start), std::move(all));
 
   start_.assign(coarse_->blocks() + 1, 0);
-  for_each_term(*fine, P, [&](int a, int b, int, bool, double) { ++start_[coarse_->find(a, b) + 1]; });
+  for_each_term(fine, P, [&](int a, int b, int, bool, double) { ++start_[coarse_->find(a, b) + 1]; });
   for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];
   source_.resize(start_.back());
   weight_.resize(start_.back());
   std::vector<int> at(start_.begin(), start_.end() - 1);
-  for_each_term(*fine, P, [&](int a, int b, int block, bool transposed, double w) {
+  for_each_term(fine, P, [&](int a, int b, int block, bool transposed, double w) {
     const int slot = at[coarse_->find(a, b)]++;
     source_[slot] = transposed ? ~block : block;
     weight_[slot] = w;

@@ -12,7 +12,7 @@ namespace drape {
 /// coarse block is a fixed weighted sum of fine blocks, so that forming A_c is one pass over them.
 class GalerkinProduct {
  public:
-  GalerkinProduct(std::shared_ptr<const BlockPattern> fine, const ProlongationMatrix& weights);
+  GalerkinProduct(const BlockPattern& fine, const ProlongationMatrix& weights);
 
   const std::shared_ptr<const BlockPattern>& coarse_pattern() const { return coarse_; }
   /// coarse = Pᵀ fine P; `coarse` must be over coarse_pattern().
@@ -22,7 +22,7 @@ class GalerkinProduct {
   std::shared_ptr<const BlockPattern> coarse_;
   // Of coarse block c: terms start_[c] … start_[c + 1] - 1.
   std::vector<int> start_;
-  std::vector<int> source_;     // fine block, bitwise complemented where it is to be transposed
+  std::vector<int> source_;  // fine block, bitwise complemented where it is to be transposed
   std::vector<double> weight_;
 };
 

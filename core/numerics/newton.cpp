@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/numerics/block_cholesky.h"
+#include "core/numerics/parallel.h"
 
 namespace drape {
 
@@ -14,57 +16,80 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .meaning("damped gradient flow in steps of h, or one minimisation (h infinite)")
       .source("PCS section 4; supplement, Figure 4");
   d.add("step_size", &NewtonParameters::step_size)
-      .unit("s").above(0)
+      .unit("s")
+      .above(0)
       .meaning("h of the first implicit step; the static form uses it for the decrement alone")
       .source("PCS section 4");
   d.add("step_growth", &NewtonParameters::step_growth)
       .at_least(1)
-      .meaning("factor on h after a step taken in full; shortened steps divide it. 1 keeps h")
+      .meaning("factor on h after a step taken in full; one cut below a quarter divides it. 1 keeps h")
       .source("departure from the paper");
-  d.add("step_size_limit", &NewtonParameters::step_size_limit).unit("s").above(0).meaning("h grows no further");
+  d.add("step_size_limit", &NewtonParameters::step_size_limit)
+      .unit("s")
+      .above(0)
+      .meaning("h grows no further");
   d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
-      .at_least(1).meaning("Newton iterations an implicit step may take").source("PCS section 4");
+      .at_least(1)
+      .meaning("Newton iterations an implicit step may take")
+      .source("PCS section 4");
   d.add("max_steps", &NewtonParameters::max_steps).at_least(1).meaning("steps a level may take");
   d.add("force_tolerance", &NewtonParameters::force_tolerance)
       .above(0)
       .meaning("a level is converged when the net force on its free vertices is below this part of the load")
-      .source("method.md section 2");
+      .source("docs/method.md section 2");
   d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
-      .unit("m/s").at_least(0)
+      .unit("m/s")
+      .at_least(0)
       .meaning("also asked of the largest of the last three decrements; 0 asks nothing")
       .source("Li et al. 2021 (C-IPC)");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
       .meaning("what becomes of negative eigenvalues of an element's Hessian")
       .source("Teran et al. 2005; Chen et al. 2024 for absolute");
-  d.add("exact_below", &NewtonParameters::exact_below)
-      .at_least(0)
-      .meaning("force residual below which the unprojected matrix is tried first; 0 never")
+  d.add_choice("projection_share", &NewtonParameters::projection_share,
+               {{"full", ProjectionShare::full}, {"least", ProjectionShare::least}})
+      .meaning(
+          "full: the projected matrix; least: the smallest mixture of it with the exact Hessian that is "
+          "positive definite, which tends to the exact one near an equilibrium")
       .source("departure from the paper");
   d.add("refresh", &NewtonParameters::refresh)
-      .at_least(1).meaning("iterations that share one matrix and its factor").source("departure from the paper");
+      .at_least(1)
+      .meaning("iterations that share one matrix and its factor")
+      .source("departure from the paper");
 }
 
 namespace {
 
 constexpr double sufficient_decrease = 1e-4;
 constexpr double shortest_step = 1e-6;
+/// A line search that leaves less than this of a step says that h was too long.
+constexpr double shortened = 0.25;
 /// Differences of energies below this part of them are rounding, not descent.
 constexpr double energy_noise = 1e-12;
 constexpr double smallest_step_size = 1e-8;
+/// Shares of the projection that `least` tries, in turn.
+constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
+
+std::string brief(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
 
 /// The state of one minimisation; each member function is one phase of an iteration.
 class Newton {
  public:
   Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const Stopwatch& clock,
          Observer& observer)
-      : f_(objective), model_(objective.model()), p_(parameters), clock_(clock), observer_(observer),
+      : f_(objective),
+        model_(objective.model()),
+        p_(parameters),
+        clock_(clock),
+        observer_(observer),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
     free_count_ = static_cast<double>(std::count(model_.fixed().begin(), model_.fixed().end(), 0));
-    if (p_.exact_below <= 0) exact_from_ = 0;
-    else exact_from_ = p_.exact_below;
   }
 
   LevelResult run() {
@@ -72,12 +97,16 @@ class Newton {
       PhaseTimer t(result_.seconds_by_phase, "gradient");
       energy_ = f_.gradient(result_.x, g_);
     }
-    if (!std::isfinite(energy_)) return finish(Outcome::infeasible, "the energy at the start is not finite: a triangle is degenerate");
-    update_residual();
+    if (std::isfinite(energy_)) update_residual();
+    if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual))
+      return finish(Outcome::infeasible,
+                    "energy or forces at the start are not finite: a triangle is degenerate there");
     while (true) {
       if (converged()) return finish(Outcome::converged, "");
       if (result_.steps == p_.max_steps)
-        return finish(Outcome::out_of_steps, "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " + std::to_string(result_.force_residual));
+        return finish(Outcome::out_of_steps,
+                      "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
+                          "; force residual " + brief(result_.force_residual));
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
       if (!step()) return finish(Outcome::stalled, message_);
     }
@@ -88,7 +117,7 @@ class Newton {
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
   bool converged() const {
-    if (result_.force_residual > p_.force_tolerance) return false;
+    if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
     if (p_.decrement_tolerance <= 0) return true;
     return result_.iterations >= 3 &&
            *std::max_element(decrements_, decrements_ + 3) <= p_.decrement_tolerance;
@@ -97,14 +126,11 @@ class Newton {
   /// One implicit step. False when no descent was found.
   bool step() {
     origin_ = result_.x;
-    bool full = true;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
-      full = full && alpha_ == 1;
       if (converged()) break;
     }
     ++result_.steps;
-    if (p_.step_growth > 1) h_ = full ? std::min(h_ * p_.step_growth, p_.step_size_limit) : h_ / p_.step_growth;
     return true;
   }
 
@@ -125,7 +151,7 @@ class Newton {
         continue;
       }
       if (is_static()) {
-        message_ = "the line search found no descent (the direction's slope is " + std::to_string(slope_) + ")";
+        message_ = "the line search found no descent (the direction's slope is " + brief(slope_) + ")";
         return false;
       }
       h_ /= 4;
@@ -135,14 +161,27 @@ class Newton {
         return false;
       }
     }
-    ++age_;
     const double decrement = std::sqrt(direction_.squaredNorm() / std::max(free_count_, 1.0)) / h_;
     decrements_[result_.iterations % 3] = decrement;
     result_.decrement = decrement;
     ++result_.iterations;
     update_residual();
     report(iteration);
+    adapt();
     return true;
+  }
+
+  /// Chooses h and the age of the factor for the next iteration. Only a step along a fresh direction says
+  /// something about h; a shortened one along an old direction says that it is time for a new matrix.
+  void adapt() {
+    const bool fresh = age_ == 0;
+    ++age_;
+    if (fresh) {
+      if (alpha_ == 1) h_ = std::min(h_ * p_.step_growth, p_.step_size_limit);
+      if (alpha_ < shortened) h_ /= p_.step_growth;
+    } else if (alpha_ < 1) {
+      age_ = p_.refresh;
+    }
   }
 
   /// r = ∇F(x) + M (x − x^t) / h², zero on fixed vertices.
@@ -174,31 +213,63 @@ class Newton {
   void factorise() {
     if (cholesky_.has_factor() && age_ < p_.refresh) return;
     age_ = 0;
-    if (result_.force_residual < exact_from_) {
-      if (try_factor(Projection::none, 0)) return;
-      exact_from_ = 0.5 * result_.force_residual;  // not before it is much closer
+    if (p_.projection != Projection::none && p_.projection_share == ProjectionShare::least) {
+      if (factorise_mixture()) return;
+    } else if (try_factor(assemble(p_.projection), 0)) {
+      return;
     }
-    double shift = 0;
-    while (!try_factor(p_.projection, shift)) {
-      // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
-      shift = shift == 0 ? 1e-3 / (p_.step_size * p_.step_size) : 10 * shift;
-      if (!(shift < 1e30)) throw std::runtime_error("the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
-    }
+    // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
+    for (double shift = 1e-3 / (p_.step_size * p_.step_size); shift < 1e30; shift *= 10)
+      if (try_factor(assemble(p_.projection), shift)) return;
+    throw std::runtime_error(
+        "the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
   }
 
-  bool try_factor(Projection projection, double extra_shift) {
-    const BlockMatrix* a;
-    {
-      PhaseTimer t(result_.seconds_by_phase, "hessian");
-      a = &f_.matrix(result_.x, projection);
+  /// Factorises the exact Hessian plus the smallest share of its projection that works, beginning with the
+  /// one that worked last, or one below after a step taken in full.
+  bool factorise_mixture() {
+    constexpr int last = static_cast<int>(std::size(shares)) - 1;
+    const int first = alpha_ == 1 ? std::max(share_ - 1, 0) : share_;
+    const bool needs_exact = first < last;
+    const BlockMatrix* matrix = &assemble(needs_exact ? Projection::none : p_.projection);
+    for (share_ = first; share_ <= last; ++share_) {
+      if (share_ == std::max(first, 1) && needs_exact) {
+        exact_ = *matrix;
+        matrix = &assemble(p_.projection);
+      }
+      if (0 < share_ && share_ < last) {
+        mix(exact_, *matrix, shares[share_]);
+        if (try_factor(mixed_, 0)) return true;
+      } else if (try_factor(*matrix, 0)) {
+        return true;
+      }
     }
+    share_ = last;
+    return false;
+  }
+
+  void mix(const BlockMatrix& exact, const BlockMatrix& projected, double share) {
+    PhaseTimer t(result_.seconds_by_phase, "hessian");
+    if (mixed_.pattern != exact.pattern) mixed_ = BlockMatrix(exact.pattern);
+    parallel_for(static_cast<int>(mixed_.values.size()), 1 << 16, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        mixed_.values[i] = (1 - share) * exact.values[i] + share * projected.values[i];
+    });
+  }
+
+  const BlockMatrix& assemble(Projection projection) {
+    PhaseTimer t(result_.seconds_by_phase, "hessian");
+    return f_.matrix(result_.x, projection);
+  }
+
+  bool try_factor(const BlockMatrix& matrix, double extra_shift) {
     {
       PhaseTimer t(result_.seconds_by_phase, "analyse");
-      cholesky_.analyse(a->pattern, model_.fixed());
+      cholesky_.analyse(matrix.pattern, model_.fixed());
     }
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
-    return cholesky_.factorise(*a, (inverse_h2() + extra_shift) * model_.masses());
+    return cholesky_.factorise(matrix, (inverse_h2() + extra_shift) * model_.masses());
   }
 
   /// Backtracks along the direction until the energy has decreased enough; moves x, g and energy.
@@ -279,7 +350,9 @@ class Newton {
   std::string message_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
-  double h_, free_count_ = 0, exact_from_ = 0;
+  double h_, free_count_ = 0;
+  BlockMatrix exact_, mixed_;
+  int share_ = std::size(shares) - 1;
   double decrements_[3] = {};
   int age_ = 0;
 };

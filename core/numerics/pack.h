@@ -61,7 +61,11 @@ struct Pack {
 
   Pack() = default;
   Pack(double s) : v(s - Lanes{}) {}
-  static Pack of(Lanes v) { Pack p; p.v = v; return p; }
+  static Pack of(Lanes v) {
+    Pack p;
+    p.v = v;
+    return p;
+  }
 
   double operator[](int lane) const { return v[lane]; }
 
@@ -70,10 +74,22 @@ struct Pack {
   friend Pack operator*(Pack a, Pack b) { return of(a.v * b.v); }
   friend Pack operator/(Pack a, Pack b) { return of(a.v / b.v); }
   friend Pack operator-(Pack a) { return of(-a.v); }
-  Pack& operator+=(Pack b) { v += b.v; return *this; }
-  Pack& operator-=(Pack b) { v -= b.v; return *this; }
-  Pack& operator*=(Pack b) { v *= b.v; return *this; }
-  Pack& operator/=(Pack b) { v /= b.v; return *this; }
+  Pack& operator+=(Pack b) {
+    v += b.v;
+    return *this;
+  }
+  Pack& operator-=(Pack b) {
+    v -= b.v;
+    return *this;
+  }
+  Pack& operator*=(Pack b) {
+    v *= b.v;
+    return *this;
+  }
+  Pack& operator/=(Pack b) {
+    v /= b.v;
+    return *this;
+  }
   friend Mask operator<(Pack a, Pack b) { return {a.v < b.v}; }
   friend Mask operator<=(Pack a, Pack b) { return {a.v <= b.v}; }
   friend Mask operator>(Pack a, Pack b) { return {a.v > b.v}; }
@@ -83,11 +99,17 @@ struct Pack {
 };
 
 template <int W>
-Pack<W> select(PackMask<W> m, Pack<W> yes, Pack<W> no) { return Pack<W>::of(m.v ? yes.v : no.v); }
+Pack<W> select(PackMask<W> m, Pack<W> yes, Pack<W> no) {
+  return Pack<W>::of(m.v ? yes.v : no.v);
+}
 template <int W>
-Pack<W> select(PackMask<W> m, Pack<W> yes, double no) { return select(m, yes, Pack<W>(no)); }
+Pack<W> select(PackMask<W> m, Pack<W> yes, double no) {
+  return select(m, yes, Pack<W>(no));
+}
 template <int W>
-Pack<W> select(PackMask<W> m, double yes, Pack<W> no) { return select(m, Pack<W>(yes), no); }
+Pack<W> select(PackMask<W> m, double yes, Pack<W> no) {
+  return select(m, Pack<W>(yes), no);
+}
 inline double select(bool m, double yes, double no) { return m ? yes : no; }
 
 template <int W>
@@ -106,9 +128,13 @@ inline bool any(bool m) { return m; }
 
 /// The value of std::min and std::max, lane by lane: the first argument where either is not a number.
 template <int W>
-Pack<W> min(Pack<W> a, Pack<W> b) { return select(b < a, b, a); }
+Pack<W> min(Pack<W> a, Pack<W> b) {
+  return select(b < a, b, a);
+}
 template <int W>
-Pack<W> max(Pack<W> a, Pack<W> b) { return select(a < b, b, a); }
+Pack<W> max(Pack<W> a, Pack<W> b) {
+  return select(a < b, b, a);
+}
 
 template <int W>
 Pack<W> sqrt(Pack<W> a) {  // masked, since g++ 12 takes the plain intrinsic's operand for uninitialised
@@ -128,7 +154,8 @@ Pack<W> gather_lanes(const double* base, const int* index) {
 #ifdef __AVX512F__
   if constexpr (W == 8) {
     const __m256i at = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index));
-    return Pack<W>::of((typename Pack<W>::Lanes)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, at, base, 8));
+    return Pack<W>::of(
+        (typename Pack<W>::Lanes)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, at, base, 8));
   }
 #endif
 #ifdef __AVX2__
@@ -189,10 +216,10 @@ Pack<W> log(Pack<W> a) {
                     select(tiny, 54.0, Pack<W>(0.0));
 
   const Pack<W> s = f / (2.0 + f), z = s * s, half_square = 0.5 * f * f;
-  const Pack<W> r = z * pack_detail::horner(z, {6.666666666666735130e-01, 3.999999999940941908e-01,
-                                                2.857142874366239149e-01, 2.222219843214978396e-01,
-                                                1.818357216161805012e-01, 1.531383769920937332e-01,
-                                                1.479819860511658591e-01});
+  const Pack<W> r = z * pack_detail::horner(
+                            z, {6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
+                                2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
+                                1.479819860511658591e-01});
   constexpr double ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
   Pack<W> result = k * ln2_high - ((half_square - (s * (half_square + r) + k * ln2_low)) - f);
   result = select(a == infinity, a, result);
@@ -213,10 +240,11 @@ Pack<W> atan2(Pack<W> y, Pack<W> x) {
   const Pack<W> q = numerator / select(large == 0.0, 1.0, denominator), z = q * q;
   const Pack<W> tail =
       q * z *
-      pack_detail::horner(z, {3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01,
-                              -1.11111104054623557880e-01, 9.09088713343650656196e-02, -7.69187620504482999495e-02,
-                              6.66107313738753120669e-02, -5.83357013379057348645e-02, 4.97687799461593236017e-02,
-                              -3.65315727442169155270e-02, 1.62858201153657823623e-02});
+      pack_detail::horner(
+          z, {3.33333333333329318027e-01, -1.99999999998764832476e-01, 1.42857142725034663711e-01,
+              -1.11111104054623557880e-01, 9.09088713343650656196e-02, -7.69187620504482999495e-02,
+              6.66107313738753120669e-02, -5.83357013379057348645e-02, 4.97687799461593236017e-02,
+              -3.65315727442169155270e-02, 1.62858201153657823623e-02});
   constexpr double pi = 3.14159265358979311600, pi_low = 1.22464679914735320717e-16;
   Pack<W> t = select(upper, pi / 4 - ((tail - pi_low / 4) - q), q - tail);
   t = select(ay > ax, pi / 2 - (t - pi_low / 2), t);
@@ -233,6 +261,13 @@ struct Eigen::NumTraits<drape::Pack<W>> : Eigen::GenericNumTraits<drape::Pack<W>
   using NonInteger = drape::Pack<W>;
   using Literal = double;
   using Nested = drape::Pack<W>;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1,
-         MulCost = 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
 };

@@ -31,8 +31,9 @@ struct Task {
 
 thread_local bool inside_task = false;
 
-/// Threads that help with one task at a time. Unlike an OpenMP team, the caller waits for pieces and never for
-/// threads: on a busy machine, where a helper may get its turn milliseconds late, the caller has done its share.
+/// Threads that help with one task at a time. Unlike an OpenMP team, the caller waits for pieces and never
+/// for threads: on a busy machine, where a helper may get its turn milliseconds late, the caller has done its
+/// share.
 class Pool {
  public:
   /// False where another thread's task is being worked on.

@@ -9,19 +9,21 @@
 namespace drape {
 namespace projection_detail {
 
-/// The reflection I - β v vᵀ that turns y into the last axis.
+/// The reflection I - β v vᵀ that turns y = (I + w 1 1ᵀ) x into the last axis.
 template <int Size, class T>
 struct Reflection {
   T v[Size], beta;
 
-  explicit Reflection(const T* y) {
+  Reflection(const T* x, double w) {
     using std::abs, std::sqrt;
     T square = 0.0;
     for (int i = 0; i < Size; ++i) {
-      v[i] = y[i];
-      square += y[i] * y[i];
+      T sum = x[i % 3];
+      for (int j = 3 + i % 3; j < Size; j += 3) sum += x[j];
+      v[i] = x[i] + w * sum;
+      square += v[i] * v[i];
     }
-    const T length = sqrt(square), last = y[Size - 1];
+    const T length = sqrt(square), last = v[Size - 1];
     v[Size - 1] += select(last < 0.0, -length, length);
     beta = 1.0 / (square + length * abs(last));
   }
@@ -68,31 +70,42 @@ void project_eigenvalues(SymmetricMatrix<Size, T>& a, Projection projection) {
   });
 }
 
-}  // namespace projection_detail
-
-/// Projects the Hessian of a translation-invariant element of N + 1 vertices, given by its derivatives by the
-/// N differences from vertex 0: the same as projecting the full (3N + 3)² matrix. `null`, if given, is a column
-/// that h takes to zero; it saves a dimension, a third of the work for N = 3.
-template <int Size, class T>
-void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection, const T* null = nullptr) {
-  using namespace projection_detail;
-  if (projection == Projection::none) return;
-  // With E the matrix of the differences x_i - x_0, the full Hessian is Eᵀ h E, and E = S Qᵀ with orthonormal
-  // Q (which holds no translation) and S = √(E Eᵀ) = √(I + 1 1ᵀ) = I + shift 1 1ᵀ: project S h S.
+/// Has body(back) project h as it is in an orthonormal basis without translations, unless h is known to be
+/// positive. With E the matrix of the differences x_i - x_0, the full Hessian is Eᵀ h E, and E = S Qᵀ with
+/// orthonormal Q (which holds no translation) and S = √(E Eᵀ) = √(I + 1 1ᵀ): the matrix to project is S h S.
+/// S⁻¹ = I + back 1 1ᵀ.
+template <int Size, class T, class Body>
+void in_vertex_metric(SymmetricMatrix<Size, T>& h, const Body& body) {
   constexpr int N = Size / 3;
   const double shift = (std::sqrt(N + 1.0) - 1) / N, back = -shift / std::sqrt(N + 1.0);
   const SymmetricMatrix<Size, T> unprojected = h;
   mix_blocks(h, shift);
   if (positive_semidefinite(h)) {
     h = unprojected;
-  } else if (null) {
-    T y[Size];  // S⁻¹ null
-    for (int i = 0; i < Size; ++i) {
-      T sum = null[i % 3];
-      for (int j = 1; j < N; ++j) sum += null[3 * j + i % 3];
-      y[i] = null[i] + back * sum;
-    }
-    const Reflection<Size, T> reflection(y);
+    return;
+  }
+  body(back);
+  mix_blocks(h, back);
+}
+
+}  // namespace projection_detail
+
+/// Projects the Hessian of a translation-invariant element of N + 1 vertices, given by its derivatives by the
+/// N differences from vertex 0: the same as projecting the full (3N + 3)² matrix.
+template <int Size, class T>
+void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection) {
+  using namespace projection_detail;
+  if (projection == Projection::none) return;
+  in_vertex_metric(h, [&](double) { project_eigenvalues(h, projection); });
+}
+
+/// The same with a column `null` that h takes to zero. It saves a dimension, a third of the work for N = 3.
+template <int Size, class T>
+void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection, const T* null) {
+  using namespace projection_detail;
+  if (projection == Projection::none) return;
+  in_vertex_metric(h, [&](double back) {
+    const Reflection<Size, T> reflection(null, back);
     reflection.apply(h);
     SymmetricMatrix<Size - 1, T> rest;  // what is left are the first columns
     std::copy_n(h.upper, Size * (Size - 1) / 2, rest.upper);
@@ -100,11 +113,7 @@ void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection, const T
     std::copy_n(rest.upper, Size * (Size - 1) / 2, h.upper);
     for (int i = 0; i < Size; ++i) h(i, Size - 1) = 0.0;
     reflection.apply(h);
-    mix_blocks(h, back);
-  } else {
-    project_eigenvalues(h, projection);
-    mix_blocks(h, back);
-  }
+  });
 }
 
 }  // namespace drape

@@ -73,8 +73,8 @@ inline Rotation<T> diagonalise(T& app, T& apq, T& aqq) {
   return {select(nothing, T(1.0), h * inverse), select(down, -b, b) * inverse};
 }
 
-/// The part of Jᵀ A J, J the round's rotations, that is not the pairs' own 2×2 blocks. Unrolled, so that every
-/// place in A is a constant.
+/// The part of Jᵀ A J, J the round's rotations, that is not the pairs' own 2×2 blocks. Unrolled, so that
+/// every place in A is a constant.
 template <int Round, int N, class T>
 inline void rotate_others(SymmetricMatrix<N, T>& a, const Rotation<T>* rotations) {
   constexpr auto& all = rounds_of<N>;

@@ -10,13 +10,13 @@ class Registry;
 
 /// What a plugin library tells about itself, in plain C: read before any C++ of it is called.
 struct DrapePluginDescriptor {
-  std::uint32_t magic;            ///< DRAPE_ABI_MAGIC
-  std::uint32_t abi_number;       ///< DRAPE_ABI_NUMBER; what follows is read only if it is ours
-  const char* compiler;           ///< "GCC 12.2"
-  const char* standard_library;   ///< "libstdc++ 12, C++11 ABI 1"
-  const char* eigen_version;      ///< "3.4.0"
-  int eigen_max_align_bytes;      ///< follows from the machine's vector width (-march)
-  const char* scalar;             ///< "double"
+  std::uint32_t magic;           ///< DRAPE_ABI_MAGIC
+  std::uint32_t abi_number;      ///< DRAPE_ABI_NUMBER; what follows is read only if it is ours
+  const char* compiler;          ///< "GCC 12.2"
+  const char* standard_library;  ///< "libstdc++ 12, C++11 ABI 1"
+  const char* eigen_version;     ///< "3.4.0"
+  int eigen_max_align_bytes;     ///< follows from the machine's vector width (-march)
+  const char* scalar;            ///< "double"
   void (*register_entries)(drape::Registry&);
 };
 
@@ -47,9 +47,11 @@ struct DrapePluginDescriptor {
   DRAPE_TEXT(EIGEN_WORLD_VERSION) "." DRAPE_TEXT(EIGEN_MAJOR_VERSION) "." DRAPE_TEXT(EIGEN_MINOR_VERSION)
 
 /// The descriptor of the library that is being compiled.
-#define DRAPE_ABI_DESCRIPTOR(register_entries)                                                         \
-  {DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_COMPILER, DRAPE_STANDARD_LIBRARY, DRAPE_EIGEN_VERSION, \
-   EIGEN_MAX_ALIGN_BYTES, "double", register_entries}
+#define DRAPE_ABI_DESCRIPTOR(register_entries)                                                      \
+  {                                                                                                 \
+    DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_COMPILER, DRAPE_STANDARD_LIBRARY, DRAPE_EIGEN_VERSION, \
+        EIGEN_MAX_ALIGN_BYTES, "double", register_entries                                           \
+  }
 
 namespace drape {
 

@@ -85,7 +85,8 @@ void ConfigNode::add(const std::string& key, ConfigNode value) {
 std::string ConfigNode::one_line() const {
   std::string text;
   switch (kind) {
-    case Kind::null: return "null";
+    case Kind::null:
+      return "null";
     case Kind::scalar:
       return plainly_text(scalar) || (!quoted && plainly_scalar(scalar)) ? scalar : in_quotes(scalar);
     case Kind::list:

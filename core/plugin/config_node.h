@@ -20,21 +20,23 @@ struct Location {
 struct ConfigNode {
   enum class Kind { null, scalar, list, map };
 
+  ConfigNode() {}  // not defaulted: `entries` is of a type that is complete only after this one
+
   Kind kind = Kind::null;
   Location where;
-  std::string scalar;                                        ///< scalar only
-  bool quoted = false;                                       ///< scalar only: text, whatever it looks like
-  std::vector<ConfigNode> items;                             ///< list only
-  std::vector<std::pair<std::string, ConfigNode>> entries;   ///< map only, in order of writing
-  std::vector<Location> key_places;                          ///< map only, one an entry
+  std::string scalar;                                       ///< scalar only
+  bool quoted = false;                                      ///< scalar only: text, whatever it looks like
+  std::vector<ConfigNode> items;                            ///< list only
+  std::vector<std::pair<std::string, ConfigNode>> entries;  ///< map only, in order of writing
+  std::vector<Location> key_places;                         ///< map only, one an entry
 
-  const ConfigNode* find(const std::string& key) const;      ///< map entry or null
+  const ConfigNode* find(const std::string& key) const;  ///< map entry or null
 
-  void add(const std::string& key, ConfigNode value);        ///< appends an entry, making a null node a map
+  void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
 
   std::string one_line() const;  ///< as YAML; text that could be taken for something else is quoted
 
-  static ConfigNode of(double value);                        ///< shortest text that reads back the same
+  static ConfigNode of(double value);  ///< shortest text that reads back the same
   static ConfigNode of(int value);
   static ConfigNode of(bool value);
   static ConfigNode of(const std::string& value);

@@ -41,8 +41,10 @@ void collect(const Schema& schema, const ConfigNode& defaults, int depth, const 
   for (const Parameter& p : schema.parameters) {
     const ConfigNode* initial = defaults.find(p.name);
     Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p)};
-    if (p.required) row.initial = "required";
-    else if (p.type != "section" && initial) row.initial = initial->one_line();
+    if (p.required)
+      row.initial = "required";
+    else if (p.type != "section" && initial)
+      row.initial = initial->one_line();
     rows.push_back(row);
     if (p.type == "section") collect(*p.section, *initial, depth + 1, row.path + ".", rows);
     if (p.type == "list of sections")
@@ -86,8 +88,7 @@ std::string describe(const Schema& schema) {
   std::string text;
   for (size_t i = 0; i < table.size(); ++i) {
     std::string line = "  ";
-    for (size_t k = 0; k < 5; ++k)
-      line += table[i][k] + std::string(widths[k] - width(table[i][k]) + 2, ' ');
+    for (size_t k = 0; k < 5; ++k) line += table[i][k] + std::string(widths[k] - width(table[i][k]) + 2, ' ');
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;

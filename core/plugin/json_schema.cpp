@@ -10,7 +10,8 @@ using Json = nlohmann::ordered_json;
 Json value_of(const ConfigNode& node) {
   Json json;
   switch (node.kind) {
-    case ConfigNode::Kind::null: break;
+    case ConfigNode::Kind::null:
+      break;
     case ConfigNode::Kind::list:
       json = Json::array();
       for (const ConfigNode& item : node.items) json.push_back(value_of(item));
@@ -88,8 +89,10 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   const ConfigNode defaults = schema.write(schema.fresh().get());
   for (const Parameter& p : schema.parameters) {
     Json& property = properties[p.name] = parameter_schema(p, registry);
-    if (p.required) required.push_back(p.name);
-    else if (p.type != "section") property["default"] = value_of(*defaults.find(p.name));
+    if (p.required)
+      required.push_back(p.name);
+    else if (p.type != "section")
+      property["default"] = value_of(*defaults.find(p.name));
   }
   Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) json["required"] = required;

@@ -30,12 +30,12 @@ void load(Registry& registry, const fs::path& library) {
   const auto entry_point =
       reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
   if (!entry_point)
-    throw std::runtime_error(path + ": is not a drape plugin: it exports no function drape_plugin"
+    throw std::runtime_error(path +
+                             ": is not a drape plugin: it exports no function drape_plugin"
                              " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
   const DrapePluginDescriptor& descriptor = *entry_point();
   const std::string fault = mismatch(descriptor);
-  if (!fault.empty())
-    throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
+  if (!fault.empty()) throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
   registry.current_library = path;
   descriptor.register_entries(registry);
 }

@@ -24,10 +24,14 @@ std::optional<Number> parse_all(const std::string& text) {
 /// What was written, for "must be …, not …".
 std::string shown(const ConfigNode& node) {
   switch (node.kind) {
-    case Kind::null: return "empty";
-    case Kind::list: return "a list";
-    case Kind::map: return "a map";
-    case Kind::scalar: break;
+    case Kind::null:
+      return "empty";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
+    case Kind::scalar:
+      break;
   }
   const bool number = !node.quoted && parse_number(node.scalar);
   return number ? node.scalar : (node.quoted ? "the text \"" : "\"") + node.scalar + "\"";
@@ -64,8 +68,8 @@ std::string scalar_fault(const std::string& type, const ConfigNode& node, const 
   if (type == "boolean")
     return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
   if (node.kind != Kind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
-  const bool known = p.choices.empty() ||
-                     std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
+  const bool known =
+      p.choices.empty() || std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
   return known ? "" : quoted_choice(p.choices);
 }
 
@@ -100,7 +104,8 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
   if (p.nullable && node.kind == Kind::null) return true;
-  if (p.type.starts_with("list of ")) check_list(node, p, errors);
+  if (p.type.starts_with("list of "))
+    check_list(node, p, errors);
   else if (p.type != "section" && p.type != "node")
     check_scalar(p.type, "\"" + p.name + "\"", node, p, errors);
   return errors.size() == before;
@@ -140,9 +145,9 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
                                                map.key_places[first].text()});
     } else if (index == known.size()) {
       const std::string nearest = nearest_word(key, known);
-      const std::string hint = !nearest.empty()  ? "; did you mean \"" + nearest + "\"?"
-                               : known.empty() ? "; it takes no keys"
-                                               : "; known keys are " + joined(known);
+      const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
+                               : known.empty()  ? "; it takes no keys"
+                                                : "; known keys are " + joined(known);
       errors.push_back({map.key_places[i], "unknown key \"" + key + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
       parameters[index].read(object, node, errors);

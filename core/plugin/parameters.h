@@ -16,19 +16,19 @@ namespace drape {
 /// and the saved config all derive from it. Its default is the member's value in a fresh struct.
 struct Parameter {
   std::string name;
-  std::string type;      ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::string type;  ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
   std::string meaning;
-  std::string unit;      ///< SI; empty or "1" where there is none
-  std::string source;    ///< paper and equation, or design note
+  std::string unit;    ///< SI; empty or "1" where there is none
+  std::string source;  ///< paper and equation, or design note
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
-  bool open_minimum = false;           ///< the minimum itself is refused
+  bool open_minimum = false;  ///< the minimum itself is refused
   bool open_maximum = false;
-  int size = 0;                        ///< lists: number of items, 0 for any
+  int size = 0;  ///< lists: number of items, 0 for any
   bool required = false;
-  bool nullable = false;               ///< null is allowed and means "none"
-  std::vector<std::string> choices;    ///< text: the allowed words, empty for any
-  std::string plugin_kind;             ///< nodes: the kind of plugin they choose, empty for none
+  bool nullable = false;             ///< null is allowed and means "none"
+  std::vector<std::string> choices;  ///< text: the allowed words, empty for any
+  std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
 
   // Type-erased access to the member of a struct; `read` is given only nodes that passed the checks above.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
@@ -39,7 +39,7 @@ struct Parameter {
 /// The parameters of one struct.
 class Schema {
  public:
-  std::string name;                    ///< what error texts call it ("in newton"); may be empty
+  std::string name;  ///< what error texts call it ("in newton"); may be empty
   std::vector<Parameter> parameters;
   std::function<std::shared_ptr<void>()> fresh;  ///< a struct with its defaults
 
@@ -54,17 +54,52 @@ class Schema {
 class ParameterHandle {
  public:
   explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
-  ParameterHandle& meaning(std::string text) { p_.meaning = std::move(text); return *this; }
-  ParameterHandle& unit(std::string text) { p_.unit = std::move(text); return *this; }
-  ParameterHandle& source(std::string text) { p_.source = std::move(text); return *this; }
-  ParameterHandle& at_least(double v) { p_.minimum = v; return *this; }
-  ParameterHandle& at_most(double v) { p_.maximum = v; return *this; }
-  ParameterHandle& above(double v) { p_.minimum = v; p_.open_minimum = true; return *this; }
-  ParameterHandle& below(double v) { p_.maximum = v; p_.open_maximum = true; return *this; }
-  ParameterHandle& size(int n) { p_.size = n; return *this; }
-  ParameterHandle& required() { p_.required = true; return *this; }
-  ParameterHandle& choices(std::vector<std::string> words) { p_.choices = std::move(words); return *this; }
-  ParameterHandle& plugin(std::string kind) { p_.plugin_kind = std::move(kind); return *this; }
+  ParameterHandle& meaning(std::string text) {
+    p_.meaning = std::move(text);
+    return *this;
+  }
+  ParameterHandle& unit(std::string text) {
+    p_.unit = std::move(text);
+    return *this;
+  }
+  ParameterHandle& source(std::string text) {
+    p_.source = std::move(text);
+    return *this;
+  }
+  ParameterHandle& at_least(double v) {
+    p_.minimum = v;
+    return *this;
+  }
+  ParameterHandle& at_most(double v) {
+    p_.maximum = v;
+    return *this;
+  }
+  ParameterHandle& above(double v) {
+    p_.minimum = v;
+    p_.open_minimum = true;
+    return *this;
+  }
+  ParameterHandle& below(double v) {
+    p_.maximum = v;
+    p_.open_maximum = true;
+    return *this;
+  }
+  ParameterHandle& size(int n) {
+    p_.size = n;
+    return *this;
+  }
+  ParameterHandle& required() {
+    p_.required = true;
+    return *this;
+  }
+  ParameterHandle& choices(std::vector<std::string> words) {
+    p_.choices = std::move(words);
+    return *this;
+  }
+  ParameterHandle& plugin(std::string kind) {
+    p_.plugin_kind = std::move(kind);
+    return *this;
+  }
 
  private:
   Parameter& p_;

@@ -76,15 +76,25 @@ struct ScalarShape {
   static constexpr bool nullable = false;
 };
 template <>
-struct Shape<double> : ScalarShape<double> { static std::string type() { return "number"; } };
+struct Shape<double> : ScalarShape<double> {
+  static std::string type() { return "number"; }
+};
 template <>
-struct Shape<int> : ScalarShape<int> { static std::string type() { return "integer"; } };
+struct Shape<int> : ScalarShape<int> {
+  static std::string type() { return "integer"; }
+};
 template <>
-struct Shape<bool> : ScalarShape<bool> { static std::string type() { return "boolean"; } };
+struct Shape<bool> : ScalarShape<bool> {
+  static std::string type() { return "boolean"; }
+};
 template <>
-struct Shape<std::string> : ScalarShape<std::string> { static std::string type() { return "text"; } };
+struct Shape<std::string> : ScalarShape<std::string> {
+  static std::string type() { return "text"; }
+};
 template <>
-struct Shape<ConfigNode> : ScalarShape<ConfigNode> { static std::string type() { return "node"; } };
+struct Shape<ConfigNode> : ScalarShape<ConfigNode> {
+  static std::string type() { return "node"; }
+};
 template <class T>
 struct Shape<std::vector<T>> : ScalarShape<T> {
   static std::string type() { return "list of " + Shape<T>::type() + "s"; }
@@ -96,7 +106,9 @@ struct Shape<Eigen::Matrix<double, N, 1>> {
   static std::string type() { return "list of numbers"; }
 };
 template <class T>
-struct Shape<std::optional<T>> : Shape<T> { static constexpr bool nullable = true; };
+struct Shape<std::optional<T>> : Shape<T> {
+  static constexpr bool nullable = true;
+};
 
 }  // namespace parameter_detail
 

@@ -10,10 +10,10 @@
 ///     }
 ///
 /// It exports one C function, `drape_plugin`, whose descriptor is compared before anything else is called.
-#define DRAPE_PLUGIN(registry)                                                                       \
-  static void drape_register_entries(drape::Registry& registry);                                     \
-  extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {    \
+#define DRAPE_PLUGIN(registry)                                                                        \
+  static void drape_register_entries(drape::Registry& registry);                                      \
+  extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {     \
     static constexpr DrapePluginDescriptor descriptor = DRAPE_ABI_DESCRIPTOR(drape_register_entries); \
-    return &descriptor;                                                                              \
-  }                                                                                                  \
+    return &descriptor;                                                                               \
+  }                                                                                                   \
   static void drape_register_entries(drape::Registry& registry)

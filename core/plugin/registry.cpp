@@ -56,10 +56,10 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   std::vector<std::string> names;
   for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
   const std::string nearest = nearest_word(type->scalar, names);
-  errors.push_back({type->where, "unknown " + kind + " \"" + type->scalar + "\"; " +
-                                     (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
-                                     (names.empty() ? "no plugin of that kind is loaded"
-                                                    : "known: " + joined(names))});
+  errors.push_back(
+      {type->where, "unknown " + kind + " \"" + type->scalar + "\"; " +
+                        (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
+                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names))});
   return nullptr;
 }
 

@@ -14,15 +14,25 @@ class Solver;
 template <class Interface>
 struct Kind;
 template <>
-struct Kind<ContactModel> { static constexpr const char* name = "contact"; };
+struct Kind<ContactModel> {
+  static constexpr const char* name = "contact";
+};
 template <>
-struct Kind<Energy> { static constexpr const char* name = "energy"; };
+struct Kind<Energy> {
+  static constexpr const char* name = "energy";
+};
 template <>
-struct Kind<Metric> { static constexpr const char* name = "metric"; };
+struct Kind<Metric> {
+  static constexpr const char* name = "metric";
+};
 template <>
-struct Kind<Refiner> { static constexpr const char* name = "refiner"; };
+struct Kind<Refiner> {
+  static constexpr const char* name = "refiner";
+};
 template <>
-struct Kind<Solver> { static constexpr const char* name = "solver"; };
+struct Kind<Solver> {
+  static constexpr const char* name = "solver";
+};
 
 template <class Interface, class Implementation>
 void Registry::add(const std::string& name, const std::string& summary) {

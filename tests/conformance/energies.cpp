@@ -25,8 +25,9 @@ struct Candidate {
 
 /// What to test an energy with that needs parameters, or whose defaults leave it without effect.
 const std::map<std::string, std::string> settings = {
-    {"constant_load", "{type: constant_load, force_density: [1, 2, 3],"
-                      " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"}};
+    {"constant_load",
+     "{type: constant_load, force_density: [1, 2, 3],"
+     " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"}};
 
 /// Every registered energy, with its defaults where `settings` says nothing else.
 std::vector<Candidate> all_energies() {
@@ -39,7 +40,8 @@ std::vector<Candidate> all_energies() {
   return all;
 }
 
-/// As stiff in bending as in stretching, on meshes of edges of about 0.1 m, so that no test is blind to either.
+/// As stiff in bending as in stretching, on meshes of edges of about 0.1 m, so that no test is blind to
+/// either.
 const Material material = [] {
   Material m;
   m.thickness = 0.01;
@@ -133,7 +135,8 @@ int for_each_binding(const Body& body) {
       const auto bound = bind(candidate, level);
       if (!bound) continue;
       ++bindings;
-      INFO(candidate.name << " on the " << (level.rest.vertices.col(2).isZero(0) ? "flat" : "curved") << " mesh");
+      INFO(candidate.name << " on the " << (level.rest.vertices.col(2).isZero(0) ? "flat" : "curved")
+                          << " mesh");
       body(candidate, level, *bound);
     }
   return bindings;
@@ -196,7 +199,8 @@ TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact 
 }
 
 TEST_CASE("Internal energies do not see rigid motions", "[conformance]") {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   const Eigen::RowVector3d shift(0.3, -0.2, 0.7);
   int internal = 0;
   for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& energy) {
@@ -257,7 +261,8 @@ TEST_CASE("The rest shape of every level of every hierarchy is free of stress", 
       {"random triangulation", random_triangulation({0.6, 0.5}, 40, 11)},
       {"disc", disc(0.4, 40)},
       {"polygon with a hole",
-       delaunay_polygon({{{0, 0}, {0.8, 0}, {0.6, 0.6}, {0.1, 0.5}}, {{0.3, 0.2}, {0.5, 0.2}, {0.4, 0.35}}}, 60, 1)}};
+       delaunay_polygon({{{0, 0}, {0.8, 0}, {0.6, 0.6}, {0.1, 0.5}}, {{0.3, 0.2}, {0.5, 0.2}, {0.4, 0.35}}},
+                        60, 1)}};
   int checked = 0;
   for (const RegistryEntry* entry : test_registry().of_kind("refiner"))
     for (const auto& [mesh_name, mesh] : meshes) {
@@ -265,7 +270,8 @@ TEST_CASE("The rest shape of every level of every hierarchy is free of stress", 
       for (const Candidate& candidate : all_energies()) {
         if (!candidate.internal()) continue;
         for (const Level& level : hierarchy.levels) {
-          INFO(candidate.name << ", " << mesh_name << " refined by " << entry->name << ", level " << level.index);
+          INFO(candidate.name << ", " << mesh_name << " refined by " << entry->name << ", level "
+                              << level.index);
           const auto energy = candidate.energy->bind(level, material);
           const Positions& rest = level.rest.vertices;
           const BlockMatrix h = hessian_of(*energy, rest, Projection::none);

@@ -28,7 +28,9 @@ methods: {newton: {}}
       x(i, 2) = height * std::sin(waves * x(i, 0)) * std::cos(2 * x(i, 1)), x(i, 0) *= 1.1;
     return x;
   }
-  MetricInput pair(const Positions& x, const Positions& other) const { return {s.level(), s.model(), x, &other}; }
+  MetricInput pair(const Positions& x, const Positions& other) const {
+    return {s.level(), s.model(), x, &other};
+  }
   MetricInput state(const Positions& x) const { return {s.level(), s.model(), x, nullptr}; }
 };
 
@@ -87,7 +89,8 @@ TEST_CASE("A state does not differ from itself", "[conformance]") {
 
 TEST_CASE("Metrics of a pair do not see a rigid motion of both", "[conformance]") {
   const Fixture f;
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.8, Eigen::Vector3d(2, 1, -1).normalized()).toRotationMatrix();
   const auto moved = [&](const Positions& x) -> Positions {
     return (x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.5, -0.3, 0.2);
   };

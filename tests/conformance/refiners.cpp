@@ -27,7 +27,8 @@ std::vector<NamedMesh> meshes() {
           {"random triangulation", random_triangulation({0.6, 0.5}, 50, 2), true},
           {"disc", disc(0.4, 40), false},
           {"polygon with a hole",
-           delaunay_polygon({{{0, 0}, {0.8, 0}, {0.6, 0.6}, {0.1, 0.5}}, {{0.3, 0.2}, {0.5, 0.2}, {0.4, 0.35}}}, 60, 1),
+           delaunay_polygon(
+               {{{0, 0}, {0.8, 0}, {0.6, 0.6}, {0.1, 0.5}}, {{0.3, 0.2}, {0.5, 0.2}, {0.4, 0.35}}}, 60, 1),
            false},
           {"curved", curved, false}};
 }
@@ -65,7 +66,8 @@ void for_each_refinement(const Body& body) {
       const Level coarse = Level::of(0, m.mesh);
       const Refinement refinement = make_plugin_from<Refiner>(entry->name)->refine(coarse);
       REQUIRE(refinement.weights.cols() == coarse.vertex_count());
-      body(m, coarse, refinement, TriangleMesh{refinement.weights * coarse.rest.vertices, refinement.triangles});
+      body(m, coarse, refinement,
+           TriangleMesh{refinement.weights * coarse.rest.vertices, refinement.triangles});
     }
 }
 
@@ -84,18 +86,19 @@ TEST_CASE("A refiner has one vertex a vertex and an edge, and rows that sum to o
 }
 
 TEST_CASE("A refiner makes four triangles of each, in place and facing the same way", "[conformance]") {
-  for_each_refinement([](const NamedMesh& m, const Level& coarse, const Refinement& r, const TriangleMesh& fine) {
-    REQUIRE(r.triangles.rows() == 4 * coarse.triangle_count());
-    CHECK(check_mesh(fine).empty());
-    for (int t = 0; t < coarse.triangle_count(); ++t) {
-      const std::set<int> allowed = family(coarse, t);
-      REQUIRE(allowed.size() == 6);
-      for (int c = 4 * t; c < 4 * t + 4; ++c) {
-        for (int k = 0; k < 3; ++k) REQUIRE(allowed.count(r.triangles(c, k)) == 1);
-        REQUIRE(area_vector(fine, c).dot(area_vector(m.mesh, t)) > 0);
-      }
-    }
-  });
+  for_each_refinement(
+      [](const NamedMesh& m, const Level& coarse, const Refinement& r, const TriangleMesh& fine) {
+        REQUIRE(r.triangles.rows() == 4 * coarse.triangle_count());
+        CHECK(check_mesh(fine).empty());
+        for (int t = 0; t < coarse.triangle_count(); ++t) {
+          const std::set<int> allowed = family(coarse, t);
+          REQUIRE(allowed.size() == 6);
+          for (int c = 4 * t; c < 4 * t + 4; ++c) {
+            for (int k = 0; k < 3; ++k) REQUIRE(allowed.count(r.triangles(c, k)) == 1);
+            REQUIRE(area_vector(fine, c).dot(area_vector(m.mesh, t)) > 0);
+          }
+        }
+      });
 }
 
 TEST_CASE("A refiner keeps the area of flat cloths with straight sides", "[conformance]") {
@@ -107,7 +110,8 @@ TEST_CASE("A refiner keeps the area of flat cloths with straight sides", "[confo
 TEST_CASE("A refiner makes the finer grid of a grid", "[conformance]") {
   const auto sorted = [](const Positions& x) {
     std::vector<std::pair<long, long>> places;  // [µm]
-    for (Eigen::Index i = 0; i < x.rows(); ++i) places.emplace_back(std::lround(1e6 * x(i, 0)), std::lround(1e6 * x(i, 1)));
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      places.emplace_back(std::lround(1e6 * x(i, 0)), std::lround(1e6 * x(i, 1)));
     std::sort(places.begin(), places.end());
     return places;
   };

@@ -13,7 +13,7 @@ const std::string models[] = {"hinge", "quadratic_bending"};
 const std::vector<int> refinements = {5, 10, 20, 40};
 /// The tolerance is an order above what rounding of the positions makes of forces this stiff (EA/q L is 1e5).
 const std::string newton =
-    "newton: {step_size: 0.1, step_growth: 2, exact_below: 1, force_tolerance: 1e-5, max_steps: 500}\n";
+    "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n";
 
 /// A strip whose weight gives Γ = ρ g d L³ / D_eff.
 Strip strip_for_gamma(int cells, double gamma) {
@@ -51,7 +51,8 @@ TEST_CASE("A cantilever bends under its own weight", "[physics]") {
       const Solved s = under_weight(strip_for_gamma(cells, gamma), "hinge");
       const double angle = tip_angle(s, cells);
       errors.push_back(std::abs(angle - exact));
-      row("%8g %8d %12.5f %12.5f %10.2e %10d", gamma, cells, angle, exact, errors.back(), s.levels.back().iterations);
+      row("%8g %8d %12.5f %12.5f %10.2e %10d", gamma, cells, angle, exact, errors.back(),
+          s.levels.back().iterations);
     }
     INFO("gamma " << gamma);
     check_order(errors, 2);
@@ -75,7 +76,8 @@ TEST_CASE("A cantilever bends under a load at its end", "[physics]") {
       REQUIRE(s.levels.back().outcome == Outcome::converged);
       const double deflection = -place(s, cells, cells).z() / strip.length;
       errors.push_back(std::abs(deflection - exact));
-      row("%8g %8d %12.6f %12.6f %10.2e %10d", alpha, cells, deflection, exact, errors.back(), s.levels.back().iterations);
+      row("%8g %8d %12.6f %12.6f %10.2e %10d", alpha, cells, deflection, exact, errors.back(),
+          s.levels.back().iterations);
     }
     INFO("PL²/EI " << alpha);
     check_order(errors, 2);
@@ -86,7 +88,8 @@ TEST_CASE("A cantilever bends under a load at its end", "[physics]") {
 TEST_CASE("Both bending models give linear beam theory at small angles", "[physics]") {
   const double gamma = 0.1, exact = cantilever_under_weight(gamma).deflection;
   CHECK(exact == Approx(gamma / 8).epsilon(1e-3));
-  row("\nDeflection of a stiff cantilever over qL⁴/8EI, gamma = %g; exactly %.7f", gamma, exact / (gamma / 8));
+  row("\nDeflection of a stiff cantilever over qL⁴/8EI, gamma = %g; exactly %.7f", gamma,
+      exact / (gamma / 8));
   row("%8s %12s %18s", "cells", "hinge", "quadratic_bending");
   std::vector<double> errors[2];
   for (int cells : {5, 10, 20}) {
@@ -109,7 +112,8 @@ TEST_CASE("Both bending models give linear beam theory at small angles", "[physi
 
 TEST_CASE("Quadratic bending departs from the hinge where hinges turn far", "[physics]") {
   row("\nTip angle [degrees] by both bending models");
-  row("%8s %8s %12s %18s %12s %22s", "gamma", "cells", "hinge", "quadratic_bending", "exact", "largest hinge angle");
+  row("%8s %8s %12s %18s %12s %22s", "gamma", "cells", "hinge", "quadratic_bending", "exact",
+      "largest hinge angle");
   for (double gamma : {1., 20., 100.}) {
     const double exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
     double last_gap = 1e9;
@@ -119,8 +123,10 @@ TEST_CASE("Quadratic bending departs from the hinge where hinges turn far", "[ph
         const Solved s = under_weight(strip_for_gamma(cells, gamma), models[model]);
         angle[model] = tip_angle(s, cells);
         for (int c = 1; c < cells && model == 0; ++c) {
-          const Eigen::Vector3d a = place(s, cells, c) - place(s, cells, c - 1), b = place(s, cells, c + 1) - place(s, cells, c);
-          sharpest = std::max(sharpest, std::acos(std::min(1.0, a.dot(b) / (a.norm() * b.norm()))) * 180 / M_PI);
+          const Eigen::Vector3d a = place(s, cells, c) - place(s, cells, c - 1),
+                                b = place(s, cells, c + 1) - place(s, cells, c);
+          sharpest =
+              std::max(sharpest, std::acos(std::min(1.0, a.dot(b) / (a.norm() * b.norm()))) * 180 / M_PI);
         }
       }
       row("%8g %8d %12.4f %18.4f %12.4f %22.2f", gamma, cells, angle[0], angle[1], exact, sharpest);

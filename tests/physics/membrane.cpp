@@ -15,14 +15,15 @@ struct Sheet {
   double density = 1000, thickness = 0.01, modulus = 1e5, poisson_ratio = 0;
 
   std::string yaml(const std::string& more) const {
-    return "name: sheet\nlevels: 1\ncloth: {shape: rectangle, size: [" + text(size.x()) + ", " + text(size.y()) +
-           "], " + triangulation + "}\nmaterial: {density: " + text(density) + ", thickness: " + text(thickness) +
-           ", membrane_modulus: " + text(modulus) + ", bending_modulus: 0, poisson_ratio: " + text(poisson_ratio) +
-           "}\nmethods: {newton: {}}\n" + more;
+    return "name: sheet\nlevels: 1\ncloth: {shape: rectangle, size: [" + text(size.x()) + ", " +
+           text(size.y()) + "], " + triangulation + "}\nmaterial: {density: " + text(density) +
+           ", thickness: " + text(thickness) + ", membrane_modulus: " + text(modulus) +
+           ", bending_modulus: 0, poisson_ratio: " + text(poisson_ratio) + "}\nmethods: {newton: {}}\n" +
+           more;
   }
 };
 
-/// Energy of a homogeneous stretch over rest volume, as it is documented (docs and method.md, section 5).
+/// Energy of a homogeneous stretch over rest volume, as it is documented (docs/method.md, section 5).
 double energy_density(const std::string& membrane, double modulus, double nu, double s1, double s2) {
   const double mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / (1 - nu * nu);
   if (membrane == "stvk") {
@@ -67,7 +68,8 @@ std::string end_tractions(const Solved& s, double length, double traction) {
     const int a = s.level().topology.edges(e, 0), b = s.level().topology.edges(e, 1);
     for (double end : {0.0, length})
       if (rest(a, 0) == end && rest(b, 0) == end)
-        for (int v : {a, b}) force[v] += (end == 0 ? -0.5 : 0.5) * traction * (rest.row(a) - rest.row(b)).norm();
+        for (int v : {a, b})
+          force[v] += (end == 0 ? -0.5 : 0.5) * traction * (rest.row(a) - rest.row(b)).norm();
   }
   std::string points;
   for (std::size_t v = 0; v < force.size(); ++v)
@@ -78,23 +80,27 @@ std::string end_tractions(const Solved& s, double length, double traction) {
 }
 
 std::string newton(double tolerance) {
-  return "newton: {step_size: 0.01, step_growth: 2, exact_below: 1, max_steps: 200, force_tolerance: " +
-         text(tolerance) + "}\n";
+  return "newton: {step_size: 0.01, step_growth: 2, max_steps: 200, force_tolerance: " + text(tolerance) +
+         "}\n";
 }
 
 }  // namespace
 
 TEST_CASE("A strip that hangs stretches by rho g L² / 2E", "[physics]") {
   const double length = 1, strain = 3e-6;  // ρ g L / E
-  row("\nHanging strip: u over rho g L² / E, at the end and largest error over all vertices, rho g L / E = %g", strain);
+  row("\nHanging strip: u over rho g L² / E, at the end and largest error over all vertices, rho g L / E = "
+      "%g",
+      strain);
   row("%12s %10s %12s %14s %14s", "membrane", "vertices", "end (mean)", "exactly 0.5 +", "vertex error");
   for (const std::string& membrane : membranes) {
     std::vector<double> errors;
     for (int vertices : {60, 240, 960, 3840}) {
       Sheet sheet{{length, 0.4}, "triangulation: random, vertices: " + std::to_string(vertices)};
       sheet.modulus = sheet.density * 9.81 * length / strain;
-      const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane + ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
-                                             "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" + newton(1e-6)));
+      const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane +
+                                             ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
+                                             "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" +
+                                             newton(1e-6)));
       INFO(s.levels.back().message);
       REQUIRE(s.levels.back().outcome == Outcome::converged);
       double worst = 0, end = 0;
@@ -121,14 +127,17 @@ TEST_CASE("A grid that hangs has the exact displacement at every row", "[physics
     for (const std::string triangulation : {"one_way", "criss_cross"}) {
       Sheet sheet{{1, 0.4}, "triangulation: " + triangulation + ", columns: 21, rows: 9"};
       sheet.modulus = sheet.density * 9.81 / strain;
-      const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane + ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
-                                             "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" + newton(1e-6)));
+      const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane +
+                                             ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
+                                             "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" +
+                                             newton(1e-6)));
       REQUIRE(s.levels.back().outcome == Outcome::converged);
       double worst = 0;
       for (int i = 1; i < 21; ++i) {
         double mean = 0;  // over the width: vertices at the sides stand for half a cell
         for (int j = 0; j < 9; ++j)
-          mean += (j == 0 || j == 8 ? 0.5 : 1) / 8 * (-s.x()(i + 21 * j, 2) - s.rest()(i + 21 * j, 0)) / strain;
+          mean +=
+              (j == 0 || j == 8 ? 0.5 : 1) / 8 * (-s.x()(i + 21 * j, 2) - s.rest()(i + 21 * j, 0)) / strain;
         const double z = i / 20.0;
         worst = std::max(worst, std::abs(mean - (z - z * z / 2)));
       }
@@ -140,16 +149,18 @@ TEST_CASE("A grid that hangs has the exact displacement at every row", "[physics
 
 TEST_CASE("A sheet under end tractions stretches homogeneously, exactly", "[physics]") {
   row("\nUniaxial stretch, nu = 0.3");
-  row("%12s %14s %8s %12s %12s %12s", "membrane", "mesh", "P/E", "sigma1", "sigma2", "error");
-  const std::string meshes[] = {"triangulation: one_way, columns: 4, rows: 3", "triangulation: one_way, columns: 13, rows: 9",
-                                "triangulation: criss_cross, columns: 7, rows: 5", "triangulation: random, vertices: 80"};
+  row("%12s %36s %8s %12s %12s %12s", "membrane", "mesh", "P/E", "sigma1", "sigma2", "error");
+  const std::string meshes[] = {
+      "triangulation: one_way, columns: 4, rows: 3", "triangulation: one_way, columns: 13, rows: 9",
+      "triangulation: criss_cross, columns: 7, rows: 5", "triangulation: random, vertices: 80"};
   for (const std::string& membrane : membranes)
     for (double load : {0.05, 0.15, 0.4})
       for (const std::string& mesh : meshes) {
         Sheet sheet{{1, 0.75}, mesh};
         sheet.poisson_ratio = 0.3;
         const double stress = load * sheet.modulus;
-        const Eigen::Vector2d stretch = uniaxial_stretches(membrane, sheet.modulus, sheet.poisson_ratio, stress);
+        const Eigen::Vector2d stretch =
+            uniaxial_stretches(membrane, sheet.modulus, sheet.poisson_ratio, stress);
         const auto free_energy = [&](double s1, double s2) {
           return energy_density(membrane, sheet.modulus, sheet.poisson_ratio, s1, s2) - stress * s1;
         };
@@ -172,8 +183,8 @@ TEST_CASE("A sheet under end tractions stretches homogeneously, exactly", "[phys
             const double expected = std::hypot(stretch[0] * X[0], stretch[1] * X[1]);
             worst = std::max(worst, std::abs((s.x().row(i) - s.x().row(j)).norm() - expected));
           }
-        row("%12s %14s %8g %12.8f %12.8f %12.1e", membrane.c_str(), mesh.substr(15, mesh.find(',') - 15).c_str(), load,
-            stretch[0], stretch[1], worst);
+        row("%12s %36s %8g %12.8f %12.8f %12.1e", membrane.c_str(), mesh.substr(15).c_str(), load, stretch[0],
+            stretch[1], worst);
         CHECK(worst < 1e-8);
       }
 }

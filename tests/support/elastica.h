@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-/// The inextensible beam (Euler's elastica) in the plane, L = EI = 1: θ'' = -load(s, θ), θ(0) = 0, θ'(1) = 0, θ
-/// being the angle below the clamped tangent.
+/// The inextensible beam (Euler's elastica) in the plane, L = EI = 1: θ'' = -load(s, θ), θ(0) = 0, θ'(1) = 0,
+/// θ being the angle below the clamped tangent.
 struct Elastica {
   double tip;         ///< θ(1)
   double deflection;  ///< ∫ sin θ ds

@@ -38,10 +38,13 @@ Eigen::MatrixXd differences(const Function& f, drape::Positions x, double h) {
     Eigen::VectorXd column;
     if constexpr (std::is_arithmetic_v<decltype(f(x))>) {
       column.resize(1);
-      column[0] = (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) / (12 * h);
+      column[0] =
+          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) /
+          (12 * h);
     } else {
       const drape::Positions d =
-          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) / (12 * h);
+          (8 * (at(coordinate, h) - at(coordinate, -h)) - (at(coordinate, 2 * h) - at(coordinate, -2 * h))) /
+          (12 * h);
       column = Eigen::Map<const Eigen::VectorXd>(d.data(), d.size());
     }
     if (i == 0) result.resize(column.size(), x.size());
@@ -51,4 +54,6 @@ Eigen::MatrixXd differences(const Function& f, drape::Positions x, double h) {
 }
 
 /// n×3 as one column of 3n.
-inline Eigen::VectorXd flat(const drape::Positions& x) { return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size()); }
+inline Eigen::VectorXd flat(const drape::Positions& x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), x.size());
+}

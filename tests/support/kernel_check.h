@@ -8,8 +8,8 @@
 #include "core/numerics/parallel.h"
 #include "tests/support/evaluate.h"
 
-// What every element kernel owes (see core/numerics/element_energy.h), for one state of one element. A state is
-// the column of its differences x_i - x_0.
+// What every element kernel owes (see core/numerics/element_energy.h), for one state of one element. A state
+// is the column of its differences x_i - x_0.
 
 template <class Kernel>
 struct KernelCheck {
@@ -18,7 +18,7 @@ struct KernelCheck {
   using State = Eigen::Matrix<double, n, 1>;
   using Hessian = Eigen::Matrix<double, n, n>;
 
-  /// Value, gradient and (mirrored) Hessian in one lane of W, the others being slightly different states.
+  /// Value, gradient and (mirrored) Hessian.
   template <class T>
   struct Result {
     T value, gradient_value;
@@ -26,7 +26,7 @@ struct KernelCheck {
     Eigen::Matrix<T, n, n> hessian;
   };
   template <class T>
-  static Result<T> evaluate(const Eigen::Matrix<T, n, 1>& x, const T* rest) {
+  [[gnu::noinline]] static Result<T> evaluate(const Eigen::Matrix<T, n, 1>& x, const T* rest) {
     Eigen::Matrix<T, 3, 1> d[n / 3], g[n / 3];
     for (int i = 0; i < n; ++i) d[i / 3][i % 3] = x[i];
     Result<T> r;
@@ -39,7 +39,9 @@ struct KernelCheck {
     return r;
   }
 
-  static Result<double> evaluate(const State& x, const Rest& rest) { return evaluate<double>(x, rest.data()); }
+  static Result<double> evaluate(const State& x, const Rest& rest) {
+    return evaluate<double>(x, rest.data());
+  }
 
   /// ∂f/∂x by central differences of fourth order.
   template <class Function>
@@ -110,13 +112,14 @@ struct KernelCheck {
     const Hessian h = evaluate(x, rest).hessian;
     const Eigen::MatrixXd full = by_vertices(h);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
-    for (const auto projection : {drape::Projection::clamp, drape::Projection::absolute, drape::Projection::none}) {
+    for (const auto projection :
+         {drape::Projection::clamp, drape::Projection::absolute, drape::Projection::none}) {
       drape::SymmetricMatrix<n, T> a;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i <= j; ++i) a(i, j) = h(i, j);
       Eigen::Matrix<T, 3, 1> d[n / 3];
       for (int i = 0; i < n; ++i) d[i / 3][i % 3] = x[i];
-      drape::project<Kernel>(d, a, projection);
+      project(d, a, projection);
       Hessian projected;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
@@ -127,16 +130,24 @@ struct KernelCheck {
           eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
       CHECK((by_vertices(projected) - expected).norm() <= 1e-10 * full.norm());
       if (projection == drape::Projection::none) continue;
-      const double smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(by_vertices(projected)).eigenvalues()[0];
+      const double smallest =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(by_vertices(projected)).eigenvalues()[0];
       CHECK(smallest >= -1e-12 * full.norm());
     }
     return eigen.eigenvalues()[0] / full.norm();
   }
 
  private:
+  template <class T>
+  [[gnu::noinline]] static void project(const Eigen::Matrix<T, 3, 1>* d, drape::SymmetricMatrix<n, T>& a,
+                                        drape::Projection projection) {
+    drape::project<Kernel>(d, a, projection);
+  }
   static double first_lane(double v) { return v; }
   template <int W>
-  static double first_lane(drape::Pack<W> v) { return v[0]; }
+  static double first_lane(drape::Pack<W> v) {
+    return v[0];
+  }
 };
 
 /// n independent normal numbers.
@@ -146,8 +157,8 @@ inline Eigen::VectorXd normal_numbers(int n, unsigned seed) {
   return Eigen::VectorXd::NullaryExpr(n, [&] { return normal(random); });
 }
 
-/// Value, gradient and projected Hessian have the same bits with 1, 2 and 3 threads, and the gradient's value is
-/// the value.
+/// Value, gradient and projected Hessian have the same bits with 1, 2 and 3 threads, and the gradient's value
+/// is the value.
 inline void check_threads(const drape::BoundEnergy& energy, const drape::Positions& x) {
   double value = 0;
   drape::Positions gradient;

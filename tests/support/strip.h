@@ -15,21 +15,21 @@ inline std::string text(const Eigen::Vector3d& v) {
   return "[" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
 }
 
-/// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack: mirrored at
-/// its middle line, so that bending does not twist it. Its cells are far longer than wide: with wide ones
-/// the diagonals would bend along (see docs/validation.md, "What the hinge model's stiffness is").
+/// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack:
+/// mirrored at its middle line, so that bending does not twist it. Its cells are far longer than wide: with
+/// wide ones the diagonals would bend along (see docs/validation.md, "What the hinge model's stiffness is").
 ///
 /// The hinges of column j carry the curvature from half a cell before it to half a cell behind. With columns
 /// 0 and 1 pinned, the first hinges that can bend are those of column 1, and the clamp is at half a cell. The
 /// free end is column `cells`, so (cells - 1/2) cells make the free length.
 struct Strip {
   int cells;
-  double length = 1;         ///< L, free [m]
-  double density = 1000;     ///< ρ [kg/m³]
-  double thickness = 0.01;   ///< d [m]
+  double length = 1;              ///< L, free [m]
+  double density = 1000;          ///< ρ [kg/m³]
+  double thickness = 0.01;        ///< d [m]
   double membrane_modulus = 1e9;  ///< [Pa]
-  double slenderness = 0.06;  ///< width of a cell over its length
-  double stiffness = 1;      ///< EI per width that the strip shall have, D_eff = 6 k = E_bend d³ / 4 [N m]
+  double slenderness = 0.06;      ///< width of a cell over its length
+  double stiffness = 1;  ///< EI per width that the strip shall have, D_eff = 6 k = E_bend d³ / 4 [N m]
 
   double cell() const { return length / (cells - 0.5); }
   double total() const { return cells * cell(); }
@@ -38,20 +38,20 @@ struct Strip {
 
   /// `energies` and `more` are YAML: a list, and further keys of the experiment.
   std::string yaml(const std::string& energies, const std::string& more) const {
-    return "name: strip\ncloth: {shape: rectangle, triangulation: criss_cross, size: [" + text(total()) + ", " +
-           text(width()) + "], columns: " + std::to_string(cells + 1) + ", rows: 3}\nlevels: 1\n" +
-           "material: {density: " + text(density) + ", thickness: " + text(thickness) + ", membrane_modulus: " +
-           text(membrane_modulus) + ", bending_modulus: " + text(bending_modulus()) + ", poisson_ratio: 0}\n" +
-           "pins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) + ", 1, 1]}]\n" +
-           "energies: " + energies + "\nmethods: {newton: {}}\n" + more;
+    return "name: strip\ncloth: {shape: rectangle, triangulation: criss_cross, size: [" + text(total()) +
+           ", " + text(width()) + "], columns: " + std::to_string(cells + 1) + ", rows: 3}\nlevels: 1\n" +
+           "material: {density: " + text(density) + ", thickness: " + text(thickness) +
+           ", membrane_modulus: " + text(membrane_modulus) + ", bending_modulus: " + text(bending_modulus()) +
+           ", poisson_ratio: 0}\n" + "pins: [{region: box, lower: [-1, -1, -1], upper: [" +
+           text(1.01 * cell()) + ", 1, 1]}]\n" + "energies: " + energies + "\nmethods: {newton: {}}\n" + more;
   }
 
   /// A load [N] spread evenly over the free end, as an item of `energies`.
   std::string end_load(const Eigen::Vector3d& force) const {
     std::string points;
     for (int j = 0; j < 3; ++j)
-      points += (j ? ", " : "") + std::string("{point: ") + text({total(), j * width() / 2, 0}) + ", force: " +
-                text(force * (j == 1 ? 0.5 : 0.25)) + "}";
+      points += (j ? ", " : "") + std::string("{point: ") + text({total(), j * width() / 2, 0}) +
+                ", force: " + text(force * (j == 1 ? 0.5 : 0.25)) + "}";
     return "{type: constant_load, points: [" + points + "]}";
   }
 };

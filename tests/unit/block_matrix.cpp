@@ -1,8 +1,9 @@
+#include "core/numerics/block_matrix.h"
+
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "core/numerics/block_matrix.h"
 #include "core/numerics/parallel.h"
 #include "tests/support/dense_matrix.h"
 
@@ -30,7 +31,8 @@ Stencils random_stencils(int vertex_count, int rows, int k, unsigned seed) {
 
 TEST_CASE("A block pattern is the union of the elements' pairs") {
   const int n = 30;
-  const std::vector<Stencils> stencils = {random_stencils(n, 25, 4, 1), Stencils(0, 1), random_stencils(n, 15, 3, 2)};
+  const std::vector<Stencils> stencils = {random_stencils(n, 25, 4, 1), Stencils(0, 1),
+                                          random_stencils(n, 15, 3, 2)};
   std::set<std::pair<int, int>> expected;
   for (int i = 0; i < n; ++i) expected.insert({i, i});
   for (const Stencils& s : stencils)
@@ -104,13 +106,17 @@ TEST_CASE("Misuse of block matrices is named") {
   Stencils outside(2, 2), repeated(1, 3);
   outside << 0, 1, 2, 3;
   repeated << 0, 2, 0;
-  CHECK_THROWS_WITH(BlockPattern::of(3, {outside}), "block pattern: element 1 of 2 vertices has vertex 3, outside 0 … 2");
-  CHECK_THROWS_WITH(BlockPattern::of(3, {repeated}), "block pattern: element 0 of 3 vertices repeats vertex 0");
+  CHECK_THROWS_WITH(BlockPattern::of(3, {outside}),
+                    "block pattern: element 1 of 2 vertices has vertex 3, outside 0 … 2");
+  CHECK_THROWS_WITH(BlockPattern::of(3, {repeated}),
+                    "block pattern: element 0 of 3 vertices repeats vertex 0");
   const auto pattern = BlockPattern::of(4, {outside});
   Stencils missing(1, 2);
   missing << 3, 0;
-  CHECK_THROWS_WITH(BlockSlots(*pattern, missing), "block pattern has no block for vertices 3 and 0 of element 0");
-  CHECK_THROWS_WITH(BlockPattern({0, 1, 3}, {0, 0, 1}), Catch::Contains("row 1 must have its diagonal first"));
+  CHECK_THROWS_WITH(BlockSlots(*pattern, missing),
+                    "block pattern has no block for vertices 3 and 0 of element 0");
+  CHECK_THROWS_WITH(BlockPattern({0, 1, 3}, {0, 0, 1}),
+                    Catch::Contains("row 1 must have its diagonal first"));
   CHECK_THROWS_WITH(BlockPattern({0, 2}, {0}), Catch::Contains("row starts"));
   Rows x(3, 3), y;
   CHECK_THROWS_WITH(BlockMatrix(pattern).multiply(x, y), "block matrix of 4 rows times 3 vectors");

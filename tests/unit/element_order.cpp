@@ -1,10 +1,11 @@
+#include "core/numerics/element_order.h"
+
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
 
 #include "core/hierarchy/level.h"
 #include "core/mesh/generate.h"
-#include "core/numerics/element_order.h"
 
 using namespace drape;
 

@@ -12,7 +12,8 @@ namespace {
 ProlongationMatrix random_weights(int fine, int coarse) {
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < fine; ++i)
-    for (int k = 0; k < 3; ++k) entries.emplace_back(i, (i + 5 * k * (i % 3 + 1)) % coarse, 0.2 + 0.1 * k + 0.01 * i);
+    for (int k = 0; k < 3; ++k)
+      entries.emplace_back(i, (i + 5 * k * (i % 3 + 1)) % coarse, 0.2 + 0.1 * k + 0.01 * i);
   ProlongationMatrix P(fine, coarse);
   P.setFromTriplets(entries.begin(), entries.end());
   return P;
@@ -34,7 +35,7 @@ TEST_CASE("The Galerkin product is the dense triple product", "[galerkin]") {
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(a.block(k)) = b;
     }
   const ProlongationMatrix P = random_weights(fine, coarse);
-  const GalerkinProduct product(pattern, P);
+  const GalerkinProduct product(*pattern, P);
   BlockMatrix c(product.coarse_pattern());
   product.form(a, c);
 

@@ -95,8 +95,8 @@ TEST_CASE("mismatch names what differs, on both sides") {
   theirs = ours;
   theirs.abi_number = 999;
   theirs.compiler = nullptr;  // another ABI number: nothing else may be looked at
-  CHECK(mismatch(theirs) == "the ABI number is 999 in the plugin and " + std::to_string(ours.abi_number) +
-                                " in drape");
+  CHECK(mismatch(theirs) ==
+        "the ABI number is 999 in the plugin and " + std::to_string(ours.abi_number) + " in drape");
   theirs = ours;
   theirs.eigen_max_align_bytes = 8;
   CHECK(mismatch(theirs) == "Eigen's alignment (-march) is 8 bytes in the plugin and " +

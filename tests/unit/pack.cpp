@@ -1,8 +1,8 @@
+#include "core/numerics/pack.h"
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
-
-#include "core/numerics/pack.h"
 
 using namespace drape;
 
@@ -27,7 +27,8 @@ TEMPLATE_TEST_CASE_SIG("Pack: log is that of std to 1 ulp", "", ((int W), W), 2,
   for (int i = 0; i < 40000; ++i) {
     Pack<W> a;
     for (int lane = 0; lane < W; ++lane) {
-      const double all_sizes = std::exp2(1022 * u(random)), near_one = 1 + u(random) * std::exp2(-(i % 40) - 1);
+      const double all_sizes = std::exp2(1022 * u(random)),
+                   near_one = 1 + u(random) * std::exp2(-(i % 40) - 1);
       a.v[lane] = i % 2 ? all_sizes : near_one;
     }
     const Pack<W> b = log(a);
@@ -64,7 +65,8 @@ TEMPLATE_TEST_CASE_SIG("Pack: atan2 is that of std to 2 ulp", "", ((int W), W), 
     }
 }
 
-TEMPLATE_TEST_CASE_SIG("Pack: arithmetic, comparison and selection go lane by lane", "", ((int W), W), 2, 4, 8) {
+TEMPLATE_TEST_CASE_SIG("Pack: arithmetic, comparison and selection go lane by lane", "", ((int W), W), 2, 4,
+                       8) {
   double values[3 * W];
   int index[W];
   for (int i = 0; i < 3 * W; ++i) values[i] = (i % 2 ? -1 : 1) * (0.3 + i * i);

@@ -1,10 +1,10 @@
+#include "core/numerics/parallel.h"
+
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
-
-#include "core/numerics/parallel.h"
 
 using namespace drape;
 
@@ -33,7 +33,8 @@ TEST_CASE("parallel_for covers a range once, in pieces that do not depend on the
 TEST_CASE("parallel_for can be nested") {
   set_thread_count(2);
   std::atomic<int> count = 0;
-  parallel_for(8, 1, [&](int, int) { parallel_for(100, 3, [&](int begin, int end) { count += end - begin; }); });
+  parallel_for(8, 1,
+               [&](int, int) { parallel_for(100, 3, [&](int begin, int end) { count += end - begin; }); });
   CHECK(count == 800);
   set_thread_count(0);
 }

@@ -212,10 +212,9 @@ TEST_CASE("repeated keys and missing ones are told, and all errors come together
     }
   } needed;
   CHECK(faults(schema_of<Needed>("material"), &needed, "thickness: -1\nthicknes: 3\n") ==
-        std::vector<std::string>{
-            "f:1:12: \"thickness\" must be above 0 m, not -1",
-            "f:2:1: unknown key \"thicknes\" in material; did you mean \"thickness\"?",
-            "f:1:1: \"density\" in material is required and missing"});
+        std::vector<std::string>{"f:1:12: \"thickness\" must be above 0 m, not -1",
+                                 "f:2:1: unknown key \"thicknes\" in material; did you mean \"thickness\"?",
+                                 "f:1:1: \"density\" in material is required and missing"});
 }
 
 TEST_CASE("a value that was refused leaves the default") {

@@ -25,8 +25,12 @@ class Loop final : public Ballast, public Refiner {
   struct Parameters {
     double corner_angle = 30;
     static void declare(Declaration<Parameters>& d) {
-      d.add("corner_angle", &Parameters::corner_angle).unit("deg").above(0).at_most(180)
-          .meaning("sharper corners stay | sharp").source("Loop 1987");
+      d.add("corner_angle", &Parameters::corner_angle)
+          .unit("deg")
+          .above(0)
+          .at_most(180)
+          .meaning("sharper corners stay | sharp")
+          .source("Loop 1987");
     }
   };
   explicit Loop(const Parameters& p) : angle_(p.corner_angle) {
@@ -124,8 +128,7 @@ TEST_CASE("what a node gets wrong is told with its place") {
         "a.yaml:1:17: unknown key \"corner\" in loop; known keys are type, corner_angle");
   CHECK(fault("{type: loop, corner_angel: 3}") ==
         "a.yaml:1:17: unknown key \"corner_angel\" in loop; did you mean \"corner_angle\"?");
-  CHECK(fault("{type: loop, corner_angle: 0}") ==
-        "a.yaml:1:31: \"corner_angle\" must be above 0 deg, not 0");
+  CHECK(fault("{type: loop, corner_angle: 0}") == "a.yaml:1:31: \"corner_angle\" must be above 0 deg, not 0");
   CHECK(fault("{type: loop, type: loop}") ==
         "a.yaml:1:17: repeated key \"type\" in loop; it is first set at a.yaml:1:5");
   CHECK(fault("{type: loop, corner_angle: 90}") == "a.yaml:1:4: loop: right angles do not work");

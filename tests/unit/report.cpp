@@ -1,5 +1,7 @@
 #include "core/report/report.h"
 
+#include <unistd.h>
+
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -67,7 +69,8 @@ Eigen::VectorXd ripple_curvature(const Positions& rest, double waves) {
 
 /// A run of two methods on two levels, in a folder of its own that goes with it.
 struct SampleRun {
-  fs::path folder = fs::temp_directory_path() / "drape_report_test";
+  // By process, so that several runs of the tests on one machine keep apart.
+  fs::path folder = fs::temp_directory_path() / ("drape_report_test_" + std::to_string(::getpid()));
   Json results;
 
   SampleRun() {

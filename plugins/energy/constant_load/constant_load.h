@@ -15,8 +15,11 @@ class ConstantLoad final : public Energy {
     Eigen::Vector3d point{0, 0, 0};
     Eigen::Vector3d force{0, 0, 0};
     static void declare(Declaration<PointForce>& d) {
-      d.add("point", &PointForce::point).unit("m").required().meaning(
-          "place in the rest shape; the nearest vertex takes the force").source("this project");
+      d.add("point", &PointForce::point)
+          .unit("m")
+          .required()
+          .meaning("place in the rest shape; the nearest vertex takes the force")
+          .source("this project");
       d.add("force", &PointForce::force).unit("N").required().meaning("total force").source("this project");
     }
   };
@@ -25,9 +28,13 @@ class ConstantLoad final : public Energy {
     Eigen::Vector3d force_density{0, 0, 0};
     std::vector<PointForce> points;
     static void declare(Declaration<Parameters>& d) {
-      d.add("force_density", &Parameters::force_density).unit("N/m²").meaning(
-          "force a unit of rest area, everywhere").source("this project");
-      d.add_sections("points", &Parameters::points).meaning("forces on single vertices").source("this project");
+      d.add("force_density", &Parameters::force_density)
+          .unit("N/m²")
+          .meaning("force a unit of rest area, everywhere")
+          .source("this project");
+      d.add_sections("points", &Parameters::points)
+          .meaning("forces on single vertices")
+          .source("this project");
     }
   };
 

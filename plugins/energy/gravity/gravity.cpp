@@ -12,6 +12,4 @@ std::unique_ptr<BoundEnergy> Gravity::bind(const Level& level, const Material& m
 
 }  // namespace drape
 
-DRAPE_PLUGIN(registry) {
-  registry.add<drape::Energy, drape::Gravity>("gravity", "Weight of the cloth.");
-}
+DRAPE_PLUGIN(registry) { registry.add<drape::Energy, drape::Gravity>("gravity", "Weight of the cloth."); }

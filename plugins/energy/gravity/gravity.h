@@ -11,8 +11,10 @@ class Gravity final : public Energy {
   struct Parameters {
     Eigen::Vector3d acceleration{0, 0, -9.81};
     static void declare(Declaration<Parameters>& d) {
-      d.add("acceleration", &Parameters::acceleration).unit("m/s²").meaning("acceleration of free fall").source(
-          "standard gravity, rounded; z is up");
+      d.add("acceleration", &Parameters::acceleration)
+          .unit("m/s²")
+          .meaning("acceleration of free fall")
+          .source("standard gravity, rounded; z is up");
     }
   };
 

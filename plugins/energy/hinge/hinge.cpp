@@ -30,5 +30,6 @@ std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& mat
 }  // namespace drape
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::Energy, drape::Hinge>("hinge", "Bending by the angles between triangles, any rest shape.");
+  registry.add<drape::Energy, drape::Hinge>("hinge",
+                                            "Bending by the angles between triangles, any rest shape.");
 }

@@ -7,8 +7,8 @@
 namespace drape {
 
 /// Discrete hinge c (θ - θ̄)², θ the signed angle between the normals of triangles (0, 1, 2) and (1, 0, 3),
-/// positive where vertex 3 lies behind the first triangle. A function of the vectors e = x₁ - x₀, u = x₂ - x₀,
-/// v = x₃ - x₀. T is double or a Pack.
+/// positive where vertex 3 lies behind the first triangle. A function of the vectors e = x₁ - x₀, u = x₂ -
+/// x₀, v = x₃ - x₀. T is double or a Pack.
 ///
 /// θ = φ(e, u) - φ(e, v) + π, φ being the azimuth about the axis e, so that first and second derivatives are
 /// those of φ twice (the same as in Tamstorf & Grinspun 2013, "Discrete bending forces and their Jacobians").
@@ -67,7 +67,7 @@ struct HingeKernel {
     h.template block<3, 3>(6, 6) = (gv * scale) * gv.transpose() - v.point_point() * bend;
   }
 
-  /// Stretching everything along the axis changes neither θ nor its derivatives across it.
+  /// Stretching everything along the axis changes neither the energy nor its gradient.
   template <class T>
   static void null_direction(const Vector<T>* x, Vector<T>* n) {
     const Axis<T> axis(x[0]);

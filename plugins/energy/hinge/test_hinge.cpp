@@ -14,7 +14,8 @@ using Check = KernelCheck<HingeKernel>;
 constexpr double pi = 3.14159265358979323846, k = 0.7;
 
 /// Two triangles over an edge of length 1 along x, whose normals differ by `angle`.
-Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, double foot_v = 0.7, double height_v = 1.1) {
+Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, double foot_v = 0.7,
+                    double height_v = 1.1) {
   Check::State x;
   x << 1, 0, 0, foot_u, height_u, 0, foot_v, -height_v * std::cos(angle), -height_v * std::sin(angle);
   return x;
@@ -47,7 +48,8 @@ double energy_over_smooth(const Level& level, const Positions& x, double curvatu
   const Material material;
   const double nu = material.poisson_ratio;
   const double own_k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
-  return Hinge({}).bind(level, material)->value(x) / (own_k * curvature * curvature * level.vertex_area.sum());
+  return Hinge({}).bind(level, material)->value(x) /
+         (own_k * curvature * curvature * level.vertex_area.sum());
 }
 
 }  // namespace
@@ -73,12 +75,13 @@ TEST_CASE("hinge: projection is that of the full element matrix") {
     smallest = std::min(smallest, Check::projections<double>(x, bent_rest));
     Check::projections<Pack<8>>(x, bent_rest);
   }
-  REQUIRE(smallest < -1e-3);  // else nothing was projected
+  REQUIRE(smallest < -1e-3);                                          // else nothing was projected
   CHECK(Check::projections<Pack<8>>(folded(0), flat_rest) > -1e-12);  // rank one: nothing to project
 }
 
 TEST_CASE("hinge: rest shapes, flat or bent, are stress-free") {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   for (const double angle : {0.0, 0.6, -2.5}) {
     const Check::State x = folded(angle);
     Check::State turned;
@@ -94,7 +97,8 @@ TEST_CASE("hinge: a fold in closed form") {
   // c = 3 k ‖ē‖² / (Ā₁ + Ā₂)
   const double c = 3 * k * 1 / (0.5 * 0.8 + 0.5 * 1.1);
   for (const double angle : {-2.0, 0.3, 3.0})
-    CHECK(Check::evaluate(folded(angle), bent_rest).value == Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
+    CHECK(Check::evaluate(folded(angle), bent_rest).value ==
+          Approx(c * std::pow(angle - 0.6, 2)).epsilon(1e-13));
 }
 
 // The two numbers below depend on the triangulation; the README says what that means.
@@ -151,5 +155,6 @@ TEST_CASE("hinge: a single triangle has no hinge") {
 TEST_CASE("hinge: a triangle without area is refused") {
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(Hinge({}).bind(level, Material()), Catch::Contains("hinge: ") && Catch::Contains("no area"));
+  CHECK_THROWS_WITH(Hinge({}).bind(level, Material()),
+                    Catch::Contains("hinge: ") && Catch::Contains("no area"));
 }

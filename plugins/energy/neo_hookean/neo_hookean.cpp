@@ -14,8 +14,9 @@ std::unique_ptr<BoundEnergy> NeoHookean::bind(const Level& level, const Material
   std::vector<NeoHookeanKernel::Rest> rest;
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);
-    rest.push_back(NeoHookeanKernel::rest(places.row(v[1]) - places.row(v[0]), places.row(v[2]) - places.row(v[0]),
-                                  material.thickness, material.membrane_modulus, material.poisson_ratio));
+    rest.push_back(NeoHookeanKernel::rest(places.row(v[1]) - places.row(v[0]),
+                                          places.row(v[2]) - places.row(v[0]), material.thickness,
+                                          material.membrane_modulus, material.poisson_ratio));
     if (!rest.back().allFinite())
       throw std::runtime_error("neo_hookean: triangle " + std::to_string(t) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
@@ -26,5 +27,6 @@ std::unique_ptr<BoundEnergy> NeoHookean::bind(const Level& level, const Material
 }  // namespace drape
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::Energy, drape::NeoHookean>("neo_hookean", "Neo-Hookean membrane in plane stress; resists collapse of triangles.");
+  registry.add<drape::Energy, drape::NeoHookean>(
+      "neo_hookean", "Neo-Hookean membrane in plane stress; resists collapse of triangles.");
 }

@@ -7,14 +7,15 @@
 
 namespace drape {
 
-/// Plane-stress neo-Hookean energy of one triangle, a function of its edge vectors e₁ = x₁ - x₀, e₂ = x₂ - x₀:
-/// A d ψ with ψ = μ/2 (tr C - 2 - 2 ln J) + λ/2 (ln J)², C = FᵀF, J = √det C. T is double or a Pack.
+/// Plane-stress neo-Hookean energy of one triangle, a function of its edge vectors e₁ = x₁ - x₀, e₂ = x₂ -
+/// x₀: A d ψ with ψ = μ/2 (tr C - 2 - 2 ln J) + λ/2 (ln J)², C = FᵀF, J = √det C. T is double or a Pack.
 ///
 /// Everything is written in G = (C - I)/2, so that small strains lose no digits to the 1 in C.
 struct NeoHookeanKernel {
   static constexpr int vertices = 3;
   static constexpr bool convex = false;
-  using Rest = Eigen::Matrix<double, 5, 1>;  // inverse rest edges a, b, c (F = [a e₁, b e₁ + c e₂]), A d μ, A d λ
+  using Rest =
+      Eigen::Matrix<double, 5, 1>;  // inverse rest edges a, b, c (F = [a e₁, b e₁ + c e₂]), A d μ, A d λ
   template <class T>
   using Vector = Eigen::Matrix<T, 3, 1>;
 
@@ -72,11 +73,11 @@ struct NeoHookeanKernel {
  private:
   template <class T>
   struct State {
-    T mu, lambda;                      // times A d
-    Vector<T> f1, f2, normal;          // columns of F and F₁ × F₂
-    T g11, g12, g22;                   // G
-    T det, inverse_det, a11, a12, a22; // det C and C⁻¹
-    T log_j;                           // ln J
+    T mu, lambda;                       // times A d
+    Vector<T> f1, f2, normal;           // columns of F and F₁ × F₂
+    T g11, g12, g22;                    // G
+    T det, inverse_det, a11, a12, a22;  // det C and C⁻¹
+    T log_j;                            // ln J
 
     State(const Vector<T>* e, const T* rest) : mu(rest[3]), lambda(rest[4]) {
       using std::log, std::min;

@@ -75,7 +75,7 @@ TEST_CASE("quadratic_bending: same bits with any number of threads, whatever the
 TEST_CASE("quadratic_bending: a rest shape that is not flat is refused") {
   TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
   mesh.vertices(5, 2) = 0.01;
-  CHECK_THROWS_WITH(QuadraticBending({}).bind(Level::of(3, mesh), Material()),
-                    Catch::Contains("the rest shape of level 3 is not flat (angle 0.0") &&
-                        Catch::Contains("use hinge"));
+  CHECK_THROWS_WITH(
+      QuadraticBending({}).bind(Level::of(3, mesh), Material()),
+      Catch::Contains("the rest shape of level 3 is not flat (angle 0.0") && Catch::Contains("use hinge"));
 }

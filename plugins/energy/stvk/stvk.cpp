@@ -15,7 +15,7 @@ std::unique_ptr<BoundEnergy> Stvk::bind(const Level& level, const Material& mate
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = level.rest.triangles.row(t);
     rest.push_back(StvkKernel::rest(places.row(v[1]) - places.row(v[0]), places.row(v[2]) - places.row(v[0]),
-                                  material.thickness, material.membrane_modulus, material.poisson_ratio));
+                                    material.thickness, material.membrane_modulus, material.poisson_ratio));
     if (!rest.back().allFinite())
       throw std::runtime_error("stvk: triangle " + std::to_string(t) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
@@ -26,5 +26,6 @@ std::unique_ptr<BoundEnergy> Stvk::bind(const Level& level, const Material& mate
 }  // namespace drape
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::Energy, drape::Stvk>("stvk", "St. Venant–Kirchhoff membrane; cheap, right for small strains, weak under compression.");
+  registry.add<drape::Energy, drape::Stvk>(
+      "stvk", "St. Venant–Kirchhoff membrane; cheap, right for small strains, weak under compression.");
 }

@@ -11,7 +11,8 @@ namespace drape {
 struct StvkKernel {
   static constexpr int vertices = 3;
   static constexpr bool convex = false;
-  using Rest = Eigen::Matrix<double, 5, 1>;  // inverse rest edges a, b, c (F = [a e₁, b e₁ + c e₂]), A d μ, A d λ
+  using Rest =
+      Eigen::Matrix<double, 5, 1>;  // inverse rest edges a, b, c (F = [a e₁, b e₁ + c e₂]), A d μ, A d λ
   template <class T>
   using Vector = Eigen::Matrix<T, 3, 1>;
 
@@ -62,10 +63,10 @@ struct StvkKernel {
  private:
   template <class T>
   struct State {
-    T mu, lambda;       // times A d
-    Vector<T> f1, f2;   // columns of F
-    T g11, g12, g22;    // G
-    T s11, s12, s22;    // S = 2 μ G + λ tr G I
+    T mu, lambda;      // times A d
+    Vector<T> f1, f2;  // columns of F
+    T g11, g12, g22;   // G
+    T s11, s12, s22;   // S = 2 μ G + λ tr G I
 
     State(const Vector<T>* e, const T* rest) : mu(rest[3]), lambda(rest[4]) {
       f1 = e[0] * rest[0];

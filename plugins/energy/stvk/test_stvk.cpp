@@ -56,7 +56,8 @@ TEST_CASE("stvk: projection is that of the full element matrix") {
 }
 
 TEST_CASE("stvk: the rest shape is stress-free, wherever it lies") {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   const auto r = Check::evaluate(state(turn * rest1, turn * rest2), rest);
   CHECK(std::abs(r.value) <= 1e-30 * mu * volume);
   CHECK(r.gradient.norm() <= 1e-15 * mu * volume);
@@ -71,8 +72,9 @@ TEST_CASE("stvk: biaxial stretch in closed form, down to small strains") {
     // Uniaxial stress for small strains: energy density E ε²/2.
     const double a = strain, b = -poisson_ratio * strain;
     const long double la = a, lb = b;
-    const double expected = own_volume * double(mu * (std::pow(la + la * la / 2, 2) + std::pow(lb + lb * lb / 2, 2)) +
-                                   lambda / 2 * std::pow(la + la * la / 2 + lb + lb * lb / 2, 2));
+    const double expected =
+        own_volume * double(mu * (std::pow(la + la * la / 2, 2) + std::pow(lb + lb * lb / 2, 2)) +
+                            lambda / 2 * std::pow(la + la * la / 2 + lb + lb * lb / 2, 2));
     const double found = Check::evaluate(state(e1 * (1 + a), e2 * (1 + b)), own).value;
     CHECK(found == Approx(expected).epsilon(1e-9).margin(0));
     if (strain == 1e-6) CHECK(found == Approx(own_volume * modulus * a * a / 2).epsilon(1e-5).margin(0));
@@ -100,5 +102,6 @@ TEST_CASE("stvk: same bits with any number of threads") {
 TEST_CASE("stvk: a triangle without area is refused") {
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(Stvk({}).bind(level, Material()), Catch::Contains("stvk: triangle") && Catch::Contains("no area"));
+  CHECK_THROWS_WITH(Stvk({}).bind(level, Material()),
+                    Catch::Contains("stvk: triangle") && Catch::Contains("no area"));
 }

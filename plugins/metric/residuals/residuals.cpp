@@ -7,14 +7,16 @@
 
 namespace drape {
 
-/// How far a state is from an equilibrium of the plain model of its level (method.md, section 2).
+/// How far a state is from an equilibrium of the plain model of its level (docs/method.md, section 2).
 class Residuals : public Metric {
  public:
   struct Parameters {
     double step_size = 0.5;
     static void declare(Declaration<Parameters>& d) {
       d.add("step_size", &Parameters::step_size)
-          .unit("s").above(0).meaning("h of the implicit step whose Newton direction the decrement measures")
+          .unit("s")
+          .above(0)
+          .meaning("h of the implicit step whose Newton direction the decrement measures")
           .source("Li et al. 2021 (C-IPC)");
     }
   };

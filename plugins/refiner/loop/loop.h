@@ -28,7 +28,7 @@ class LoopRefiner : public Refiner {
           .meaning(
               "A border vertex whose rest interior angle differs from 180 degrees by more than this "
               "is a corner and is interpolated; others are rounded off.")
-          .source("design note: method.md, section 4");
+          .source("docs/method.md, section 4");
     }
   };
 

@@ -17,7 +17,7 @@ class CascadicSolver : public Solver {
       d.add_choice("prolongation", &Parameters::prolongation,
                    {{"midpoint", CarryUp::midpoint}, {"refiner", CarryUp::refiner}})
           .meaning("carries a level's state up: by edge midpoints, or by the experiment's refiner")
-          .source("method.md section 3");
+          .source("docs/method.md section 3");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }
   };
@@ -25,8 +25,8 @@ class CascadicSolver : public Solver {
 
   std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
     const Stopwatch clock;
-    const auto& weights = p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints
-                                                               : problem.hierarchy.prolongations;
+    const auto& weights =
+        p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints : problem.hierarchy.prolongations;
     std::vector<LevelResult> results;
     Positions x = problem.starts[0];
     for (int l = 0; l <= problem.finest(); ++l) {

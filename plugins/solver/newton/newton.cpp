@@ -4,7 +4,7 @@
 
 namespace drape {
 
-/// Each level on its own, from the scene's start, under its own energy (method.md, section 3).
+/// Each level on its own, from the scene's start, under its own energy (docs/method.md, section 3).
 class NewtonSolver : public Solver {
  public:
   struct Parameters {
@@ -36,5 +36,6 @@ class NewtonSolver : public Solver {
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Solver, drape::NewtonSolver>(
-      "newton", "Direct solve of every level on its own from the scene's start (C-IPC's stepping without contact).");
+      "newton",
+      "Direct solve of every level on its own from the scene's start (C-IPC's stepping without contact).");
 }

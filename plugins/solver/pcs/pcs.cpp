@@ -8,12 +8,12 @@ namespace drape {
 enum class ProxyMatrix { coarse, galerkin };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
-/// plain Newton (Zhang et al. 2022; method.md, section 3).
+/// plain Newton (Zhang et al. 2022; docs/method.md, section 3).
 class PcsSolver : public Solver {
  public:
   struct Parameters {
     ProxyMatrix hessian = ProxyMatrix::galerkin;
-    int depth = 1;
+    int depth = 2;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
       d.add_choice("hessian", &Parameters::hessian,
@@ -21,8 +21,10 @@ class PcsSolver : public Solver {
           .meaning("matrix on coarse levels: the plain coarse model's, or a finer one's carried down")
           .source("PCS section 4.2 for coarse; galerkin is a departure");
       d.add("depth", &Parameters::depth)
-          .at_least(1).at_most(8)
-          .meaning("levels between the galerkin matrix and the level it is made for, where there are so many");
+          .at_least(1)
+          .at_most(8)
+          .meaning(
+              "levels between the galerkin matrix and the level it is made for, where there are so many");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }
   };
@@ -44,8 +46,7 @@ class PcsSolver : public Solver {
       }
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
-      if (l < problem.finest())
-        x = problem.carry_up(problem.hierarchy.prolongations[l], l, results.back().x);
+      if (l < problem.finest()) x = problem.carry_up(problem.hierarchy.prolongations[l], l, results.back().x);
     }
     return results;
   }

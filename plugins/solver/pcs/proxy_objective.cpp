@@ -12,7 +12,7 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, int depth)
   forces_.resize(above);
   matrices_.emplace_back(problem.models[level + depth_]->pattern());
   for (int k = depth_; k > 0; --k) {
-    products_.emplace_back(matrices_.back().pattern, problem.hierarchy.prolongations[level + k - 1]);
+    products_.emplace_back(*matrices_.back().pattern, problem.hierarchy.prolongations[level + k - 1]);
     matrices_.emplace_back(products_.back().coarse_pattern());
   }
 }

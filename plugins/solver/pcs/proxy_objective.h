@@ -31,10 +31,10 @@ class ProxyObjective : public Objective {
 
   const Problem& problem_;
   int level_, depth_;
-  std::vector<Transfer> transfers_;        // level_ + k → level_ + k + 1
+  std::vector<Transfer> transfers_;          // level_ + k → level_ + k + 1
   std::vector<Positions> carried_, forces_;  // work space on level_ + 1 + k
-  std::vector<GalerkinProduct> products_;  // from level_ + depth_ downwards
-  std::vector<BlockMatrix> matrices_;      // the plain one first, then each product
+  std::vector<GalerkinProduct> products_;    // from level_ + depth_ downwards
+  std::vector<BlockMatrix> matrices_;        // the plain one first, then each product
 };
 
 }  // namespace drape

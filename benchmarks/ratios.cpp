@@ -1,0 +1,181 @@
+// Speed of the contact-free solver as ratios of times taken in one run, medians of several:
+//
+//     drape_bench_ratios [RESULT.json [RUN_FOLDER]]
+//
+// The finest level's evaluations and whole Newton iterations against its factorisation, and the steps of
+// PCS's coarsest level against those of the plain coarse model. With the folder of a finished run of an
+// experiment, also its whole PCS progression against its direct fine solve.
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/experiment/experiment.h"
+#include "core/experiment/machine.h"
+#include "core/numerics/block_cholesky.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/loader.h"
+#include "core/version.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr int repeats = 7;
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+template <class Body>
+double median_seconds(const Body& body) {
+  std::vector<double> seconds;
+  body();  // warm-up
+  for (int i = 0; i < repeats; ++i) {
+    const Stopwatch watch;
+    body();
+    seconds.push_back(watch.seconds());
+  }
+  return median(seconds);
+}
+
+/// Stops a method after some iterations of its first level and keeps the time of each.
+class FirstIterations : public Observer {
+ public:
+  explicit FirstIterations(int count) : count_(count) {}
+  void iteration(const IterationRow& row, const Positions&) override { times_.push_back(row.seconds); }
+  bool stop_requested() override { return static_cast<int>(times_.size()) >= count_; }
+  /// Median time between iterations, the first ones left out.
+  double seconds_per_iteration() const {
+    std::vector<double> between;
+    for (std::size_t i = 4; i < times_.size(); ++i) between.push_back(times_[i] - times_[i - 1]);
+    return median(between);
+  }
+
+ private:
+  int count_;
+  std::vector<double> times_;
+};
+
+const Solver& method(const Experiment& e, const std::string& name) {
+  for (const auto& [own, solver] : e.methods)
+    if (own == name) return *solver;
+  throw std::runtime_error("the benchmark's experiment has no method " + name);
+}
+
+/// Rows of what is printed and stored: a ratio, its two times and the figure aimed at.
+class Table {
+ public:
+  void add(const std::string& what, double seconds, const std::string& against, double base, double goal) {
+    const double ratio = seconds / base;
+    std::printf("%-46s %9.2f ms   %-28s %9.2f ms   ratio %6.3f   goal %5.2f  %s\n", what.c_str(),
+                1e3 * seconds, against.c_str(), 1e3 * base, ratio, goal, ratio <= goal ? "met" : "MISSED");
+    rows_.push_back({{"what", what},
+                     {"seconds", seconds},
+                     {"against", against},
+                     {"base_seconds", base},
+                     {"ratio", ratio},
+                     {"goal", goal}});
+  }
+  const nlohmann::ordered_json& rows() const { return rows_; }
+
+ private:
+  nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
+};
+
+/// A wrinkled state of the finest level: what a few iterations of coarse PCS lead to.
+Positions wrinkled_state(const Experiment& e, const Scene& scene) {
+  FirstIterations some(30);
+  const auto results = method(e, "pcs_galerkin_1").solve(scene.problem(), some);
+  return scene.hierarchy.prolong(results.front().x, 0, static_cast<int>(scene.models.size()) - 1);
+}
+
+void finest_level(const Experiment& e, const Scene& scene, Table& table) {
+  const LevelModel& model = *scene.models.back();
+  const Positions x = wrinkled_state(e, scene);
+  std::printf("finest level: %d vertices, %d unknowns, %d threads\n", model.level().vertex_count(),
+              3 * model.level().vertex_count(), thread_count());
+  Positions g, p;
+  BlockMatrix matrix(model.pattern());
+  BlockCholesky cholesky;
+  const Eigen::VectorXd shift = model.masses() / 0.01;  // h = 0.1 s
+  model.hessian(x, Projection::clamp, matrix);
+  model.gradient(x, g);
+  cholesky.analyse(model.pattern(), model.fixed());
+  const double factorise = median_seconds([&] { cholesky.factorise(matrix, shift); });
+  const double solve = median_seconds([&] { cholesky.solve(g, p); });
+  const double gradient = median_seconds([&] { model.gradient(x, g); });
+  const double hessian = median_seconds([&] { model.hessian(x, Projection::clamp, matrix); });
+  std::printf("factorisation: %.1f GFlop/s\n", cholesky.flops() / factorise * 1e-9);
+  table.add("energy + gradient", gradient, "factorisation", factorise, 0.01);
+  table.add("Hessian, projected and assembled", hessian, "factorisation", factorise, 0.15);
+
+  NewtonParameters parameters = e.parameters.newton;
+  parameters.max_steps = 8;
+  Observer silent;
+  PlainObjective objective(model);
+  const LevelResult r = minimise(objective, x, parameters, Stopwatch(), silent);
+  const auto& phase = r.seconds_by_phase;
+  const double n = r.iterations;
+  table.add("whole Newton iteration (without the analysis)", (r.seconds - phase.at("analyse")) / n,
+            "its factorisation + solve", (phase.at("factorise") + phase.at("solve")) / n, 1.3);
+  std::printf("  by phase, ms an iteration:");
+  for (const auto& [name, seconds] : phase) std::printf("  %s %.2f", name.c_str(), 1e3 * seconds / n);
+  std::printf("  (separate: solve %.2f)\n", 1e3 * solve);
+}
+
+void coarsest_level(const Experiment& e, const Scene& scene, Table& table) {
+  constexpr int iterations = 60;
+  // In turn, several times: the machine's speed drifts.
+  std::map<std::string, std::vector<double>> seconds;
+  for (int i = 0; i < 3; ++i)
+    for (const char* name : {"newton", "pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"}) {
+      FirstIterations some(iterations);
+      method(e, name).solve(scene.problem(), some);
+      seconds[name].push_back(some.seconds_per_iteration());
+    }
+  for (const char* name : {"pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"})
+    table.add(std::string("level-0 step of ") + name, median(seconds[name]), "direct coarse step",
+              median(seconds["newton"]), 1.56);
+}
+
+/// Both to the same force residual; the energies are stored beside the times, since equilibria differ.
+void whole_progression(const std::string& folder, Table& table) {
+  std::ifstream in(folder + "/results.json");
+  if (!in) throw std::runtime_error(folder + "/results.json: cannot be read");
+  const auto methods = nlohmann::json::parse(in)["methods"];
+  const auto &fine = methods["newton"]["levels"].back(), &pcs = methods["pcs"]["levels"].back();
+  std::printf("finest level of %s: energy of PCS %.8f J, of the direct solve %.8f J\n", folder.c_str(),
+              pcs["energy"].get<double>(), fine["energy"].get<double>());
+  table.add("whole PCS progression", methods["pcs"]["seconds"], "direct fine solve", fine["seconds"], 1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  Registry registry;
+  load_plugins(registry, plugin_directories());
+  ConfigErrors errors;
+  const auto e = read_experiment(DRAPE_BENCHMARKS_DIR "/contact_free.yaml", {}, registry, errors);
+  const auto scene = e ? build_scene(*e, errors) : nullptr;
+  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  if (!scene) return 2;
+  Table table;
+  finest_level(*e, *scene, table);
+  coarsest_level(*e, *scene, table);
+  if (argc > 2) whole_progression(argv[2], table);
+  if (argc > 1) {
+    nlohmann::ordered_json result = {
+        {"benchmark", "ratios"}, {"version", version()},      {"commit", commit()}, {"cpu", cpu_name()},
+        {"cores", core_count()}, {"threads", thread_count()}, {"repeats", repeats}, {"rows", table.rows()}};
+    std::ofstream(argv[1]) << result.dump(1) << "\n";
+  }
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "error: " << error.what() << "\n";
+  return 2;
+}

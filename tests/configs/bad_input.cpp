@@ -1,0 +1,282 @@
+// What the command says to bad input: the exact lines. Nothing may be written in any of these cases.
+
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    files[entry.path().string()] = entry.is_regular_file() ? text_of(entry.path()) : "";
+  return files;
+}
+
+/// Standard error of a command that must be refused and leave the folder as it was.
+std::string refused(const Scratch& folder, const std::string& arguments,
+                    const std::string& environment = "") {
+  const auto before = files_in(folder.path);
+  const Ended ended = drape_with(arguments, folder.path, environment);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  CHECK((files_in(folder.path) == before));
+  return ended.err;
+}
+
+/// The same of `drape run e.yaml`, where e.yaml is this text.
+std::string said_of(const std::string& experiment, const std::string& arguments = "") {
+  const Scratch folder;
+  folder.write("e.yaml", experiment);
+  return refused(folder, "run e.yaml --out out " + arguments);
+}
+
+std::string said_of_edit(const std::string& from, const std::string& to) {
+  return said_of(replaced(small_experiment(), from, to));
+}
+
+std::string said_of_set(const std::string& set) { return said_of(small_experiment(), "--set '" + set + "'"); }
+
+const std::string top_keys =
+    "name, description, table1_scene, cloth, levels, material, start, pins, energies, refiner, contact, "
+    "newton, "
+    "methods, metrics, reference";
+
+}  // namespace
+
+TEST_CASE("the file of these cases is sound, so that each has one fault alone") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Ended ended = drape_with("check e.yaml", folder.path);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.err == "");
+  CHECK(ended.out == "e.yaml: sound. Vertices by level: 36, 121\n");
+}
+
+TEST_CASE("a config that is missing, a folder, empty or no YAML") {
+  const Scratch folder;
+  CHECK(refused(folder, "run e.yaml --out out") == "error: e.yaml: no such file\n");
+  CHECK(refused(folder, "check e.yaml") == "error: e.yaml: no such file\n");
+  CHECK(refused(folder, "run . --out out") == "error: .: is a folder, not a file\n");
+  CHECK(said_of("") == "error: e.yaml: is empty; a config is a map of keys and values\n");
+  CHECK(said_of("- name\n") == "error: e.yaml:1:1: a config must begin with a map of keys and values\n");
+  CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9, 1") ==
+        "error: e.yaml:4:48: not valid YAML: illegal flow end\n");
+}
+
+TEST_CASE("keys that are unknown, misspelt, repeated or missing") {
+  CHECK(said_of_edit("levels: 2", "wind: 2") ==
+        "error: e.yaml:3:1: unknown key \"wind\"; known keys are " + top_keys + "\n");
+  CHECK(said_of_edit("levels: 2", "lvels: 2") ==
+        "error: e.yaml:3:1: unknown key \"lvels\"; did you mean \"levels\"?\n");
+  CHECK(said_of_edit("force_tolerance", "force_tolerence") ==
+        "error: e.yaml:9:10: unknown key \"force_tolerence\" in newton; did you mean \"force_tolerance\"?\n");
+  CHECK(said_of_edit("levels: 2", "levels: 2\nlevels: 3") ==
+        "error: e.yaml:4:1: repeated key \"levels\"; it is first set at e.yaml:3:1\n");
+  CHECK(said_of_edit("name: small\n", "") == "error: e.yaml:1:1: \"name\" is required and missing\n");
+  CHECK(said_of_edit("energies: [neo_hookean, hinge, gravity]\n", "") ==
+        "error: e.yaml:1:1: \"energies\" is required and missing\n");
+}
+
+TEST_CASE("values out of range or of the wrong type") {
+  CHECK(said_of_edit("levels: 2", "levels: 20") ==
+        "error: e.yaml:3:9: \"levels\" must be at most 10, not 20\n");
+  CHECK(said_of_edit("levels: 2", "levels: two") ==
+        "error: e.yaml:3:9: \"levels\" must be an integer, not \"two\"\n");
+  CHECK(said_of_edit("levels: 2", "levels: [2]") ==
+        "error: e.yaml:3:9: \"levels\" must be an integer, not a list\n");
+  CHECK(said_of_edit("side: 1,", "side: 0,") == "error: e.yaml:2:30: \"side\" must be above 0 m, not 0\n");
+  CHECK(said_of_edit("side: 1,", "side: .nan,") ==
+        "error: e.yaml:2:30: \"side\" must be a finite number, not \".nan\"\n");
+  CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9]") ==
+        "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n");
+  CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, nan, 1]") ==
+        "error: e.yaml:4:22: item 2 of \"scale\" must be a finite number, not nan\n");
+  CHECK(said_of_edit("shape: square", "shape: sqare") ==
+        "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
+        "not "
+        "\"sqare\"; did you mean \"square\"?\n");
+  CHECK(said_of_set("material.poisson_ratio=0.5") ==
+        "error: --set material.poisson_ratio: \"poisson_ratio\" must be below 0.5, not 0.5\n");
+  CHECK(said_of_edit("columns: 6, rows: 6", "columns: 1, rows: 6") ==
+        "error: e.yaml:2:8: grid: at least 2 × 2 vertices are needed\n");
+  CHECK(said_of_edit("name: small", "name: a/b") ==
+        "error: e.yaml:1:7: name \"a/b\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
+        "not "
+        "beginning with \".\"\n");
+}
+
+TEST_CASE("a plugin that is unknown, of every kind") {
+  CHECK(said_of_edit("hinge,", "springs,") ==
+        "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, neo_hookean, "
+        "quadratic_bending, stvk\n");
+  CHECK(
+      said_of_edit("hinge,", "hinje,") ==
+      "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, gravity, "
+      "hinge, neo_hookean, quadratic_bending, stvk\n");
+  CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
+        "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint\n");
+  CHECK(said_of_edit("levels: 2", "contact: ipc") ==
+        "error: e.yaml:3:10: unknown contact \"ipc\"; known: none\n");
+  CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
+        "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
+        "residuals, "
+        "stretch\n");
+  CHECK(said_of_edit("  cascadic: {}", "  fast: {type: multigrid}") ==
+        "error: e.yaml:12:16: unknown solver \"multigrid\"; known: cascadic, newton, pcs\n");
+  CHECK(said_of_edit("  cascadic: {}", "  psc: {depth: 2}") ==
+        "error: e.yaml:12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs\n");
+  CHECK(said_of_edit("hinge,", "{acceleration: 1},") ==
+        "error: e.yaml:8:25: expected the name of a plugin of kind energy, or a map with its name as "
+        "\"type\"\n");
+  CHECK(said_of_edit("gravity]", "{type: gravity, aceleration: [0, 0, 1]}]") ==
+        "error: e.yaml:8:48: unknown key \"aceleration\" in gravity; did you mean \"acceleration\"?\n");
+}
+
+TEST_CASE("energies, methods and their names") {
+  CHECK(said_of_edit("[neo_hookean, hinge, gravity]", "[]") ==
+        "error: e.yaml:8:11: \"energies\" must name at least one energy, as in \"energies: [neo_hookean, "
+        "hinge, "
+        "gravity]\"\n");
+  CHECK(said_of_edit("[neo_hookean, hinge, gravity]", "") ==
+        "error: e.yaml:8:1: \"energies\" must be a list of plugins of kind energy, not empty\n");
+  CHECK(said_of_edit("  cascadic: {}", "  pcs: {}") ==
+        "error: e.yaml:12:8: method \"pcs\" is given twice; rename one of them\n");
+  CHECK(said_of_edit("  cascadic: {}", "  a,b: {type: newton}") ==
+        "error: e.yaml:12:8: method \"a,b\" names files: write it with letters, digits, \"_\", \"-\" and "
+        "\".\", not "
+        "beginning with \".\"\n");
+  CHECK(said_of_set("methods={}") ==
+        "error: --set methods: \"methods\" must be a map of at least one method, as in \"methods: {pcs: {}, "
+        "newton: "
+        "{}}\"\n");
+  CHECK(said_of_edit("reference: newton", "reference: nwton") ==
+        "error: e.yaml:14:12: \"reference\" must be one of the methods, not \"nwton\"\n");
+}
+
+TEST_CASE("pins that hold nothing, or what is not there") {
+  const std::string corner = "{region: nearest, point: [1, 0, 0]}";
+  CHECK(said_of_edit(corner, "{region: ball, point: [5, 5, 5]}") ==
+        "error: e.yaml:7:5: pin 1 (ball) holds no vertex of the coarsest level; widen its region\n");
+  CHECK(said_of_edit(corner, "{region: vertices}") ==
+        "error: e.yaml:7:5: pin 1 (vertices) holds no vertex of the coarsest level; list some under "
+        "\"vertices\"\n");
+  CHECK(
+      said_of_edit(corner, "{region: vertices, vertices: [0, 36, -1]}") ==
+      "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to 35\n"
+      "error: e.yaml:7:5: pin 1 (vertices) names vertex -1, but those of the coarsest level go from 0 to "
+      "35\n");
+}
+
+TEST_CASE("every fault of a config is named at once, in the order of the file, then what was --set") {
+  std::string text = small_experiment();
+  text = replaced(text, "shape: square", "shape: sqare");
+  text = replaced(text, "levels: 2", "levels: 2.5");
+  text = replaced(text, "[0.9, 0.9, 1]", "[0.9, 0.9]");
+  text = replaced(text, "region: nearest, point: [1", "region: nearst, point: [1");
+  text = replaced(text, "hinge,", "hinje,");
+  text = replaced(text, "cascadic: {}", "cascadic: {prolongation: linear}");
+  CHECK(said_of(text, "--set newton.max_steps=few") ==
+        "error: e.yaml:2:16: \"shape\" must be \"square\", \"rectangle\", \"disc\", \"polygon\" or \"file\", "
+        "not "
+        "\"sqare\"; did you mean \"square\"?\n"
+        "error: e.yaml:3:9: \"levels\" must be an integer, not 2.5\n"
+        "error: e.yaml:4:16: \"scale\" must be a list of 3 numbers, not of 2\n"
+        "error: e.yaml:7:14: \"region\" must be \"nearest\", \"ball\", \"box\", \"border\" or \"vertices\", "
+        "not "
+        "\"nearst\"; did you mean \"nearest\"?\n"
+        "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
+        "gravity, hinge, "
+        "neo_hookean, quadratic_bending, stvk\n"
+        "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
+        "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
+}
+
+TEST_CASE("a --set or --method that does not fit") {
+  CHECK(said_of_set("levelz=3") == "error: --set levelz: unknown key \"levelz\"; did you mean \"levels\"?\n");
+  CHECK(said_of_set("levels=x") == "error: --set levels: \"levels\" must be an integer, not \"x\"\n");
+  CHECK(said_of_set("levels") ==
+        "error: --set levels: write it as key=value, as in --set newton.step_size=0.1\n");
+  CHECK(said_of_set("=3") == "error: --set =3: write it as key=value, as in --set newton.step_size=0.1\n");
+  CHECK(said_of_set("levels=[1") ==
+        "error: --set levels:1:1: not valid YAML: end of sequence flow not found\n");
+  CHECK(said_of_set("pins.7.radius=1") ==
+        "error: --set pins.7.radius: \"7\" is not an index of a list of 2, counted from 0\n");
+  CHECK(said_of_set("newton..form=statics") == "error: --set newton..form: the path has an empty name\n");
+  CHECK(said_of(small_experiment(), "--method pcs,fast") ==
+        "error: --method fast: the experiment's methods are pcs, cascadic, newton\n");
+  CHECK(said_of(small_experiment(), "--levels 0") ==
+        "error: --levels: must be an integer of at least 1, not 0; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--threads two") ==
+        "error: --threads: must be an integer of at least 1, not two; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--levels 11") ==
+        "error: --set levels: \"levels\" must be at most 10, not 11\n");
+  CHECK(said_of(small_experiment(), "--fast") ==
+        "error: The following argument was not expected: --fast; see `drape run --help`\n");
+}
+
+TEST_CASE("a results folder that cannot be used") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("file", "text");
+  CHECK(refused(folder, "run e.yaml --out file") ==
+        "error: file: cannot make the results folder (Not a directory); name another with --out\n");
+  CHECK(refused(folder, "run e.yaml --out file/below") ==
+        "error: file/below: cannot make the results folder (Not a directory); name another with --out\n");
+  CHECK(refused(folder, "run e.yaml --out /proc/drape") ==
+        "error: /proc/drape: cannot make the results folder (No such file or directory); name another with "
+        "--out\n");
+  CHECK(refused(folder, "run e.yaml --out /proc") ==
+        "error: /proc: cannot write to the results folder; name another with --out\n");
+
+  fs::create_directory(folder / "mine");
+  folder.write("mine/config.yaml", "mine");
+  for (const std::string overwrite : {"", " --overwrite"})
+    CHECK(refused(folder, "run e.yaml --out mine" + overwrite) ==
+          "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
+          "--out\n");
+}
+
+TEST_CASE("earlier results stay unless --overwrite is given, and then only the run's own files go") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
+  REQUIRE(drape_with(run + "pcs", folder.path).exit_code == 0);
+  folder.write("out/notes.txt", "mine");
+  CHECK(refused(folder, run + "newton") ==
+        "error: out: holds the results of another run; name another folder with --out, or replace them with "
+        "--overwrite\n");
+  REQUIRE(fs::exists(folder / "out/levels/pcs_l0.ply"));
+  REQUIRE(drape_with(run + "newton --overwrite", folder.path).exit_code == 0);
+  CHECK(!fs::exists(folder / "out/levels/pcs_l0.ply"));
+  CHECK(fs::exists(folder / "out/levels/newton_l0.ply"));
+  CHECK(text_of(folder / "out/notes.txt") == "mine");
+}
+
+TEST_CASE("plugin libraries that do not fit") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string plugins = DRAPE_TEST_PLUGIN_DIR;
+  const auto said = [&](const std::string& path) {
+    return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
+  };
+  const std::string wrong = said(plugins + "/wrong_abi");
+  CHECK_THAT(
+      wrong,
+      Catch::Matchers::Matches(
+          "error: .*/libwrong_abi\\.so: does not fit this drape, rebuild it: the compiler is GCC 4\\.8 "
+          "in the plugin and [A-Z].* in drape; the Eigen version is 3\\.3\\.9 in the plugin and .* in "
+          "drape\n"));
+  CHECK(
+      said(plugins + "/not_a_plugin") ==
+      "error: " + plugins +
+          "/not_a_plugin/libnot_a_plugin.so: is not a drape plugin: it exports no function drape_plugin (see "
+          "DRAPE_PLUGIN in core/plugin/plugin.h)\n");
+  CHECK(said(plugins + "/good:" + plugins + "/duplicate") ==
+        "error: refiner \"good\" of " + plugins + "/duplicate/libduplicate.so is already registered by " +
+            plugins + "/good/libgood.so; rename it or take one of them out of the search path\n");
+  CHECK(said("nowhere") == "error: DRAPE_PLUGIN_PATH names nowhere, which is not a folder\n");
+}

@@ -1,0 +1,115 @@
+// What the command says to a cloth from a bad mesh file: the file, and the line or the element.
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+
+namespace {
+
+/// A square of 3 × 3 vertices, 0 to 8 by rows, in 8 triangles; vertices are lines 1 to 9, faces 10 to 17.
+const std::string sheet =
+    "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n"
+    "f 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\nf 4 5 8\nf 4 8 7\nf 5 6 9\nf 5 9 8\n";
+
+std::string experiment_with(const std::string& mesh_name) {
+  return replaced(small_experiment(), "{shape: square, side: 1, columns: 6, rows: 6}",
+                  "{shape: file, file: " + mesh_name + "}");
+}
+
+/// Standard error of a run, and of a check, of the experiment in a subfolder with this mesh beside it.
+std::string said_of(const std::string& mesh, const std::string& mesh_name = "cloth.obj",
+                    const std::string& arguments = "") {
+  const Scratch folder;
+  std::filesystem::create_directory(folder / "in");
+  folder.write("in/e.yaml", experiment_with(mesh_name));
+  folder.write("in/" + mesh_name, mesh);
+  const Ended run = drape_with("run in/e.yaml --out out " + arguments, folder.path);
+  const Ended check = drape_with("check in/e.yaml " + arguments, folder.path);
+  CHECK(run.exit_code == 2);
+  CHECK(run.out == "");
+  CHECK(!std::filesystem::exists(folder / "out"));
+  CHECK(check.exit_code == 2);
+  CHECK(check.err == run.err);
+  return run.err;
+}
+
+}  // namespace
+
+TEST_CASE("a sound mesh file runs, and its results can be run again from their own config") {
+  const Scratch folder;
+  folder.write("cloth.obj", sheet);
+  folder.write("e.yaml", experiment_with("cloth.obj"));
+  const std::string options = " --quiet --no-report --threads 1 --method pcs --out ";
+  REQUIRE(drape_with("run e.yaml" + options + "first", folder.path).exit_code == 0);
+  std::filesystem::remove(folder / "cloth.obj");
+  REQUIRE(drape_with("run first/config.yaml" + options + "second", folder.path).exit_code == 0);
+  for (const std::string file : {"config.yaml", "rest/l0.ply", "levels/pcs_l0.ply", "levels/pcs_l1.ply"})
+    CHECK((text_of(folder / ("first/" + file)) == text_of(folder / ("second/" + file))));
+}
+
+TEST_CASE("a mesh file that is not there or cannot be read") {
+  const Scratch folder;
+  folder.write("e.yaml", experiment_with("cloth.obj"));
+  const Ended ended = drape_with("run e.yaml --out out", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.err == "error: e.yaml:2:8: cannot read cloth.obj: No such file or directory\n");
+  CHECK(!std::filesystem::exists(folder / "out"));
+  CHECK(said_of("solid", "cloth.stl") ==
+        "error: in/e.yaml:2:8: in/cloth.stl: unknown mesh format '.stl'; known are .obj, .off, .ply\n");
+  CHECK(said_of(sheet, "cloth.obj", "--set 'cloth={shape: file}'") ==
+        "error: --set cloth: \"shape: file\" needs \"file\", the mesh to read\n");
+  CHECK(said_of(sheet, "cloth.obj", "--set 'cloth={shape: polygon}'") ==
+        "error: --set cloth: \"shape: polygon\" needs \"loops\", its outline and holes\n");
+}
+
+TEST_CASE("a malformed mesh file is named with its line") {
+  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 one 0\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj:5: 'one' is not a number\n");
+  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 nan 0\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 has a coordinate that is not finite\n");
+  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 1\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj:5: a vertex needs three coordinates\n");
+  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 10\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj:17: face names vertex 10, but 9 vertices precede it\n");
+  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj:17: a face needs at least three vertices\n");
+  CHECK(said_of("OFF\n3 1 0\n0 0 0\n1 0 0\n", "cloth.off") ==
+        "error: in/e.yaml:2:8: in/cloth.off:4: the file ends before vertex 2\n");
+  CHECK(said_of("ply\nformat ascii 1.0\nelement vertex 3\n", "cloth.ply") ==
+        "error: in/e.yaml:2:8: in/cloth.ply:3: the header has no end_header\n");
+}
+
+TEST_CASE("a mesh that is no surface with one side up is named with the element") {
+  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 7) runs in the same direction in triangles 4 and 7: "
+        "one of them is inverted\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 8) runs in the same direction in triangles 6 and 7: "
+        "one of them is inverted\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 7, 8) faces the other way than most of this flat "
+        "mesh\n");
+  CHECK(said_of("") ==
+        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no vertices\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n");
+  CHECK(said_of(sheet + "v 0 0 1\nf 1 10 5\n") ==
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n");
+  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 8) repeats a vertex\n");
+  CHECK(said_of(replaced(sheet, "v 2 2 0\n", "v 1 1 0\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 6 (4, 5, 8) has no area\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 7) has no area\n");
+  CHECK(said_of(sheet + "f 1 2 5\n") ==
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 8 (0, 1, 4) has the same vertices as triangle 0\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 1) runs in the same direction in triangles 0 and 8: "
+        "one of them is inverted\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (1, 4) has 3 triangles: 0, 3, 8\n");
+  CHECK(said_of(sheet + "v 5 5 5\n") ==
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 9 belongs to no triangle\n");
+}
+
+TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
+  const std::string bent = replaced(sheet, "v 1 1 0\n", "v 1 1 0.5\n");
+  CHECK(said_of(bent, "cloth.obj", "--set 'energies=[neo_hookean, quadratic_bending, gravity]'") ==
+        "error: --set energies: quadratic_bending: the rest shape of level 0 is not flat (angle 0.420534 at "
+        "the edge of vertices 1 and 4); use hinge\n");
+}

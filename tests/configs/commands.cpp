@@ -1,0 +1,141 @@
+// Every subcommand but `run` and `check`, which the other files here are about.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/experiment/experiment.h"
+#include "tests/support/command.h"
+#include "tests/support/registry.h"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Catch::Matchers::Matches;
+using Catch::Matchers::StartsWith;
+
+namespace {
+
+Ended drape_of(const std::string& arguments) { return drape_with(arguments, DRAPE_SOURCE_DIR); }
+
+/// Standard output of what must succeed in silence.
+std::string shown_by(const std::string& arguments) {
+  const Ended ended = drape_of(arguments);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.err == "");
+  return ended.out;
+}
+
+/// Standard error of what must be refused without a word on standard output.
+std::string refused_by(const std::string& arguments) {
+  const Ended ended = drape_of(arguments);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  return ended.err;
+}
+
+}  // namespace
+
+TEST_CASE("the command alone shows how it is used; a misspelt one names the nearest") {
+  CHECK(refused_by("") == shown_by("--help"));
+  CHECK_THAT(shown_by("--help"),
+             StartsWith("drape: progressive cloth quasistatics\nUsage: drape [OPTIONS] SUBCOMMAND\n"));
+  CHECK_THAT(shown_by("run --help"), Contains("--overwrite"));
+  CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
+  CHECK(
+      refused_by("simulate") ==
+      "error: there is no command \"simulate\"; the commands are run, check, list, describe, report, schema, "
+      "reference\n");
+  CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
+  CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
+  CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));
+}
+
+TEST_CASE("list shows every plugin, or one kind's") {
+  const std::string all = shown_by("list");
+  for (const auto& entry : test_registry().entries()) {
+    INFO(entry->name);
+    CHECK_THAT(all, Contains("\n  " + entry->name + " "));
+    CHECK_THAT(all, Contains(entry->summary));
+  }
+  const std::string energies = shown_by("list energy");
+  CHECK_THAT(energies, StartsWith("energy\n  constant_load  "));
+  CHECK_THAT(all, StartsWith(energies));
+  CHECK(energies.find("cascadic") == std::string::npos);
+  CHECK(refused_by("list nonsense") ==
+        "error: there is no kind \"nonsense\"; the kinds are energy, refiner, contact, solver, metric\n");
+}
+
+TEST_CASE("describe shows a plugin's parameters, an experiment's, or the nearest name") {
+  CHECK_THAT(shown_by("describe hinge"),
+             StartsWith("energy hinge: Bending by the angles between triangles, any rest shape.\nfrom /"));
+  CHECK_THAT(shown_by("describe gravity"),
+             Contains("acceleration") && Contains("[0, 0, -9.81]") && Contains("m/s²"));
+  const std::string experiment = shown_by("describe experiment");
+  for (const char* word : {"cloth", "levels", "membrane_modulus", "force_tolerance", "methods"})
+    CHECK_THAT(experiment, Contains(word));
+  CHECK_THAT(shown_by("describe newton"), StartsWith("solver newton: "));
+  CHECK(refused_by("describe hinje") == "error: no plugin is called \"hinje\"; did you mean \"hinge\"?\n");
+  CHECK(refused_by("describe butterfly") ==
+        "error: no plugin is called \"butterfly\"; `drape list` names them all\n");
+}
+
+TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and parameters") {
+  const auto schema = nlohmann::json::parse(shown_by("schema"));
+  CHECK(schema.at("type") == "object");
+  CHECK(schema.at("additionalProperties") == false);
+  CHECK((schema.at("required") == nlohmann::json{"name", "energies", "methods"}));
+  const auto& properties = schema.at("properties");
+  const drape::Schema ours = drape::schema_of<drape::ExperimentParameters>();
+  CHECK(properties.size() == ours.parameters.size());
+  for (const drape::Parameter& p : ours.parameters) {
+    INFO(p.name);
+    REQUIRE(properties.contains(p.name));
+  }
+  CHECK(properties["levels"]["type"] == "integer");
+  CHECK(properties["levels"]["maximum"] == 10);
+  CHECK(properties["cloth"]["properties"]["shape"]["enum"].size() == 5);
+  std::set<std::string> energies;
+  for (const auto& choice : properties["energies"]["items"]["anyOf"]) {
+    if (!choice.contains("properties")) continue;
+    const std::string name = choice["properties"]["type"]["enum"][0];
+    energies.insert(name);
+    if (name == "gravity") CHECK(choice["properties"].contains("acceleration"));
+  }
+  std::set<std::string> registered;
+  for (const drape::RegistryEntry* entry : test_registry().of_kind("energy")) registered.insert(entry->name);
+  CHECK((energies == registered));
+}
+
+TEST_CASE("reference is docs/reference.md, which is up to date") {
+  const std::string page = shown_by("reference");
+  CHECK_THAT(page, StartsWith("# Configuration reference\n"));
+  for (const auto& entry : test_registry().entries()) CHECK_THAT(page, Contains(entry->name));
+  const fs::path stored = fs::path(DRAPE_SOURCE_DIR) / "docs/reference.md";
+  INFO("after a change, run: build/bin/drape reference > docs/reference.md");
+  CHECK((text_of(stored) == page));
+}
+
+TEST_CASE("report makes a run's page again, and says what it needs") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  REQUIRE(drape_with("run e.yaml --out out --levels 1 --method newton --quiet --no-report", folder.path)
+              .exit_code == 0);
+  REQUIRE(!fs::exists(folder / "out/report.html"));
+  const Ended ended = drape_with("report out", folder.path);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.out == "report: out/report.html\n");
+  CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
+  CHECK(refused_by("report nowhere") == "error: nowhere: no results.json here; give the folder of a run\n");
+  folder.write("out/results.json", "{\"experiment\": ");
+  const Ended broken = drape_with("report out", folder.path);
+  CHECK(broken.exit_code == 2);
+  CHECK_THAT(broken.err, StartsWith("error: out/results.json"));
+}
+
+TEST_CASE("a --set takes one value, so that the config may follow it") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Ended ended = drape_with("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path);
+  CHECK(ended.err == "");
+  CHECK(ended.out == "e.yaml: sound. Vertices by level: 42\n");
+}

@@ -1,0 +1,68 @@
+// A run's figures, pinned: what changes them without meaning to is found here.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+namespace {
+
+struct Golden {
+  std::string method;
+  double energies[3], energies_on_finest[3];  // J, of levels 0, 1, 2
+  double d_H_fit[3], d_H_ddg[3], d_K_fit[3];  // of the levels 0 and 1, 0 and 2, 1 and 2
+  double largest_stretch;                     // on level 2
+};
+
+// Direct solves and cascadic ones meet in the same states.
+const double plain_energies[] = {-1.47930518937, -1.52312924652, -1.56369351791};
+const Golden golden[] = {
+    {"pcs",
+     {-1.38710717663, -1.49910892879, -1.56369351791},
+     {-1.51835701045, -1.54572748516, -1.56369351791},
+     {0.000885264, 0.0065151, 0.000707219},
+     {0.0522303, 0.0443881, 0.0111057},
+     {0.00211112, 0.0195311, 0.0011475},
+     1.331821},
+    {"cascadic",
+     {plain_energies[0], plain_energies[1], plain_energies[2]},
+     {-1.49109011124, -1.53605077282, -1.56369351791},
+     {0.0030361, 0.028892, 0.00659482},
+     {0.0832611, 0.0541168, 0.027515},
+     {0.0169921, 0.104512, 0.0181815},
+     1.331821},
+    {"newton",
+     {plain_energies[0], plain_energies[1], plain_energies[2]},
+     {-1.49109011124, -1.53605077349, -1.56369351791},
+     {0.0030361, 0.028892, 0.00659482},
+     {0.0832609, 0.0541167, 0.0275151},
+     {0.0169921, 0.104512, 0.0181815},
+     1.331821},
+};
+
+}  // namespace
+
+TEST_CASE("the golden run: energies to 1e-6, measures of consistency to 1 %") {
+  const Scratch folder;
+  const Ended ended = drape_with(
+      "run " DRAPE_SOURCE_DIR "/tests/configs/data/golden.yaml --out out --quiet --no-report", folder.path);
+  REQUIRE(ended.exit_code == 0);
+  const auto methods = nlohmann::json::parse(text_of(folder / "out/results.json")).at("methods");
+  CHECK(methods.size() == std::size(golden));
+  for (const Golden& g : golden) {
+    INFO(g.method);
+    const auto& levels = methods.at(g.method).at("levels");
+    const auto& pairs = methods.at(g.method).at("consistency");
+    REQUIRE(levels.size() == 3);
+    REQUIRE(pairs.size() == 3);
+    for (int k = 0; k < 3; ++k) {
+      INFO("level or pair " << k);
+      CHECK(levels[k]["energy"].get<double>() == Approx(g.energies[k]).epsilon(1e-6));
+      CHECK(levels[k]["energy_on_finest"].get<double>() == Approx(g.energies_on_finest[k]).epsilon(1e-6));
+      CHECK(pairs[k]["d_H_fit"].get<double>() == Approx(g.d_H_fit[k]).epsilon(0.01));
+      CHECK(pairs[k]["d_H_ddg"].get<double>() == Approx(g.d_H_ddg[k]).epsilon(0.01));
+      CHECK(pairs[k]["d_K_fit"].get<double>() == Approx(g.d_K_fit[k]).epsilon(0.01));
+    }
+    CHECK(levels[2]["largest_stretch"].get<double>() == Approx(g.largest_stretch).epsilon(1e-4));
+  }
+}

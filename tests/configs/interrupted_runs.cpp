@@ -1,0 +1,91 @@
+// Runs that are stopped in the middle, politely and not.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+/// 30 × 30 vertices on 3 levels, to a tolerance that no state reaches.
+const std::string endless =
+    "run e.yaml --out out --threads 1 --set levels=3 --set cloth.columns=30 --set cloth.rows=30 "
+    "--set newton.force_tolerance=1e-300 ";
+
+std::string contents(const fs::path& file) { return fs::exists(file) ? text_of(file) : ""; }
+
+/// Waits until the file has that many lines.
+void wait_for_lines(const fs::path& file, int lines) {
+  for (int k = 0; k < 3000; ++k) {
+    const std::string text = contents(file);
+    if (std::count(text.begin(), text.end(), '\n') >= lines) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  FAIL(file << " does not come to " << lines << " lines");
+}
+
+}  // namespace
+
+TEST_CASE("SIGINT ends a run after the step, with everything so far and the report") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+  wait_for_lines(folder / "out/steps.csv", 6);
+  command.send(SIGINT);
+  const Ended ended = command.wait();
+  CHECK(ended.exit_code == 130);
+  CHECK(ended.out == "report: out/report.html\n");
+  CHECK_THAT(ended.err, Catch::Matchers::EndsWith("stopped on request; everything up to then is in out\n"));
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["complete"] == false);
+  REQUIRE(all["methods"].size() == 1);  // the next method is not begun
+  const Json& pcs = all["methods"]["pcs"];
+  CHECK(pcs["status"] == "cancelled");
+  REQUIRE(pcs["levels"].size() == 1);
+  CHECK(pcs["levels"][0]["status"] == "cancelled");
+  CHECK(pcs["levels"][0]["newton_iterations"].get<int>() >= 5);
+  CHECK(drape::read_mesh(folder / "out/levels/pcs_l0.ply").vertices.allFinite());
+  CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
+}
+
+TEST_CASE("SIGKILL at any moment leaves whole files, that a report can be made of") {
+  int levels_read = 0;
+  // Few steps on few vertices, so that levels, metrics and methods follow fast on each other.
+  const std::string fast = " --set newton.max_steps=3 --set cloth.columns=16 --set cloth.rows=16";
+  for (const int level_lines : {1, 4, 7, 10, 13}) {
+    const Scratch folder;
+    folder.write("e.yaml", small_experiment());
+    Command command("exec " + drape_command + " " + endless + fast, folder.path);
+    wait_for_lines(folder / "out/log.jsonl", level_lines);
+    command.send(SIGKILL);
+    REQUIRE(command.wait().exit_code == 128 + SIGKILL);
+
+    const Json all = Json::parse(text_of(folder / "out/results.json"));
+    CHECK(all["complete"] == false);
+    for (const auto& [name, method] : all["methods"].items())
+      for (const Json& level : method["levels"])
+        CHECK(fs::exists(folder / ("out/" + level["mesh"].get<std::string>())));
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
+      INFO(entry.path());
+      const std::string extension = entry.path().extension();
+      if (extension == ".ply") {
+        CHECK(drape::read_mesh(entry.path()).vertices.allFinite());
+        levels_read += entry.path().parent_path().filename() == "levels";
+      }
+      if (extension == ".vtp" || extension == ".pvd") CHECK(text_of(entry.path()).ends_with("</VTKFile>\n"));
+    }
+    if (level_lines != 10) continue;
+    CHECK(drape_with("report out", folder.path).exit_code == 0);
+    CHECK(drape_with(endless, folder.path).exit_code == 2);  // still somebody's results
+    const Ended again = drape_with(
+        endless + "--overwrite --quiet --no-report --levels 1 --set newton.max_steps=3", folder.path);
+    CHECK(again.exit_code == 1);
+    for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
+      CHECK(entry.path().extension() != ".part");
+  }
+  CHECK(levels_read >= 8);
+}

@@ -1,0 +1,241 @@
+// What a finished run leaves behind.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+constexpr int levels = 3;
+const std::vector<std::string> methods = {"cascadic", "newton", "pcs"};
+
+/// The small experiment on three levels, run once for all cases.
+const fs::path& finished_run() {
+  static const Scratch folder;
+  static const fs::path path = [] {
+    folder.write("e.yaml", small_experiment());
+    const Ended ended = drape_with("run e.yaml --out out --threads 1 --levels 3", folder.path);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code == 0);
+    REQUIRE(ended.out == "report: out/report.html\n");
+    // One line stays for each level of each method.
+    REQUIRE(std::count(ended.err.begin(), ended.err.end(), '\n') == levels * int(methods.size()));
+    return folder / "out";
+  }();
+  return path;
+}
+
+Json results() { return Json::parse(text_of(finished_run() / "results.json")); }
+
+std::set<std::string> keys(const Json& object) {
+  std::set<std::string> names;
+  for (const auto& [key, value] : object.items()) names.insert(key);
+  return names;
+}
+
+/// Whether the object has all of these keys.
+bool has(const Json& object, const std::set<std::string>& names) {
+  const std::set<std::string> present = keys(object);
+  for (const std::string& name : names) {
+    UNSCOPED_INFO("key " << name);
+    if (!present.count(name)) return false;
+  }
+  return true;
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream rest(line + ",");
+  for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+}  // namespace
+
+TEST_CASE("results.json has every key, finite figures and every pair of levels") {
+  const Json all = results();
+  CHECK(all.at("experiment") == "small");
+  CHECK(all.at("complete") == true);
+  REQUIRE((keys(all.at("methods")) == std::set<std::string>(methods.begin(), methods.end())));
+  for (const auto& [name, method] : all["methods"].items()) {
+    INFO(name);
+    REQUIRE(has(method, {"status", "seconds", "peak_memory_bytes", "levels", "consistency"}));
+    CHECK(method["status"] == "converged");
+    CHECK(method["seconds"].get<double>() > 0);
+    CHECK(method["peak_memory_bytes"].get<long>() > 1'000'000);
+    REQUIRE(method["levels"].size() == levels);
+    double seconds = 0;
+    for (int l = 0; l < levels; ++l) {
+      INFO("level " << l);
+      const Json& level = method["levels"][l];
+      REQUIRE(has(level, {"level", "vertices", "triangles", "status", "steps", "newton_iterations", "seconds",
+                          "seconds_by_phase", "energy", "energy_on_finest", "decrement", "force_residual",
+                          "largest_stretch", "intersections", "smallest_gap", "mesh"}));
+      const int side = 5 * (1 << l);
+      CHECK(level["level"] == l);
+      CHECK(level["vertices"] == (side + 1) * (side + 1));
+      CHECK(level["triangles"] == 2 * side * side);
+      CHECK(level["status"] == "converged");
+      CHECK(level["steps"].get<int>() > 0);
+      CHECK(level["newton_iterations"].get<int>() >= level["steps"].get<int>());
+      CHECK(level["force_residual"].get<double>() <= 1e-2);
+      CHECK(level["decrement"].get<double>() >= 0);
+      CHECK(level["energy"].is_number());
+      CHECK(level["energy_on_finest"].is_number());
+      CHECK(level["largest_stretch"].get<double>() > 1);
+      CHECK(level["intersections"].is_null());  // no contact model looked
+      CHECK(level["smallest_gap"].is_null());
+      double phases = 0;
+      for (const auto& [phase, value] : level["seconds_by_phase"].items()) phases += value.get<double>();
+      CHECK(phases > 0);
+      CHECK(phases <= level["seconds"].get<double>() * 1.001);
+      seconds += level["seconds"].get<double>();
+    }
+    CHECK(method["seconds"].get<double>() == Approx(seconds));
+    CHECK(method["levels"].back()["energy_on_finest"] == method["levels"].back()["energy"]);
+
+    std::vector<std::pair<int, int>> pairs;
+    for (const Json& pair : method["consistency"]) {
+      REQUIRE(has(pair, {"coarse", "fine", "d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"}));
+      pairs.emplace_back(pair["coarse"], pair["fine"]);
+      for (const char* measure : {"d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"}) {
+        INFO(measure);
+        CHECK(pair[measure].get<double>() > 0);
+      }
+    }
+    CHECK((pairs == std::vector<std::pair<int, int>>{{0, 1}, {0, 2}, {1, 2}}));
+    CHECK(method.contains("reference") == (name != "newton"));
+  }
+}
+
+TEST_CASE("every mesh and field that is named reads back, on the level's triangles") {
+  const Json all = results();
+  std::vector<drape::Triangles> triangles;
+  for (int l = 0; l < levels; ++l)
+    triangles.push_back(drape::read_mesh(finished_run() / ("rest/l" + std::to_string(l) + ".ply")).triangles);
+  for (const auto& [name, method] : all["methods"].items()) {
+    for (int l = 0; l < levels; ++l) {
+      const fs::path file = finished_run() / method["levels"][l]["mesh"].get<std::string>();
+      INFO(file);
+      const drape::TriangleMesh mesh = drape::read_mesh(file);
+      CHECK(mesh.vertices.rows() == method["levels"][l]["vertices"].get<int>());
+      CHECK(mesh.vertices.allFinite());
+      CHECK((mesh.triangles.array() == triangles[l].array()).all());
+      CHECK(text_of(fs::path(file).replace_extension(".vtp")).ends_with("</VTKFile>\n"));
+    }
+    int fields = 0;
+    for (const Json& pair : method["consistency"]) {
+      CHECK(pair.contains("fields") == (pair["fine"] == levels - 1));
+      if (!pair.contains("fields")) continue;
+      ++fields;
+      for (const drape::VertexField& field :
+           drape::read_ply_fields(finished_run() / pair["fields"].get<std::string>())) {
+        INFO(field.name);
+        CHECK(field.values.allFinite());
+      }
+    }
+    CHECK(fields == levels - 1);
+  }
+}
+
+TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where it is minimised") {
+  std::istringstream lines(text_of(finished_run() / "steps.csv"));
+  std::string line;
+  std::getline(lines, line);
+  CHECK(line ==
+        "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
+        "step_size");
+  std::map<std::pair<std::string, int>, int> rows;
+  while (std::getline(lines, line)) {
+    INFO(line);
+    const std::vector<std::string> cells = cells_of(line);
+    REQUIRE(cells.size() == 11);
+    const int level = std::stoi(cells[1]);
+    ++rows[{cells[0], level}];
+    const bool proxy = cells[0] == "pcs" && level < levels - 1;
+    for (std::size_t k = 1; k < cells.size(); ++k)
+      if (k != 9 || proxy) CHECK(std::isfinite(std::stod(cells[k])));
+    CHECK(cells[9].empty() == !proxy);
+  }
+  const Json all = results();
+  for (const std::string& method : methods)
+    for (int l = 0; l < levels; ++l)
+      CHECK(rows[{method, l}] == all["methods"][method]["levels"][l]["newton_iterations"].get<int>());
+  CHECK(rows.size() == methods.size() * levels);
+}
+
+TEST_CASE("log.jsonl is one JSON object a line, from start to end") {
+  std::istringstream lines(text_of(finished_run() / "log.jsonl"));
+  std::map<std::string, int> events;
+  double last = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const Json entry = Json::parse(line);
+    ++events[entry.at("event").get<std::string>()];
+    CHECK(entry.at("time").get<double>() >= last);
+    last = entry["time"];
+  }
+  CHECK((events == std::map<std::string, int>{{"run_started", 1},
+                                              {"method_started", 3},
+                                              {"level_started", 9},
+                                              {"level_finished", 9},
+                                              {"method_finished", 3},
+                                              {"run_finished", 1}}));
+}
+
+TEST_CASE("the report is there, and nothing half-written is") {
+  const std::string page = text_of(finished_run() / "report.html");
+  CHECK(page.ends_with("</html>\n"));
+  for (const std::string& method : methods) CHECK(page.find(method) != std::string::npos);
+  int files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(finished_run())) {
+    INFO(entry.path());
+    CHECK(entry.path().extension() != ".part");
+    ++files;
+  }
+  CHECK(files > 30);
+}
+
+TEST_CASE("the saved config gives itself again, and the same meshes bit for bit") {
+  const Scratch folder;
+  const std::string config = (finished_run() / "config.yaml").string();
+  REQUIRE(drape_with("run " + config + " --out out --threads 1 --quiet --no-report", folder.path).exit_code ==
+          0);
+  CHECK(text_of(folder / "out/config.yaml") == text_of(config));
+  for (const std::string& method : methods)
+    for (int l = 0; l < levels; ++l) {
+      const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
+      INFO(mesh);
+      CHECK((text_of(folder / ("out/" + mesh)) == text_of(finished_run() / mesh)));
+    }
+}
+
+TEST_CASE("the saved config has what the file leaves out, with its default") {
+  const std::string config = text_of(finished_run() / "config.yaml");
+  for (const char* line : {"\n  density: 472.6\n", "\n  type: none\n", "\n  corner_angle: 30\n",
+                           "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
+    CHECK_THAT(config, Catch::Matchers::Contains(line));
+}
+
+TEST_CASE("a metric that cannot measure a state leaves a note, and the run goes on") {
+  const Scratch folder;
+  folder.write("e.yaml", replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
+  const Ended ended = drape_with("run e.yaml --out out --threads 1 --quiet --no-report", folder.path);
+  CHECK(ended.exit_code == 1);
+  CHECK(ended.err == "");
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["complete"] == true);
+  REQUIRE((keys(all["methods"]) == std::set<std::string>(methods.begin(), methods.end())));
+  for (const auto& [name, method] : all["methods"].items()) {
+    CHECK(method["status"] == "infeasible");
+    CHECK(method["levels"][0]["message"] ==
+          "the energy at the start is not finite: a triangle is degenerate");
+    CHECK_THAT(method["consistency"][0]["not_measured"]["curvature_consistency"].get<std::string>(),
+               Catch::Matchers::StartsWith("curvature: the triangles around vertex 0 "));
+  }
+}

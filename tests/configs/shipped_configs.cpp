@@ -1,0 +1,65 @@
+// Every experiment of the project is sound, and runs: here on a few vertices and two levels.
+
+#include <catch2/catch.hpp>
+
+#include "core/experiment/yaml_file.h"
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path source = DRAPE_SOURCE_DIR;
+
+std::vector<fs::path> shipped() {
+  std::vector<fs::path> files;
+  for (const char* folder : {"configs", "benchmarks"})
+    for (const auto& entry : fs::recursive_directory_iterator(source / folder))
+      if (entry.path().extension() == ".yaml" || entry.path().extension() == ".yml")
+        files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Makes the cloth small, whatever its shape.
+std::string shrunk(const fs::path& config) {
+  drape::ConfigErrors errors;
+  const drape::ConfigNode root = drape::read_yaml(config, errors);
+  REQUIRE(errors.empty());
+  const drape::ConfigNode* cloth = root.find("cloth");
+  const drape::ConfigNode* shape = cloth ? cloth->find("shape") : nullptr;
+  const bool from_file = shape && shape->scalar == "file";
+  const std::string tolerance = " --set newton.force_tolerance=1e-2";
+  if (from_file) return tolerance + " --set levels=1";
+  return tolerance + " --set levels=2 --set cloth.columns=8 --set cloth.rows=8 --set cloth.vertices=64";
+}
+
+}  // namespace
+
+TEST_CASE("every shipped experiment passes drape check as it is") {
+  const Scratch folder;
+  int checked = 0;
+  for (const fs::path& config : shipped()) {
+    INFO(config);
+    const Ended ended = drape_with("check " + config.string(), folder.path);
+    CHECK(ended.err == "");
+    CHECK(ended.exit_code == 0);
+    ++checked;
+  }
+  CHECK(checked >= 2);
+}
+
+TEST_CASE("every shipped experiment converges, made small") {
+  int converged = 0;
+  for (const fs::path& config : shipped()) {
+    INFO(config);
+    const Scratch folder;
+    const Ended ended =
+        drape_with("run " + config.string() + " --out out --quiet --no-report" + shrunk(config), folder.path);
+    CHECK(ended.err == "");
+    CHECK(ended.exit_code == 0);
+    CHECK(fs::exists(folder / "out/results.json"));
+    ++converged;
+  }
+  CHECK(converged >= 2);
+}
