@@ -28,7 +28,7 @@ build: configure
 	@cmake --build $(BUILD) -j $(JOBS)
 
 demo: build
-	$(BUILD)/bin/drape run configs/pinned_square.yaml --blas-threads 2 --out results/pinned_square --overwrite
+	$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/pinned_square --overwrite
 	@echo "Open results/pinned_square/report.html in a browser."
 
 test: build
@@ -36,7 +36,7 @@ test: build
 
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
-	-$(BUILD)/bin/drape run configs/pinned_square.yaml --blas-threads 2 --out results/bench_pinned_square --overwrite
+	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
 	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square
 
 format: setup

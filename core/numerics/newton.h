@@ -28,7 +28,7 @@ struct NewtonParameters {
   double decrement_tolerance = 0;
   Projection projection = Projection::clamp;
   ProjectionShare projection_share = ProjectionShare::least;
-  int refresh = 3;
+  int refresh = 1;
 
   static void declare(Declaration<NewtonParameters>& d);
 };

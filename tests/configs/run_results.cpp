@@ -234,7 +234,7 @@ TEST_CASE("a metric that cannot measure a state leaves a note, and the run goes 
   for (const auto& [name, method] : all["methods"].items()) {
     CHECK(method["status"] == "infeasible");
     CHECK(method["levels"][0]["message"] ==
-          "the energy at the start is not finite: a triangle is degenerate");
+          "energy or forces at the start are not finite: a triangle is degenerate there");
     CHECK_THAT(method["consistency"][0]["not_measured"]["curvature_consistency"].get<std::string>(),
                Catch::Matchers::StartsWith("curvature: the triangles around vertex 0 "));
   }

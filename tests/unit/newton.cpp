@@ -50,6 +50,19 @@ class Wells : public Energy, public BoundEnergy {
   double k_, w2_;
 };
 
+/// Finite, with forces that are not: no equilibrium, though no comparison with NaN says so.
+class NoForces : public Wells {
+ public:
+  using Wells::Wells;
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<NoForces>(*this);
+  }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g.setConstant(std::nan(""));
+    return value(x);
+  }
+};
+
 class Silent : public Observer {
  public:
   int stop_after = 1 << 30, seen = 0;
@@ -141,6 +154,16 @@ TEST_CASE("A run says how it ended", "[newton]") {
   broken.centres(3, 1) = std::nan("");
   r = broken.solve(tight());
   REQUIRE(r.outcome == Outcome::infeasible);
+}
+
+TEST_CASE("Forces that are not numbers are no equilibrium") {
+  Case c;
+  const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
+                         std::vector<char>(c.level.vertex_count(), 0));
+  PlainObjective objective(model);
+  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), Stopwatch(), c.observer);
+  REQUIRE(r.outcome == Outcome::infeasible);
+  REQUIRE(r.message.find("not finite") != std::string::npos);
 }
 
 TEST_CASE("A matrix kept over several iterations reaches the same minimum with fewer factorisations",
