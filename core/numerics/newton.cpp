@@ -64,6 +64,8 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double shortest_step = 1e-6;
 /// A line search that leaves less than this of a step says that h was too long.
 constexpr double shortened = 0.25;
+/// In place of a step length, where a step had none along the direction of a new matrix.
+constexpr double no_fresh_direction = 2;
 /// Differences of energies below this part of them are rounding, not descent.
 constexpr double energy_noise = 1e-12;
 constexpr double smallest_step_size = 1e-8;
@@ -126,11 +128,14 @@ class Newton {
   /// One implicit step. False when no descent was found.
   bool step() {
     origin_ = result_.x;
+    fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
       if (converged()) break;
     }
     ++result_.steps;
+    if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
+    if (fresh_alpha_ < shortened) h_ /= p_.step_growth;
     return true;
   }
 
@@ -167,21 +172,16 @@ class Newton {
     ++result_.iterations;
     update_residual();
     report(iteration);
-    adapt();
+    age_factor();
     return true;
   }
 
-  /// Chooses h and the age of the factor for the next iteration. Only a step along a fresh direction says
-  /// something about h; a shortened one along an old direction says that it is time for a new matrix.
-  void adapt() {
-    const bool fresh = age_ == 0;
-    ++age_;
-    if (fresh) {
-      if (alpha_ == 1) h_ = std::min(h_ * p_.step_growth, p_.step_size_limit);
-      if (alpha_ < shortened) h_ /= p_.step_growth;
-    } else if (alpha_ < 1) {
-      age_ = p_.refresh;
-    }
+  /// Takes note of how far the last direction led. Only a fresh one says something about h; a shortened step
+  /// along an old one says that it is time for a new matrix.
+  void age_factor() {
+    if (age_ == 0) fresh_alpha_ = std::min(fresh_alpha_, alpha_);
+    const bool worn = age_ > 0 && alpha_ < 1;
+    age_ = worn ? p_.refresh : age_ + 1;
   }
 
   /// r = ∇F(x) + M (x − x^t) / h², zero on fixed vertices.
@@ -213,14 +213,13 @@ class Newton {
   void factorise() {
     if (cholesky_.has_factor() && age_ < p_.refresh) return;
     age_ = 0;
-    if (p_.projection != Projection::none && p_.projection_share == ProjectionShare::least) {
-      if (factorise_mixture()) return;
-    } else if (try_factor(assemble(p_.projection), 0)) {
-      return;
-    }
+    const bool mixture = p_.projection != Projection::none && p_.projection_share == ProjectionShare::least;
+    if (mixture && factorise_mixture()) return;
+    const BlockMatrix& matrix = assemble(p_.projection);
+    if (!mixture && try_factor(matrix, 0)) return;
     // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
     for (double shift = 1e-3 / (p_.step_size * p_.step_size); shift < 1e30; shift *= 10)
-      if (try_factor(assemble(p_.projection), shift)) return;
+      if (try_factor(matrix, shift)) return;
     throw std::runtime_error(
         "the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
   }
@@ -350,7 +349,7 @@ class Newton {
   std::string message_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
-  double h_, free_count_ = 0;
+  double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
   BlockMatrix exact_, mixed_;
   int share_ = std::size(shares) - 1;
   double decrements_[3] = {};

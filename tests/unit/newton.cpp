@@ -156,6 +156,34 @@ TEST_CASE("A run says how it ended", "[newton]") {
   REQUIRE(r.outcome == Outcome::infeasible);
 }
 
+TEST_CASE("The step size stays the same within an implicit step, and altogether without growth", "[newton]") {
+  Case several;
+  NewtonParameters p = tight();
+  p.iterations_per_step = 3;
+  several.solve(p, 0.4);
+  int within = 0, between = 0;
+  const auto& rows = several.observer.rows;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const bool same = rows[i].step_size == rows[i - 1].step_size;
+    if (rows[i].step == rows[i - 1].step) {
+      ++within;
+      REQUIRE(same);
+    } else {
+      between += !same;
+    }
+  }
+  REQUIRE(within > 3);
+  REQUIRE(between > 0);
+
+  Case constant;
+  p = tight();
+  p.step_growth = 1;
+  p.step_size = 2 * p.step_size_limit;
+  constant.solve(p, 0.4);
+  REQUIRE(constant.observer.rows.size() > 2);
+  for (const IterationRow& row : constant.observer.rows) REQUIRE(row.step_size == p.step_size);
+}
+
 TEST_CASE("Forces that are not numbers are no equilibrium") {
   Case c;
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
