@@ -2,6 +2,7 @@
 # make setup    install what third_party/apt-packages.txt lists (Debian 12, asks apt-get)
 # make demo     run configs/pinned_square.yaml and say where its report is
 # make test     build and run every test
+# make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
@@ -15,7 +16,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo test bench format fix-format lint clean
+.PHONY: all setup configure build demo test data bench format fix-format lint clean
 all: build
 
 setup:
@@ -33,6 +34,9 @@ demo: build
 
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+data: configure
+	@third_party/data/fetch data $(BUILD)
 
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json

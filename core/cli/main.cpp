@@ -8,7 +8,6 @@
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
 #include "core/experiment/runner.h"
-#include "core/numerics/block_cholesky.h"
 #include "core/numerics/parallel.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
@@ -178,7 +177,7 @@ int main_checked(int argc, char** argv) {
   ConfigArguments arguments;
   RunOptions options;
   std::string methods, out;
-  int threads = 0, blas = 1;
+  int threads = 0;
   CLI::App* run_command = app.add_subcommand("run", "run an experiment and write its results and report");
   arguments.add_to(*run_command);
   run_command->add_option("--out", out, "results folder (default: results/NAME)");
@@ -186,8 +185,6 @@ int main_checked(int argc, char** argv) {
       ->delimiter(',')
       ->allow_extra_args(false);
   run_command->add_option("--threads", threads, "threads (default: one a core)")->check(positive_integer);
-  run_command->add_option("--blas-threads", blas, "threads within a factorisation (default: 1)")
-      ->check(positive_integer);
   run_command->add_flag("--overwrite", options.overwrite,
                         "replace the results of an earlier run in the folder");
   run_command->add_flag("--quiet", options.quiet, "no progress on standard error");
@@ -222,7 +219,6 @@ int main_checked(int argc, char** argv) {
   }
 
   set_thread_count(threads);
-  set_blas_threads(blas);
   if (*report_command) {
     write_report(run_folder);
     std::cout << "report: " << (std::filesystem::path(run_folder) / "report.html").string() << "\n";

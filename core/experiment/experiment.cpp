@@ -25,7 +25,9 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("size", &ClothParameters::size).unit("m").above(0).meaning("width and height of a rectangle");
   d.add("radius", &ClothParameters::radius).unit("m").above(0).meaning("radius of a disc");
   d.add_sections("loops", &ClothParameters::loops).meaning("a polygon's outline, then its holes");
-  d.add("file", &ClothParameters::file).meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
+  d.add("file", &ClothParameters::file)
+      .path()
+      .meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "random"})
       .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
@@ -88,7 +90,10 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add_sections("pins", &ExperimentParameters::pins).meaning("vertices held in place");
   d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
   d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
-  d.add_node("contact", &ExperimentParameters::contact).plugin("contact").meaning("none if not given");
+  d.add_node("contact", &ExperimentParameters::contact)
+      .plugin("contact")
+      .or_list()
+      .meaning("one or a list of them; none if not given");
   d.add_section("newton", &ExperimentParameters::newton)
       .meaning("of every method, where it says nothing else");
   d.add_node("methods", &ExperimentParameters::methods)
@@ -99,6 +104,9 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .meaning("all that there are if not given");
   d.add("reference", &ExperimentParameters::reference)
       .meaning("method whose finest state the others' are measured against");
+  d.add_choice("verify", &ExperimentParameters::verify,
+               {{"every_level", Verify::every_level}, {"every_step", Verify::every_step}})
+      .meaning("when intersections are counted, by exact predicates where the shapes are meshes");
 }
 
 namespace {
@@ -155,7 +163,7 @@ class Maker {
                          "\"energies: [neo_hookean, hinge, gravity]\""});
 
     e_.refiner = make_one<Refiner>("refiner", e_.parameters.refiner, "loop");
-    e_.contact = make_one<ContactModel>("contact", e_.parameters.contact, "none");
+    make_contacts();
 
     if (!e_.source.find("metrics"))
       for (const RegistryEntry* entry : registry_.of_kind("metric"))
@@ -187,6 +195,18 @@ class Maker {
         registry_, node.kind == ConfigNode::Kind::null ? scalar_node(otherwise) : node, errors_, &resolved);
     set(key, resolved);
     return object;
+  }
+
+  void make_contacts() {
+    const ConfigNode& contact = e_.parameters.contact;
+    if (contact.kind != ConfigNode::Kind::list) {
+      e_.contacts.push_back(make_one<ContactModel>("contact", contact, "none"));
+      return;
+    }
+    ConfigNode resolved;
+    resolved.kind = ConfigNode::Kind::list;
+    for (const ConfigNode& node : contact.items) e_.contacts.push_back(make<ContactModel>(node, resolved));
+    set("contact", resolved);
   }
 
   void make_methods() {

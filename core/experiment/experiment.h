@@ -62,6 +62,9 @@ struct PinParameters {
   static void declare(Declaration<PinParameters>& d);
 };
 
+/// When exact predicates count the intersections.
+enum class Verify { every_level, every_step };
+
 /// A whole experiment file.
 struct ExperimentParameters {
   std::string name;
@@ -78,6 +81,7 @@ struct ExperimentParameters {
   ConfigNode methods;
   std::vector<ConfigNode> metrics;
   std::string reference;
+  Verify verify = Verify::every_level;
   static void declare(Declaration<ExperimentParameters>& d);
 };
 
@@ -88,7 +92,7 @@ struct Experiment {
   ConfigNode resolved;  ///< with every parameter of every plugin in it
   std::vector<NamedEnergy> energies;
   std::shared_ptr<Refiner> refiner;
-  std::shared_ptr<ContactModel> contact;
+  std::vector<std::shared_ptr<ContactModel>> contacts;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
 };

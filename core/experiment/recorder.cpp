@@ -7,7 +7,6 @@
 
 #include "core/experiment/machine.h"
 #include "core/mesh/io.h"
-#include "core/numerics/block_cholesky.h"
 #include "core/numerics/parallel.h"
 #include "core/version.h"
 
@@ -32,7 +31,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
     : folder_(folder), experiment_(experiment), scene_(scene) {
   steps_.open(folder.file("steps.csv"));
   steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-            "step_size\n";
+            "step_size,contacts,smallest_gap,intersections\n";
   log_.open(folder.file("log.jsonl"));
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
@@ -40,16 +39,21 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["complete"] = false;
   results_["version"] = std::string("drape ") + version();
   results_["commit"] = commit();
-  results_["machine"] = {{"cpu", cpu_name()},
-                         {"cores", core_count()},
-                         {"threads", thread_count()},
-                         {"blas_threads", blas_threads()}};
+  results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
   results_["table1_scene"] = p.table1_scene;
   results_["methods"] = Json::object();
   save();
   for (const Level& level : scene.hierarchy.levels)
     write_ply(folder.file("rest/l" + std::to_string(level.index) + ".ply"), level.rest);
+  results_["obstacles"] = Json::array();
+  for (const auto& contact : scene.models.back()->contacts())
+    for (const TriangleMesh& obstacle : contact->obstacles()) {
+      const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
+      write_ply(folder.file(name), obstacle);
+      results_["obstacles"].push_back(name);
+    }
+  save();
   log({{"event", "run_started"}, {"experiment", p.name}});
 }
 
@@ -68,6 +72,7 @@ std::string Recorder::file_of(const std::string& method, int level, const char* 
 
 void Recorder::method_started(const std::string& method) {
   method_ = method;
+  sound_of_method_ = true;
   reset_peak_memory();
   method_entry() = {{"status", "running"},
                     {"seconds", 0.0},
@@ -82,36 +87,65 @@ void Recorder::level_started(int level) {
   log({{"event", "level_started"}, {"method", method_}, {"level", level}});
 }
 
-void Recorder::iteration(const IterationRow& r, const Positions&) {
+Recorder::Json Recorder::intersections(int level, const Positions& x) {
+  const auto& contacts = scene_.models[level]->contacts();
+  if (contacts.empty()) return nullptr;
+  std::size_t count = 0;
+  for (const auto& contact : contacts) {
+    const std::vector<Touch> touches = contact->intersections(x);
+    for (std::size_t k = 0; k < std::min<std::size_t>(touches.size(), 10); ++k)
+      log({{"event", "intersection"},
+           {"method", method_},
+           {"level", level},
+           {"pair", to_string(touches[k])}});
+    count += touches.size();
+  }
+  if (count > 0) sound_ = sound_of_method_ = false;
+  return count;
+}
+
+void Recorder::iteration(const IterationRow& r, const Positions& x) {
   char line[400];
   std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
                 r.iteration, r.seconds, r.energy, r.decrement, r.force_residual, r.step_length);
   steps_ << line;
   if (r.proxy_energy) std::snprintf(line, sizeof line, "%.17g", *r.proxy_energy), steps_ << line;
-  std::snprintf(line, sizeof line, ",%.9g\n", r.step_size);
-  steps_ << line << std::flush;
+  std::snprintf(line, sizeof line, ",%.9g,", r.step_size);
+  steps_ << line;
+  if (r.contacts) steps_ << *r.contacts;
+  steps_ << ',';
+  if (r.smallest_gap && std::isfinite(*r.smallest_gap))
+    std::snprintf(line, sizeof line, "%.6g", *r.smallest_gap), steps_ << line;
+  steps_ << ',';
+  if (experiment_.parameters.verify == Verify::every_step)
+    if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
+  steps_ << std::endl;
 }
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
-  const LevelModel& model = *scene_.models[r.level];
+  double energy = 0;
+  for (const auto& [name, joules] : scene_.models[r.level]->energy_parts(r.x)) energy += joules;
+  const Json crossing = intersections(r.level, r.x);
+  const bool apart = crossing.is_null() || crossing == 0;
   Json entry = {{"level", r.level},
                 {"vertices", level.vertex_count()},
                 {"triangles", level.triangle_count()},
-                {"status", to_string(r.outcome)},
-                {"message", r.message},
+                {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
+                {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
                 {"steps", r.steps},
                 {"newton_iterations", r.iterations},
                 {"factorisations", r.factorisations},
+                {"analyses", r.analyses},
                 {"seconds", r.seconds},
                 {"seconds_by_phase", r.seconds_by_phase},
-                {"energy", finite_or_null(model.value(r.x))},
+                {"energy", finite_or_null(energy)},
                 {"energy_on_finest", finite_or_null(scene_.models.back()->value(scene_.hierarchy.prolong(
                                          r.x, r.level, static_cast<int>(scene_.models.size()) - 1)))},
                 {"decrement", finite_or_null(r.decrement)},
                 {"force_residual", finite_or_null(r.force_residual)},
-                {"intersections", nullptr},
-                {"smallest_gap", nullptr},
+                {"intersections", crossing},
+                {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
                 {"mesh", file_of(method_, r.level, ".ply")}};
   return entry;
 }
@@ -189,6 +223,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
                          results[f].level == finest ? "fields/" + tag + ".ply" : ""));
       entry["consistency"].push_back(row);
     }
+  if (!sound_of_method_) worst = Outcome::infeasible;
   entry["status"] = to_string(worst);
   if (!results.empty() && results.back().level == finest) finest_.emplace_back(method_, results.back().x);
   save();

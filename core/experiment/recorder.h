@@ -24,12 +24,17 @@ class Recorder : public Observer {
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
+  /// Whether no state that was looked at had an intersection.
+  bool sound() const { return sound_; }
+
  private:
   using Json = nlohmann::ordered_json;
 
   Json& method_entry() { return results_["methods"][method_]; }
   std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);
+  /// Counts the pairs that intersect and logs the first ones; null where nothing is to be kept apart.
+  Json intersections(int level, const Positions& x);
   /// A metric's result; one that cannot measure the state leaves a note in `entry` and the run goes on.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
@@ -42,6 +47,7 @@ class Recorder : public Observer {
   std::ofstream steps_, log_;
   Json results_;
   std::string method_;
+  bool sound_ = true, sound_of_method_ = true;
   std::vector<std::pair<std::string, Positions>> finest_;  // of each method that reached it
 };
 

@@ -9,7 +9,7 @@ namespace {
 
 // What a run writes; the only names that --overwrite may remove.
 constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html", "steps.csv", "log.jsonl",
-                                     "levels",      "fields",       "rest",        "pictures"};
+                                     "levels",      "fields",       "rest",        "pictures",  "obstacles"};
 
 }  // namespace
 
@@ -40,7 +40,7 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
   fs::remove(probe, error);
   if (earlier_run)
     for (const char* own : own_names) fs::remove_all(file(own), error);
-  for (const char* folder : {"levels", "fields", "rest"}) fs::create_directories(file(folder));
+  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {

@@ -84,7 +84,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   }
   recorder.run_finished(!cancelled);
   if (options.report) write_report(folder.path());
-  return all_converged;
+  return all_converged && recorder.sound();
 }
 
 }  // namespace drape

@@ -25,16 +25,11 @@ TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
               c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
 }
 
-/// Relative to the config.
-std::filesystem::path mesh_file(const Experiment& e) {
-  return std::filesystem::path(e.source.where.file).parent_path() / e.parameters.cloth.file;
-}
-
 TriangleMesh make_cloth(const Experiment& e) {
   const ClothParameters& c = e.parameters.cloth;
   if (c.shape == "file") {
     if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
-    return read_mesh(mesh_file(e));
+    return read_mesh(c.file);
   }
   if (c.shape == "disc") return disc(c.radius, c.vertices);
   if (c.shape == "polygon") {
@@ -120,6 +115,22 @@ std::vector<int> pinned_by(const PinParameters& pin, const Level& level) {
   return held;
 }
 
+/// Contact keeps apart what is apart: a start that touches is refused, and says where.
+void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
+                           ConfigErrors& errors) {
+  constexpr std::size_t most_said = 3;
+  for (const auto& contact : model.contacts()) {
+    const std::vector<Touch> touches = contact->intersections(start);
+    for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
+      errors.push_back({place_of(e, "start"), "the start of level " + std::to_string(model.level().index) +
+                                                  " touches: " + to_string(touches[k])});
+    if (touches.size() > most_said)
+      errors.push_back(
+          {place_of(e, "start"), "… and " + std::to_string(touches.size() - most_said) +
+                                     " more pairs; move the start or the obstacle so that they are apart"});
+  }
+}
+
 }  // namespace
 
 Problem Scene::problem() const {
@@ -137,7 +148,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors) {
     errors.push_back({place_of(e, "cloth"), error.what()});
     return nullptr;
   }
-  const std::string file = p.cloth.shape == "file" ? mesh_file(e).string() + ": " : "";
+  const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
   for (const std::string& fault : check_mesh(cloth)) errors.push_back({place_of(e, "cloth"), file + fault});
   if (!errors.empty()) return nullptr;
 
@@ -175,11 +186,14 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors) {
         for (int v : held[k]) start.row(v) = level.rest.vertices.row(v) + p.pins[k].move->transpose();
     scene->starts.push_back(std::move(start));
     try {
-      scene->models.push_back(std::make_unique<LevelModel>(level, p.material, e.energies, std::move(fixed)));
+      scene->models.push_back(
+          std::make_unique<LevelModel>(level, p.material, e.energies, std::move(fixed), e.contacts));
     } catch (const std::exception& error) {
       errors.push_back({place_of(e, "energies"), error.what()});
       return nullptr;
     }
+    refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
+    if (!errors.empty()) return nullptr;
   }
   return scene;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/hierarchy/level.h"
 #include "core/model/energy.h"
@@ -8,24 +10,56 @@
 
 namespace drape {
 
-/// The contacts active at one state: a value that is built, evaluated and looked at.
-/// As an energy it is the barrier B (and friction D) over those contacts.
+/// Two primitives and how they stand to each other, in words that a person can act on.
+struct Touch {
+  std::string first, second;                        ///< "cloth triangle 12", "ball: sphere"
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
+std::string to_string(const Touch& touch);
+
+/// The friction potential D of lagged contacts, of displacements from where they stuck.
+class FrictionEnergy : public BoundEnergy {
+ public:
+  /// Where displacements count from after a step that ended at x. Overwrites the rows of `anchors` (n×3,
+  /// filled with x) of vertices in contact: `from` stays their anchor, dragged behind where they slid.
+  virtual void drag(const Positions& x, const Positions& from, Positions& anchors) const = 0;
+};
+
+/// The contacts within range at one state: a value that is built, evaluated and looked at. As an energy it
+/// is the barrier B over those contacts, and x is always the state that it was built for. Elements may
+/// have fewer vertices of the cloth than the stencil has columns: -1 stands for none.
 class ContactSet : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
+
+  /// The lagged friction potential D with this set's normal forces and tangents, of displacements from
+  /// `from` (n×3); null without friction. Its stencils have -1 as above.
+  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& from) const = 0;
+};
+
+/// Everything that may come within range on the straight way from x0 to x1.
+class ContactSweep {
+ public:
+  virtual ~ContactSweep() = default;
+  /// How far along the way nothing touches, a part of every gap kept.
+  virtual StepLimit max_step() const = 0;
+  /// The contacts at x, a state on the way.
+  virtual std::unique_ptr<ContactSet> build(const Positions& x) const = 0;
 };
 
 /// A contact model bound to one level and its obstacles. Immutable.
 class BoundContact {
  public:
   virtual ~BoundContact() = default;
-  /// The contacts within range of state x (n×3).
-  virtual std::unique_ptr<ContactSet> build(const Positions& x) const = 0;
-  /// Largest fraction in [0, 1] of the straight way from x0 to x1 that is free of intersections.
-  virtual double max_step(const Positions& x0, const Positions& x1) const = 0;
-  /// Number of intersecting pairs of primitives at x.
-  virtual int intersections(const Positions& x) const = 0;
+  /// Looks for candidates between x0 and x1 (n×3, kept by copy), x0 being free of intersections.
+  virtual std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const = 0;
+  /// Pairs of primitives that intersect or touch at x, by exact predicates where the shapes are meshes.
+  virtual std::vector<Touch> intersections(const Positions& x) const = 0;
+  /// What is in the way, as meshes to be drawn.
+  virtual std::vector<TriangleMesh> obstacles() const = 0;
 };
 
 /// A kind of contact, made by name from its parameters.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <string>
 
 #include "core/hierarchy/level.h"
 #include "core/model/material.h"
@@ -12,8 +13,15 @@ namespace drape {
 /// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5).
 enum class Projection { clamp, absolute, none };
 
-/// The part an energy plays in the report; `external` ones define the load of the force residual.
-enum class EnergyRole { membrane, bending, external };
+/// The part an energy plays: `external` ones define the load of the force residual; a `limit` belongs to the
+/// mesh it is on, as contact does, and is never evaluated on a finer one in its place.
+enum class EnergyRole { membrane, bending, external, limit };
+
+/// How far along a step a state stays allowed, and what ends it there.
+struct StepLimit {
+  double fraction = 1;  ///< in [0, 1]
+  std::string by;       ///< the element or pair that ends it, in words; empty at 1
+};
 
 /// An energy bound to one level: E(x), ∂E/∂x, ∂²E/∂x². Immutable; evaluation is const, stateless and
 /// gives the same bits with any number of threads.
@@ -34,6 +42,14 @@ class BoundEnergy {
   /// Adds ∂²E/∂x² [N/m], projected per element, to the sink: element e of stencils() adds its
   /// 3×3 blocks (a, b), a ≤ b, a and b being columns of stencils().
   virtual void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const = 0;
+};
+
+/// An optional ability of a BoundEnergy that has a domain.
+class StepFilter {
+ public:
+  virtual ~StepFilter() = default;
+  /// The part of the straight way from x0, which is inside, to x1 that stays inside.
+  virtual StepLimit max_step(const Positions& x0, const Positions& x1) const = 0;
 };
 
 /// A kind of energy, made by name from its parameters. Out of it comes one BoundEnergy a level.

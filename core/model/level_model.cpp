@@ -18,25 +18,33 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
 double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
 
 LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
-                       std::vector<char> fixed)
-    : level_(level), fixed_(std::move(fixed)), masses_(material.area_density() * level.vertex_area) {
+                       std::vector<char> fixed, const std::vector<std::shared_ptr<ContactModel>>& contacts)
+    : level_(level),
+      material_(material),
+      fixed_(std::move(fixed)),
+      masses_(material.area_density() * level.vertex_area) {
   std::vector<Stencils> stencils;
   for (const NamedEnergy& e : energies) {
     Term term{e.name, e.energy->role(), e.energy->bind(level, material), nullptr};
     stencils.push_back(term.energy->stencils());
+    if (term.role == EnergyRole::limit) limits_.push_back(term.energy.get());
     terms_.push_back(std::move(term));
   }
   pattern_ = BlockPattern::of(level.vertex_count(), stencils);
   for (std::size_t t = 0; t < terms_.size(); ++t)
-    if (stencils[t].rows() > 0) terms_[t].slots = std::make_unique<BlockSlots>(*pattern_, stencils[t]);
+    if (stencils[t].rows() > 0 && terms_[t].role != EnergyRole::limit)
+      terms_[t].slots = std::make_unique<BlockSlots>(*pattern_, stencils[t]);
   for (const Term& term : terms_)
     if (term.role == EnergyRole::external && term.slots) load_is_constant_ = false;
+  for (const auto& contact : contacts)
+    if (auto bound = contact->bind(level, material)) contacts_.push_back(std::move(bound));
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
 }
 
 double LevelModel::value(const Positions& x) const {
   double sum = 0;
   for (const Term& term : terms_) {
+    if (term.role == EnergyRole::limit) continue;
     sum += term.energy->value(x);
     if (!std::isfinite(sum)) return sum;
   }
@@ -47,6 +55,7 @@ double LevelModel::gradient(const Positions& x, Positions& g) const {
   g.setZero(x.rows(), 3);
   double sum = 0;
   for (const Term& term : terms_) {
+    if (term.role == EnergyRole::limit) continue;
     sum += term.energy->add_gradient(x, g);
     if (!std::isfinite(sum)) return sum;
   }
@@ -65,6 +74,11 @@ void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix&
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
   std::vector<std::pair<std::string, double>> parts;
   for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
+  if (!contacts_.empty()) {
+    double barrier = 0;
+    for (const auto& contact : contacts_) barrier += contact->sweep(x, x)->build(x)->value(x);
+    parts.emplace_back("contact", barrier);
+  }
   return parts;
 }
 
@@ -92,6 +106,8 @@ double LevelModel::residual_scale(const Positions& x, const Positions& gradient)
 double LevelModel::force_residual(const Positions& x) const {
   Positions g;
   gradient(x, g);
+  for (const BoundEnergy* limit : limits_) limit->add_gradient(x, g);
+  for (const auto& contact : contacts_) contact->sweep(x, x)->build(x)->add_gradient(x, g);
   return free_norm(g, fixed_) / residual_scale(x, g);
 }
 

@@ -2,50 +2,80 @@
 
 #include <memory>
 
+#include "core/model/active_contacts.h"
 #include "core/model/level_model.h"
+#include "core/numerics/sum_matrix.h"
 
 namespace drape {
 
 /// What one Newton minimises on one level: a function of n×3 positions with its gradient and a matrix
-/// for the directions. Not thread-safe: it owns the work space of its evaluations.
+/// for the directions. It is the sum of a smooth part, which a derived class gives, and of what belongs to
+/// the level's own mesh whatever is minimised: strain limits S_l, barrier B_l and friction D_l. Not
+/// thread-safe: it owns the work space of its evaluations.
 class Objective {
  public:
+  explicit Objective(const LevelModel& model)
+      : model_(model), limits_(model.limits()), contacts_(model.contacts()) {}
   virtual ~Objective() = default;
 
   /// The level's plain model: its masses, fixed vertices and force scale.
-  virtual const LevelModel& model() const = 0;
-  /// F(x) [J]; overwrites g with ∇F(x) [N].
-  virtual double gradient(const Positions& x, Positions& g) = 0;
+  const LevelModel& model() const { return model_; }
+
+  /// F(x) [J]; overwrites g with ∇F(x) [N]. +∞ outside the domain.
+  double gradient(const Positions& x, Positions& g);
+  /// The plain energy E_l(x) of the level, without friction, whatever is minimised [J].
+  double plain_energy(const Positions& x);
   /// F(x) alone.
-  virtual double value(const Positions& x) = 0;
+  double value(const Positions& x);
   /// The matrix at x [N/m]; valid until the next call. Its pattern object stays the same as long as
   /// its sparsity does.
-  virtual const BlockMatrix& matrix(const Positions& x, Projection projection) = 0;
+  const BlockMatrix& matrix(const Positions& x, Projection projection);
+
+  /// How far from x0 towards x1 every limit holds and nothing touches. Until the next call the function may
+  /// be evaluated at x0 and at states that far, and with contact nowhere else.
+  StepLimit max_step(const Positions& x0, const Positions& x1);
+
+  /// Contacts, their gaps and friction's memory; what a step does with them.
+  ActiveContacts& contacts() { return contacts_; }
+
   /// What the norm of ∇F over free vertices is divided by to give the force residual.
-  virtual double residual_scale(const Positions& x, const Positions& gradient) = 0;
-  /// Whether F is something else than the plain energy of the level.
+  virtual double residual_scale(const Positions& x, const Positions& gradient) const {
+    return model_.residual_scale(x, gradient);
+  }
+  /// Whether the smooth part is something else than the plain energy of the level.
   virtual bool is_proxy() const = 0;
+
+ protected:
+  virtual double smooth_gradient(const Positions& x, Positions& g) = 0;
+  virtual double smooth_value(const Positions& x) = 0;
+  /// To which the rest is added in place, where its pattern has room for it.
+  virtual BlockMatrix& smooth_matrix(const Positions& x, Projection projection) = 0;
+
+  /// Restricts or replaces the limits of the model.
+  void set_limits(std::vector<const BoundEnergy*> limits) { limits_ = std::move(limits); }
+
+ private:
+  const LevelModel& model_;
+  std::vector<const BoundEnergy*> limits_;
+  ActiveContacts contacts_;
+  SumMatrix sum_;
 };
 
 /// E_l itself.
 class PlainObjective : public Objective {
  public:
-  explicit PlainObjective(const LevelModel& model) : model_(model), matrix_(model.pattern()) {}
-
-  const LevelModel& model() const override { return model_; }
-  double gradient(const Positions& x, Positions& g) override { return model_.gradient(x, g); }
-  double value(const Positions& x) override { return model_.value(x); }
-  const BlockMatrix& matrix(const Positions& x, Projection projection) override {
-    model_.hessian(x, projection, matrix_);
-    return matrix_;
-  }
-  double residual_scale(const Positions& x, const Positions& gradient) override {
-    return model_.residual_scale(x, gradient);
-  }
+  explicit PlainObjective(const LevelModel& model) : Objective(model), matrix_(model.pattern()) {}
   bool is_proxy() const override { return false; }
 
+ protected:
+  double smooth_gradient(const Positions& x, Positions& g) override { return model().gradient(x, g); }
+  double smooth_value(const Positions& x) override { return model().value(x); }
+  BlockMatrix& smooth_matrix(const Positions& x, Projection projection) override {
+    model().hessian(x, projection, matrix_);
+    return matrix_;
+  }
+
  private:
-  const LevelModel& model_;
   BlockMatrix matrix_;
 };
 

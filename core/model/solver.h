@@ -37,6 +37,8 @@ struct IterationRow {
   double force_residual = 0;           ///< of what is minimised, after the iteration [1]
   double step_length = 0;              ///< α of the line search
   double step_size = 0;                ///< h [s]; +∞ for the static form
+  std::optional<int> contacts;         ///< within range, where the level has a contact model
+  std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
 };
 
 /// The state a method reached on one level and how.
@@ -45,11 +47,12 @@ struct LevelResult {
   Outcome outcome = Outcome::converged;
   std::string message;  ///< what stopped it, where that is not convergence
   Positions x;
-  int steps = 0, iterations = 0, factorisations = 0;
+  int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
   double seconds = 0;
   std::map<std::string, double> seconds_by_phase;
   double decrement = 0;
-  double force_residual = 0;  ///< of what was minimised [1]
+  double force_residual = 0;           ///< of what was minimised [1]
+  std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
 };
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.

@@ -15,11 +15,13 @@ struct VertexElements {
 
   VertexElements(int vertex_count, const Stencils& stencils)
       : start(vertex_count + 1), rows(stencils.size()) {
-    for (Eigen::Index i = 0; i < stencils.size(); ++i) ++start[stencils.data()[i] + 1];
+    for (Eigen::Index i = 0; i < stencils.size(); ++i)
+      if (stencils.data()[i] >= 0) ++start[stencils.data()[i] + 1];
     for (int v = 0; v < vertex_count; ++v) start[v + 1] += start[v];
     std::vector<int> end(start.begin(), start.end() - 1);
     for (Eigen::Index e = 0; e < stencils.rows(); ++e)
-      for (Eigen::Index k = 0; k < stencils.cols(); ++k) rows[end[stencils(e, k)]++] = static_cast<int>(e);
+      for (Eigen::Index k = 0; k < stencils.cols(); ++k)
+        if (stencils(e, k) >= 0) rows[end[stencils(e, k)]++] = static_cast<int>(e);
   }
 };
 
@@ -27,6 +29,7 @@ void require_vertices(int vertex_count, const Stencils& stencils) {
   for (Eigen::Index e = 0; e < stencils.rows(); ++e)
     for (Eigen::Index a = 0; a < stencils.cols(); ++a) {
       const int v = stencils(e, a);
+      if (v == -1) continue;
       bool repeated = false;
       for (Eigen::Index b = 0; b < a; ++b) repeated |= stencils(e, b) == v;
       if (v < 0 || v >= vertex_count || repeated)
@@ -147,8 +150,12 @@ BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)
       int* slots = slots_.data() + static_cast<std::size_t>(e) * pairs_;
       for (Eigen::Index b = 0; b < stencils.cols(); ++b)
         for (Eigen::Index a = 0; a <= b; ++a) {
-          const int i = stencils(e, a), j = stencils(e, b),
-                    slot = pattern.find(std::min(i, j), std::max(i, j));
+          const int i = stencils(e, a), j = stencils(e, b);
+          if (i < 0 || j < 0) {
+            *slots++ = no_block;
+            continue;
+          }
+          const int slot = pattern.find(std::min(i, j), std::max(i, j));
           if (slot < 0)
             throw std::runtime_error("block pattern has no block for vertices " + std::to_string(i) +
                                      " and " + std::to_string(j) + " of element " + std::to_string(e));

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <vector>
 
 namespace drape {
 
-/// m×k vertex indices, one row an element.
+/// m×k vertex indices, one row an element; -1 where an element has fewer vertices.
 using Stencils = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Sparsity of a symmetric matrix of 3×3 blocks, one block row a vertex. Only blocks (i, j) with
@@ -50,21 +51,30 @@ class BlockSlots {
  private:
   friend class BlockSink;
   int pairs_;               // k(k+1)/2 block pairs an element
-  std::vector<int> slots_;  // block index, bitwise complemented where it is to be transposed
+  std::vector<int> slots_;  // block index, bitwise complemented where it is to be transposed, or no_block
+  static constexpr int no_block = std::numeric_limits<int>::min();  // of a pair with a missing vertex
 };
 
 /// Adds elements' 3×3 blocks to a matrix. Concurrent calls are safe for elements that share no vertex.
 class BlockSink {
  public:
-  BlockSink(const BlockSlots& slots, BlockMatrix& matrix) : slots_(slots), values_(matrix.values.data()) {}
+  BlockSink(const BlockSlots& slots, BlockMatrix& matrix)
+      : slots_(slots.slots_.data()), pairs_(slots.pairs_), values_(matrix.values.data()) {}
+
+  /// The same for a part of an energy, whose elements begin at row `first` of the stencils.
+  BlockSink from(int first) const {
+    BlockSink part = *this;
+    part.slots_ += static_cast<std::ptrdiff_t>(first) * pairs_;
+    return part;
+  }
 
   /// Adds `h` (row-major 3×3, element rows of local vertex a, columns of b) for the pair a ≤ b.
   void add(int element, int a, int b, const double* h) {
-    const int slot = slots_.slots_[static_cast<std::size_t>(element) * slots_.pairs_ + b * (b + 1) / 2 + a];
+    const int slot = slots_[static_cast<std::size_t>(element) * pairs_ + b * (b + 1) / 2 + a];
     if (slot >= 0) {
       double* v = values_ + 9 * static_cast<std::size_t>(slot);
       for (int i = 0; i < 9; ++i) v[i] += h[i];
-    } else {
+    } else if (slot != BlockSlots::no_block) {
       double* v = values_ + 9 * static_cast<std::size_t>(~slot);
       for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) v[3 * r + c] += h[3 * c + r];
@@ -72,7 +82,8 @@ class BlockSink {
   }
 
  private:
-  const BlockSlots& slots_;
+  const int* slots_;
+  int pairs_;
   double* values_;
 };
 

@@ -95,10 +95,8 @@ class Newton {
   }
 
   LevelResult run() {
-    {
-      PhaseTimer t(result_.seconds_by_phase, "gradient");
-      energy_ = f_.gradient(result_.x, g_);
-    }
+    f_.contacts().begin_step(result_.x);
+    evaluate();
     if (std::isfinite(energy_)) update_residual();
     if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual))
       return finish(Outcome::infeasible,
@@ -118,16 +116,29 @@ class Newton {
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
-  bool converged() const {
+  bool converged() {
     if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
-    if (p_.decrement_tolerance <= 0) return true;
-    return result_.iterations >= 3 &&
-           *std::max_element(decrements_, decrements_ + 3) <= p_.decrement_tolerance;
+    if (p_.decrement_tolerance > 0 &&
+        (result_.iterations < 3 || *std::max_element(decrements_, decrements_ + 3) > p_.decrement_tolerance))
+      return false;
+    if (!f_.contacts().has_friction()) return true;
+    // At a fixed point of the lag: with the normal forces of here, not of where the step began.
+    f_.contacts().renew_lag(result_.x);
+    evaluate();
+    update_residual();
+    return result_.force_residual <= p_.force_tolerance;
+  }
+
+  void evaluate() {
+    PhaseTimer t(result_.seconds_by_phase, "gradient");
+    energy_ = f_.gradient(result_.x, g_);
   }
 
   /// One implicit step. False when no descent was found.
   bool step() {
     origin_ = result_.x;
+    f_.contacts().begin_step(origin_);
+    if (f_.contacts().has_friction()) evaluate();
     fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
@@ -156,13 +167,14 @@ class Newton {
         continue;
       }
       if (is_static()) {
-        message_ = "the line search found no descent (the direction's slope is " + brief(slope_) + ")";
+        message_ =
+            "the line search found no descent (the direction's slope is " + brief(slope_) + ")" + held();
         return false;
       }
       h_ /= 4;
       age_ = p_.refresh;
       if (h_ < smallest_step_size) {
-        message_ = "the line search found no descent at any step size down to 1e-8 s";
+        message_ = "the line search found no descent at any step size down to 1e-8 s" + held();
         return false;
       }
     }
@@ -175,6 +187,9 @@ class Newton {
     age_factor();
     return true;
   }
+
+  /// What kept the last step short, for messages.
+  std::string held() const { return limit_.by.empty() ? "" : "; the step is held by " + limit_.by; }
 
   /// Takes note of how far the last direction led. Only a fresh one says something about h; a shortened step
   /// along an old one says that it is time for a new matrix.
@@ -271,14 +286,20 @@ class Newton {
     return cholesky_.factorise(matrix, (inverse_h2() + extra_shift) * model_.masses());
   }
 
-  /// Backtracks along the direction until the energy has decreased enough; moves x, g and energy.
+  /// Backtracks along the direction, from where limits and contact let it, until the energy has decreased
+  /// enough; moves x, g and energy.
   bool line_search() {
-    PhaseTimer t(result_.seconds_by_phase, "gradient");
     slope_ = r_.cwiseProduct(direction_).sum();
     if (!(slope_ < 0)) return false;
+    {
+      PhaseTimer t(result_.seconds_by_phase, "step filter");
+      trial_ = result_.x + direction_;
+      limit_ = f_.max_step(result_.x, trial_);
+    }
+    PhaseTimer t(result_.seconds_by_phase, "gradient");
     const double before = energy_ + inertia_;
     const double force_before = free_norm(r_, model_.fixed());
-    for (alpha_ = 1; alpha_ >= shortest_step; alpha_ *= 0.5) {
+    for (alpha_ = limit_.fraction; alpha_ >= shortest_step; alpha_ *= 0.5) {
       trial_ = result_.x + alpha_ * direction_;
       const double energy = f_.gradient(trial_, trial_g_);
       if (!std::isfinite(energy)) continue;
@@ -317,10 +338,15 @@ class Newton {
     row.level = result_.level;
     row.step = result_.steps;
     row.iteration = iteration;
-    row.energy = energy_;
+    const ActiveContacts& contacts = f_.contacts();
+    row.energy = energy_ - contacts.friction(result_.x);
     if (f_.is_proxy()) {
-      row.proxy_energy = energy_;
-      row.energy = model_.value(result_.x);
+      row.proxy_energy = row.energy;
+      row.energy = f_.plain_energy(result_.x);
+    }
+    if (contacts.any()) {
+      row.contacts = contacts.count();
+      row.smallest_gap = contacts.smallest_gap();
     }
     row.decrement = result_.decrement;
     row.force_residual = result_.force_residual;
@@ -334,6 +360,8 @@ class Newton {
     result_.outcome = outcome;
     result_.message = std::move(message);
     result_.seconds = watch_.seconds();
+    result_.analyses = cholesky_.analyses();
+    if (f_.contacts().any()) result_.smallest_gap = f_.contacts().smallest_gap();
     return std::move(result_);
   }
 
@@ -347,6 +375,7 @@ class Newton {
   BlockCholesky cholesky_;
   LevelResult result_;
   std::string message_;
+  StepLimit limit_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
   double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;

@@ -73,6 +73,7 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
     }
   } else {
     json = item_schema(p.type, p, registry);
+    if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
   }
   if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
   std::string description = p.meaning;

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "core/plugin/words.h"
 
@@ -111,6 +112,20 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   return errors.size() == before;
 }
 
+/// A file's path as it holds from the current folder, which is what one on the command line is relative to.
+ConfigNode from_here(const ConfigNode& node) {
+  ConfigNode path = node;
+  if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
+    path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
+  return path;
+}
+
+/// The same as it holds from anywhere.
+ConfigNode from_anywhere(ConfigNode path) {
+  if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
+  return path;
+}
+
 }  // namespace
 
 std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
@@ -150,7 +165,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
                                                 : "; known keys are " + joined(known);
       errors.push_back({map.key_places[i], "unknown key \"" + key + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
-      parameters[index].read(object, node, errors);
+      parameters[index].read(object, parameters[index].path ? from_here(node) : node, errors);
     }
   }
   for (const Parameter& p : parameters)
@@ -161,7 +176,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
 ConfigNode Schema::write(const void* object) const {
   ConfigNode map;
   map.kind = Kind::map;
-  for (const Parameter& p : parameters) map.add(p.name, p.write(object));
+  for (const Parameter& p : parameters)
+    map.add(p.name, p.path ? from_anywhere(p.write(object)) : p.write(object));
   return map;
 }
 

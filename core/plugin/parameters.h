@@ -29,6 +29,8 @@ struct Parameter {
   bool nullable = false;             ///< null is allowed and means "none"
   std::vector<std::string> choices;  ///< text: the allowed words, empty for any
   std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
+  bool or_list = false;              ///< a node: a list of such nodes is taken too
+  bool path = false;                 ///< text: a file, relative to the one it is written in
 
   // Type-erased access to the member of a struct; `read` is given only nodes that passed the checks above.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
@@ -98,6 +100,14 @@ class ParameterHandle {
   }
   ParameterHandle& plugin(std::string kind) {
     p_.plugin_kind = std::move(kind);
+    return *this;
+  }
+  ParameterHandle& or_list() {
+    p_.or_list = true;
+    return *this;
+  }
+  ParameterHandle& path() {
+    p_.path = true;
     return *this;
   }
 

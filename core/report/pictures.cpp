@@ -78,6 +78,10 @@ class PictureMaker {
         }
       }
     }
+    std::vector<TriangleMesh> obstacles;
+    for (const std::string& name : run_.obstacles)
+      if (auto mesh = try_mesh(name)) obstacles.push_back(std::move(*mesh));
+    obstacle_ = merged(obstacles);
     // Three quarters from above: the top shows how it lies, the side how it folds.
     camera_ = Camera::around(all, {0.55, -1.0, 0.68}, double(picture_width) / picture_height);
   }
@@ -88,6 +92,7 @@ class PictureMaker {
         const auto state = states_.find({method.name, level.level});
         if (state == states_.end()) continue;
         Drawing drawing{state->second};
+        drawing.obstacle = obstacle();
         drawing.edges = state->second.vertices.rows() <= most_vertices_with_edges;
         keep(state_picture(method, level.level), renderer().draw(drawing, camera_));
       }
@@ -140,7 +145,7 @@ class PictureMaker {
         if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size);
         keep(name, map_renderer_->draw({*rest, nullptr, &colours, false, false}, Camera::facing(*rest, 1)));
       } else {
-        keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true}, camera_));
+        keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
       }
     }
   }
@@ -189,14 +194,14 @@ class PictureMaker {
       Positions normals = smooth_normals(mesh);
       if (!carry_up(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
       const Colours colours = fold_colours(f->principal_other, set_.fold_threshold);
-      keep(name, renderer().draw({mesh, &normals, &colours, false, true}, camera_));
+      keep(name, renderer().draw({mesh, &normals, &colours, false, true, obstacle()}, camera_));
       return;
     }
     for (const ConsistencyRecord& pair : method.consistency) {
       const PairFields* f = fields(method, pair.coarse, pair.fine);
       if (!f || pair.fine != level || f->principal.size() == 0) continue;
       const Colours colours = fold_colours(f->principal, set_.fold_threshold);
-      keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true}, camera_));
+      keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
       return;
     }
   }
@@ -230,6 +235,8 @@ class PictureMaker {
     return nullptr;
   }
 
+  const TriangleMesh* obstacle() const { return obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr; }
+
   Renderer& renderer() {
     if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height);
     return *renderer_;
@@ -245,6 +252,7 @@ class PictureMaker {
   PictureSet set_;
   std::map<StateKey, TriangleMesh> states_;
   std::map<PairKey, PairFields> fields_;
+  TriangleMesh obstacle_;
   Camera camera_;
   std::unique_ptr<Renderer> renderer_, map_renderer_;
 };

@@ -134,6 +134,18 @@ Positions smooth_normals(const TriangleMesh& mesh) {
   return normals;
 }
 
+TriangleMesh merged(const std::vector<TriangleMesh>& meshes) {
+  TriangleMesh all;
+  for (const TriangleMesh& mesh : meshes) {
+    const Eigen::Index n = all.vertices.rows(), m = all.triangles.rows();
+    all.vertices.conservativeResize(n + mesh.vertices.rows(), 3);
+    all.vertices.bottomRows(mesh.vertices.rows()) = mesh.vertices;
+    all.triangles.conservativeResize(m + mesh.triangles.rows(), 3);
+    all.triangles.bottomRows(mesh.triangles.rows()) = mesh.triangles.array() + static_cast<int>(n);
+  }
+  return all;
+}
+
 struct Renderer::Context {
   int width, height;
   OSMesaContext mesa = nullptr;
@@ -233,7 +245,8 @@ struct Renderer::Context {
     return light.cwiseQuotient(weight);
   }
 
-  void draw_surface(int mode, int index_count) const {
+  /// The first `cloth_count` indices are the cloth's, the rest an obstacle's.
+  void draw_surface(int mode, int cloth_count, int index_count) const {
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     glViewport(0, 0, canvas_width(), canvas_height());
     glClear(GL_DEPTH_BUFFER_BIT | GL_COLOR_BUFFER_BIT);
@@ -241,7 +254,10 @@ struct Renderer::Context {
     glBindTexture(GL_TEXTURE_2D, depth_texture[0]);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1, 1);
-    glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT, nullptr);
+    glDrawElements(GL_TRIANGLES, cloth_count, GL_UNSIGNED_INT, nullptr);
+    glUniform1i(place("mode"), 4);
+    glDrawElements(GL_TRIANGLES, index_count - cloth_count, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(sizeof(int) * static_cast<std::size_t>(cloth_count)));
     glDisable(GL_POLYGON_OFFSET_FILL);
   }
 
@@ -266,23 +282,28 @@ Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {
   const Context& gl = *context_;
   context_->activate();
 
+  const TriangleMesh all = drawing.obstacle ? merged({drawing.mesh, *drawing.obstacle}) : drawing.mesh;
   // Single precision is kept for offsets from the centre only.
   Eigen::AlignedBox3d box;
-  for (Eigen::Index i = 0; i < drawing.mesh.vertices.rows(); ++i) {
-    if (drawing.mesh.vertices.row(i).allFinite()) box.extend(drawing.mesh.vertices.row(i).transpose());
+  for (Eigen::Index i = 0; i < all.vertices.rows(); ++i) {
+    if (all.vertices.row(i).allFinite()) box.extend(all.vertices.row(i).transpose());
   }
   if (box.isEmpty()) box.extend(Eigen::Vector3d::Zero());
   const double radius = 1.01 * std::max(box.diagonal().norm() / 2, 1e-9);
-  Vertices x = (drawing.mesh.vertices.rowwise() - box.center().transpose()).cast<float>();
+  Vertices x = (all.vertices.rowwise() - box.center().transpose()).cast<float>();
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     if (!x.row(i).allFinite()) x.row(i).setZero();
   }
-  const Vertices normals = (drawing.normals ? *drawing.normals : smooth_normals(drawing.mesh)).cast<float>();
-  const Triangles kept = drawable(drawing.mesh);
+  Vertices normals = smooth_normals(all).cast<float>();
+  if (drawing.normals) normals.topRows(drawing.normals->rows()) = drawing.normals->cast<float>();
+  Colours colours = Colours::Constant(x.rows(), 3, 0.8f);
+  if (drawing.colours) colours.topRows(drawing.colours->rows()) = *drawing.colours;
+  const Triangles kept = drawable(all);
   const int index_count = static_cast<int>(kept.size());
+  const int cloth_count = drawing.obstacle ? static_cast<int>(drawable(drawing.mesh).size()) : index_count;
   gl.attribute(0, x);
   gl.attribute(1, normals);
-  gl.attribute(2, drawing.colours ? *drawing.colours : Colours(Colours::Constant(x.rows(), 3, 0.8f)));
+  gl.attribute(2, colours);
   gl.triangles(kept);
 
   const Eigen::Matrix3d to_world = camera.view.topLeftCorner<3, 3>().transpose();
@@ -305,8 +326,8 @@ Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {
   gl.set("key", key);
   gl.set("fill", Eigen::Vector3d((to_world * Eigen::Vector3d(0.8, 0.1, 0.45)).normalized()));
   glUniform1f(gl.place("shadow_bias"), 1.6f / shadow_size);
-  gl.draw_surface(!drawing.lit ? 2 : drawing.colours ? 1 : 0, index_count);
-  if (drawing.edges) gl.draw_edges(index_count);
+  gl.draw_surface(!drawing.lit ? 2 : drawing.colours ? 1 : 0, cloth_count, index_count);
+  if (drawing.edges) gl.draw_edges(cloth_count);
   glFinish();
   return shrink(over_backdrop(gl.canvas, gl.canvas_width(), gl.canvas_height(), !drawing.lit), supersampling);
 }

@@ -27,11 +27,15 @@ struct Camera {
 /// What a picture shows. Triangles with a vertex that is not finite are left out.
 struct Drawing {
   const TriangleMesh& mesh;
-  const Positions* normals = nullptr;  ///< n×3 unit normals; otherwise the mesh's own smooth ones
-  const Colours* colours = nullptr;    ///< n×3; otherwise plain cloth
-  bool edges = false;                  ///< thin lines along the triangles' edges
-  bool lit = true;                     ///< otherwise flat colours, for maps
+  const Positions* normals = nullptr;      ///< n×3 unit normals; otherwise the mesh's own smooth ones
+  const Colours* colours = nullptr;        ///< n×3; otherwise plain cloth
+  bool edges = false;                      ///< thin lines along the triangles' edges
+  bool lit = true;                         ///< otherwise flat colours, for maps
+  const TriangleMesh* obstacle = nullptr;  ///< drawn with it, plain and dark
 };
+
+/// All of them as one.
+TriangleMesh merged(const std::vector<TriangleMesh>& meshes);
 
 /// n×3 unit normals, area-weighted; zero where undefined.
 Positions smooth_normals(const TriangleMesh& mesh);

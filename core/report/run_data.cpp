@@ -187,6 +187,8 @@ RunData read_run(const std::filesystem::path& folder) {
   run.description = text(at(json, "description"));
   run.version = text(at(json, "version"));
   run.table1_scene = text(at(json, "table1_scene"));
+  if (const Json& obstacles = at(json, "obstacles"); obstacles.is_array())
+    for (const Json& name : obstacles) run.obstacles.push_back(text(name));
   run.complete = at(json, "complete").is_boolean() && at(json, "complete").get<bool>();
   const Json& machine = at(json, "machine");
   run.cpu = text(at(machine, "cpu"));

@@ -63,6 +63,7 @@ struct RunData {
   std::string experiment, description, version, cpu, table1_scene, configuration;
   bool complete = false;
   Figure cores, threads, force_tolerance;
+  std::vector<std::string> obstacles;  ///< meshes, relative to the folder
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
 

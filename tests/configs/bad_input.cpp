@@ -43,7 +43,7 @@ std::string said_of_set(const std::string& set) { return said_of(small_experimen
 const std::string top_keys =
     "name, description, table1_scene, cloth, levels, material, start, pins, energies, refiner, contact, "
     "newton, "
-    "methods, metrics, reference";
+    "methods, metrics, reference, verify";
 
 }  // namespace
 
@@ -112,15 +112,17 @@ TEST_CASE("values out of range or of the wrong type") {
 TEST_CASE("a plugin that is unknown, of every kind") {
   CHECK(said_of_edit("hinge,", "springs,") ==
         "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, neo_hookean, "
-        "quadratic_bending, stvk\n");
+        "quadratic_bending, strain_limit, stvk\n");
   CHECK(
       said_of_edit("hinge,", "hinje,") ==
       "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, gravity, "
-      "hinge, neo_hookean, quadratic_bending, stvk\n");
+      "hinge, neo_hookean, quadratic_bending, strain_limit, stvk\n");
   CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
         "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint\n");
-  CHECK(said_of_edit("levels: 2", "contact: ipc") ==
-        "error: e.yaml:3:10: unknown contact \"ipc\"; known: none\n");
+  CHECK(said_of_edit("levels: 2", "contact: glue") ==
+        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, none, shapes\n");
+  CHECK(said_of_edit("levels: 2", "contact: [ipc, glue]") ==
+        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, none, shapes\n");
   CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
         "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
         "residuals, "
@@ -190,7 +192,7 @@ TEST_CASE("every fault of a config is named at once, in the order of the file, t
         "\"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
         "gravity, hinge, "
-        "neo_hookean, quadratic_bending, stvk\n"
+        "neo_hookean, quadratic_bending, strain_limit, stvk\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }

@@ -150,18 +150,19 @@ TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where i
   std::getline(lines, line);
   CHECK(line ==
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-        "step_size");
+        "step_size,contacts,smallest_gap,intersections");
   std::map<std::pair<std::string, int>, int> rows;
   while (std::getline(lines, line)) {
     INFO(line);
     const std::vector<std::string> cells = cells_of(line);
-    REQUIRE(cells.size() == 11);
+    REQUIRE(cells.size() == 14);
     const int level = std::stoi(cells[1]);
     ++rows[{cells[0], level}];
     const bool proxy = cells[0] == "pcs" && level < levels - 1;
-    for (std::size_t k = 1; k < cells.size(); ++k)
+    for (std::size_t k = 1; k < 11; ++k)
       if (k != 9 || proxy) CHECK(std::isfinite(std::stod(cells[k])));
     CHECK(cells[9].empty() == !proxy);
+    CHECK((cells[11] + cells[12] + cells[13]).empty());  // without contact
   }
   const Json all = results();
   for (const std::string& method : methods)

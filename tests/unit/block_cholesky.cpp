@@ -1,18 +1,22 @@
 #include "core/numerics/block_cholesky.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <limits>
+#include <numeric>
+#include <random>
 
+#include "core/numerics/parallel.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;
 
 namespace {
 
-/// A random symmetric positive definite block matrix over four-vertex elements along a chain.
-BlockMatrix random_matrix(int vertices, unsigned seed) {
-  Stencils stencils(vertices - 3, 4);
-  for (int e = 0; e < stencils.rows(); ++e) stencils.row(e) << e + 3, e, e + 1, e + 2;
+/// A random symmetric positive semidefinite block matrix: a random 12×12 one for every element.
+BlockMatrix random_matrix(int vertices, const Stencils& stencils, unsigned seed) {
   const auto pattern = BlockPattern::of(vertices, {stencils});
   BlockMatrix matrix(pattern);
   const BlockSlots slots(*pattern, stencils);
@@ -30,41 +34,151 @@ BlockMatrix random_matrix(int vertices, unsigned seed) {
   return matrix;
 }
 
-}  // namespace
+/// Elements along a chain.
+Stencils chain(int vertices) {
+  Stencils stencils(vertices - 3, 4);
+  for (int e = 0; e < stencils.rows(); ++e) stencils.row(e) << e + 3, e, e + 1, e + 2;
+  return stencils;
+}
 
-TEST_CASE("Block Cholesky solves what a dense factorisation solves, fixed vertices left out", "[cholesky]") {
-  const int n = 60;
-  const std::vector<int> held = {0, 7, 59};
-  const BlockMatrix a = random_matrix(n, 3);
-  const Eigen::VectorXd shift = Eigen::VectorXd::LinSpaced(n, 0.5, 6);
-  std::vector<char> fixed(n, 0);
-  for (int v : held) fixed[v] = 1;
+BlockMatrix random_matrix(int vertices, unsigned seed) {
+  return random_matrix(vertices, chain(vertices), seed);
+}
+
+/// Numbers of vertices in no order, as in a file.
+std::vector<int> shuffled(int vertices, unsigned seed) {
+  std::vector<int> number(vertices);
+  std::iota(number.begin(), number.end(), 0);
+  std::shuffle(number.begin(), number.end(), std::mt19937(seed));
+  return number;
+}
+
+/// The hinges of a square grid of side×side vertices.
+Stencils shell(int side, const std::vector<int>& number) {
+  const auto at = [&](int i, int j) { return number[i * side + j]; };
+  std::vector<int> v;
+  for (int i = 0; i + 1 < side; ++i)
+    for (int j = 0; j + 1 < side; ++j) {
+      v.insert(v.end(), {at(i, j), at(i + 1, j + 1), at(i + 1, j), at(i, j + 1)});
+      if (j + 2 < side) v.insert(v.end(), {at(i, j + 1), at(i + 1, j + 1), at(i, j), at(i + 1, j + 2)});
+      if (i + 2 < side) v.insert(v.end(), {at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 2, j + 1)});
+    }
+  return Eigen::Map<Stencils>(v.data(), static_cast<Eigen::Index>(v.size()) / 4, 4);
+}
+
+Stencils shell(int side, unsigned seed) { return shell(side, shuffled(side * side, seed)); }
+
+/// Elements of any four vertices: hardly anything of the factor is zero.
+Stencils tangle(int vertices, int elements, unsigned seed) {
+  std::mt19937 random(seed);
+  Stencils stencils(elements, 4);
+  for (int e = 0; e < elements; ++e)
+    for (int k = 0; k < 4; ++k) {
+      const auto taken = [&] { return (stencils.row(e).head(k).array() == stencils(e, k)).any(); };
+      do stencils(e, k) = static_cast<int>(random() % vertices);
+      while (taken());
+    }
+  return stencils;
+}
+
+/// The largest difference from a dense solution, relative to it.
+double error(const BlockMatrix& a, const Eigen::VectorXd& shift, const std::vector<char>& fixed) {
+  const int n = a.pattern->rows();
   BlockCholesky cholesky;
   cholesky.analyse(a.pattern, fixed);
-  REQUIRE(cholesky.unknowns() == 3 * (n - 3));
   REQUIRE(cholesky.factorise(a, shift));
+  std::srand(7);
   const Positions b = Positions::Random(n, 3);
   Positions x;
   cholesky.solve(b, x);
 
   Eigen::MatrixXd d = dense(a);
-  Eigen::VectorXd right(3 * n);
-  for (int i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) {
-      d(3 * i + c, 3 * i + c) += shift[i];
-      right[3 * i + c] = b(i, c);
-    }
-  for (int v : held)
-    for (int k = 3 * v; k < 3 * v + 3; ++k) {
+  Eigen::VectorXd right(3 * n), got(3 * n);
+  for (int k = 0; k < 3 * n; ++k) {
+    d(k, k) += shift[k / 3];
+    right[k] = b(k / 3, k % 3);
+    got[k] = x(k / 3, k % 3);
+  }
+  for (int k = 0; k < 3 * n; ++k)
+    if (fixed[k / 3]) {
       d.row(k).setZero();
       d.col(k).setZero();
       d(k, k) = 1;
       right[k] = 0;
     }
   const Eigen::VectorXd expected = d.llt().solve(right);
-  REQUIRE(expected.norm() > 0.1);
-  for (int i = 0; i < n; ++i)
-    for (int c = 0; c < 3; ++c) REQUIRE(x(i, c) == Approx(expected[3 * i + c]).margin(1e-10));
+  REQUIRE(expected.norm() > 0.01);
+  return (got - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("Block Cholesky solves what a dense factorisation solves", "[cholesky]") {
+  const auto free = [](int n) { return std::vector<char>(n, 0); };
+  const auto shift = [](int n) { return Eigen::VectorXd::LinSpaced(n, 0.5, 6); };
+  SECTION("chain with fixed vertices") {
+    std::vector<char> fixed(60, 0);
+    for (int v : {0, 7, 59}) fixed[v] = 1;
+    REQUIRE(error(random_matrix(60, 3), shift(60), fixed) < 1e-12);
+  }
+  SECTION("of any length, so that every remainder of a vector and of a strip occurs") {
+    for (int n = 4; n < 40; ++n) REQUIRE(error(random_matrix(n, n), shift(n), free(n)) < 1e-12);
+  }
+  SECTION("shells") {
+    for (int side : {4, 7, 12, 20}) {
+      const int n = side * side;
+      REQUIRE(error(random_matrix(n, shell(side, side), 1), shift(n), free(n)) < 1e-12);
+    }
+  }
+  SECTION("shell with fixed vertices that cut it in two") {
+    const std::vector<int> number = shuffled(225, 1);
+    std::vector<char> fixed(225, 0);
+    for (int k = 7 * 15; k < 9 * 15; ++k) fixed[number[k]] = 1;
+    REQUIRE(error(random_matrix(225, shell(15, number), 2), shift(225), fixed) < 1e-12);
+  }
+  SECTION("vertices without neighbours, in between and alone") {
+    Stencils s = shell(6, 3);
+    s.array() *= 2;
+    REQUIRE(error(random_matrix(80, s, 4), shift(80), free(80)) < 1e-12);
+    REQUIRE(error(random_matrix(9, Stencils(0, 4), 4), shift(9), free(9)) < 1e-12);
+    REQUIRE(error(random_matrix(1, Stencils(0, 4), 4), shift(1), free(1)) < 1e-12);
+  }
+  SECTION("a factor without zeros, of several tiles") {
+    for (int n : {64, 65, 150, 267}) {
+      BlockCholesky cholesky;
+      const BlockMatrix a = random_matrix(n, tangle(n, 6 * n, n), 5);
+      cholesky.analyse(a.pattern, free(n));
+      REQUIRE(cholesky.factor_entries() > 0.6 * 9 * n * n / 2);
+      REQUIRE(error(a, shift(n), free(n)) < 1e-11);
+    }
+  }
+}
+
+TEST_CASE("Block Cholesky gives the same bits with any number of threads", "[cholesky]") {
+  const int n = 60 * 60 + 300;
+  Stencils s(0, 4);
+  const Stencils grid = shell(60, 5), dense = tangle(300, 2000, 6);
+  s.resize(grid.rows() + dense.rows(), 4);
+  s << grid, dense.array() + 3600;
+  const BlockMatrix a = random_matrix(n, s, 8);
+  const Positions b = Positions::Random(n, 3);
+  Positions first;
+  for (int threads : {1, 2, 3, 8}) {
+    set_thread_count(threads);
+    BlockCholesky cholesky;
+    cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+    for (int repeat = 0; repeat < 3; ++repeat) {
+      REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, 0.1)));
+      Positions x;
+      cholesky.solve(b, x);
+      if (first.size() == 0) first = x;
+      REQUIRE(x == first);
+    }
+  }
+  set_thread_count(0);
+  Positions ax;
+  a.multiply(first, ax);
+  REQUIRE((ax + 0.1 * first - b).norm() < 1e-10 * b.norm());
 }
 
 TEST_CASE("Block Cholesky keeps its analysis until the pattern or the fixed vertices change", "[cholesky]") {
@@ -80,13 +194,41 @@ TEST_CASE("Block Cholesky keeps its analysis until the pattern or the fixed vert
   REQUIRE(cholesky.unknowns() == 87);
 }
 
-TEST_CASE("Block Cholesky refuses an indefinite matrix, and factorises it once it is shifted", "[cholesky]") {
-  BlockMatrix a = random_matrix(30, 2);
-  a.block(a.pattern->row_start[11])[4] = -50;
+TEST_CASE("Block Cholesky refuses an indefinite matrix wherever it is so, and then factorises a definite one",
+          "[cholesky]") {
+  const int side = 14, n = side * side;
+  const BlockMatrix good = random_matrix(n, shell(side, 2), 2);
+  const Eigen::VectorXd shift = Eigen::VectorXd::Ones(n);
+  const Positions b = Positions::Random(n, 3);
   BlockCholesky cholesky;
-  cholesky.analyse(a.pattern, std::vector<char>(30, 0));
-  REQUIRE_FALSE(cholesky.factorise(a, Eigen::VectorXd::Zero(30)));
-  REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(30, 500)));
+  cholesky.analyse(good.pattern, std::vector<char>(n, 0));
+  REQUIRE(cholesky.factorise(good, shift));
+  Positions expected, x;
+  cholesky.solve(b, expected);
+  for (int v = 0; v < n; ++v) {
+    BlockMatrix bad = good;
+    bad.block(bad.pattern->row_start[v])[v % 3 * 4] = -50;
+    REQUIRE_FALSE(cholesky.factorise(bad, shift));
+    REQUIRE_FALSE(cholesky.has_factor());
+    REQUIRE_THROWS_AS(cholesky.solve(b, x), std::logic_error);
+    bad.block(bad.pattern->row_start[v])[v % 3 * 4] = std::numeric_limits<double>::quiet_NaN();
+    REQUIRE_FALSE(cholesky.factorise(bad, shift));
+  }
+  REQUIRE(cholesky.factorise(good, shift));
+  cholesky.solve(b, x);
+  REQUIRE(x == expected);
+}
+
+TEST_CASE("Block Cholesky tells definite from indefinite up to rounding", "[cholesky]") {
+  for (const auto& [n, stencils] : {std::pair(144, shell(12, 4)), std::pair(120, tangle(120, 500, 4))}) {
+    const BlockMatrix a = random_matrix(n, stencils, 6);
+    const double smallest =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(a), Eigen::EigenvaluesOnly).eigenvalues()[0];
+    BlockCholesky cholesky;
+    cholesky.analyse(a.pattern, std::vector<char>(n, 0));
+    REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, -smallest + 1e-9)));
+    REQUIRE_FALSE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, -smallest - 1e-9)));
+  }
 }
 
 TEST_CASE("Block Cholesky with every vertex fixed has nothing to solve", "[cholesky]") {

@@ -10,7 +10,7 @@ uniform vec3 key;             // towards the key light, world
 uniform vec3 fill;            // towards the fill light, world
 uniform sampler2D shadow_map;
 uniform float shadow_bias;
-uniform int mode;             // 0 plain cloth, 1 lit colours, 2 flat colours, 3 lines
+uniform int mode;             // 0 plain cloth, 1 lit colours, 2 flat colours, 3 lines, 4 obstacle
 
 out vec4 pixel;
 
@@ -43,6 +43,7 @@ void main() {
   }
   bool front = gl_FrontFacing;
   vec3 base = mode == 1 ? albedo : (front ? vec3(0.83, 0.76, 0.66) : vec3(0.62, 0.70, 0.77));
+  if (mode == 4) base = vec3(0.36, 0.38, 0.41);
   base = pow(base, vec3(2.2));
   if (mode == 1 && !front) base *= 0.9;
 

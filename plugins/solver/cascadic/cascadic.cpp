@@ -1,4 +1,4 @@
-#include "core/numerics/newton.h"
+#include "core/numerics/progression.h"
 #include "core/plugin/plugin.h"
 
 namespace drape {
@@ -24,20 +24,12 @@ class CascadicSolver : public Solver {
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
 
   std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
-    const Stopwatch clock;
     const auto& weights =
         p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints : problem.hierarchy.prolongations;
-    std::vector<LevelResult> results;
-    Positions x = problem.starts[0];
-    for (int l = 0; l <= problem.finest(); ++l) {
-      observer.level_started(l);
-      PlainObjective objective(*problem.models[l]);
-      results.push_back(minimise(objective, x, p_.newton, clock, observer));
-      observer.level_finished(results.back());
-      if (results.back().outcome == Outcome::cancelled) break;
-      if (l < problem.finest()) x = problem.carry_up(weights[l], l, results.back().x);
-    }
-    return results;
+    const auto objective = [&](int level) {
+      return std::make_unique<PlainObjective>(*problem.models[level]);
+    };
+    return solve_progressively(problem, weights, objective, p_.newton, observer);
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "core/numerics/newton.h"
+#include "core/numerics/progression.h"
 #include "core/plugin/plugin.h"
 #include "proxy_objective.h"
 
@@ -31,24 +31,12 @@ class PcsSolver : public Solver {
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
 
   std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
-    const Stopwatch clock;
     const int depth = p_.hessian == ProxyMatrix::galerkin ? p_.depth : 0;
-    std::vector<LevelResult> results;
-    Positions x = problem.starts[0];
-    for (int l = 0; l <= problem.finest(); ++l) {
-      observer.level_started(l);
-      if (l < problem.finest()) {
-        ProxyObjective objective(problem, l, depth);
-        results.push_back(minimise(objective, x, p_.newton, clock, observer));
-      } else {
-        PlainObjective objective(*problem.models[l]);
-        results.push_back(minimise(objective, x, p_.newton, clock, observer));
-      }
-      observer.level_finished(results.back());
-      if (results.back().outcome == Outcome::cancelled) break;
-      if (l < problem.finest()) x = problem.carry_up(problem.hierarchy.prolongations[l], l, results.back().x);
-    }
-    return results;
+    const auto objective = [&](int level) -> std::unique_ptr<Objective> {
+      if (level < problem.finest()) return std::make_unique<ProxyObjective>(problem, level, depth);
+      return std::make_unique<PlainObjective>(*problem.models[level]);
+    };
+    return solve_progressively(problem, problem.hierarchy.prolongations, objective, p_.newton, observer);
   }
 
  private:

@@ -5,7 +5,10 @@
 namespace drape {
 
 ProxyObjective::ProxyObjective(const Problem& problem, int level, int depth)
-    : problem_(problem), level_(level), depth_(std::min(depth, problem.finest() - level)) {
+    : Objective(*problem.models[level]),
+      problem_(problem),
+      level_(level),
+      depth_(std::min(depth, problem.finest() - level)) {
   const int above = problem.finest() - level;
   for (int k = 0; k < above; ++k) transfers_.emplace_back(problem.hierarchy.prolongations[level + k]);
   carried_.resize(above);
@@ -26,11 +29,11 @@ const Positions& ProxyObjective::carry(const Positions& x, int count) {
   return *from;
 }
 
-double ProxyObjective::value(const Positions& x) {
+double ProxyObjective::smooth_value(const Positions& x) {
   return problem_.models.back()->value(carry(x, static_cast<int>(transfers_.size())));
 }
 
-double ProxyObjective::gradient(const Positions& x, Positions& g) {
+double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
   const int above = static_cast<int>(transfers_.size());
   const double energy = problem_.models.back()->gradient(carry(x, above), forces_[above - 1]);
   for (int k = above - 1; k > 0; --k) transfers_[k].restrict(forces_[k], forces_[k - 1]);
@@ -38,14 +41,10 @@ double ProxyObjective::gradient(const Positions& x, Positions& g) {
   return energy;
 }
 
-const BlockMatrix& ProxyObjective::matrix(const Positions& x, Projection projection) {
+BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
   problem_.models[level_ + depth_]->hessian(carry(x, depth_), projection, matrices_[0]);
   for (std::size_t k = 0; k < products_.size(); ++k) products_[k].form(matrices_[k], matrices_[k + 1]);
   return matrices_.back();
-}
-
-double ProxyObjective::residual_scale(const Positions& x, const Positions& gradient) {
-  return model().residual_scale(x, gradient);
 }
 
 }  // namespace drape

@@ -10,20 +10,19 @@
 
 namespace drape {
 
-/// F_l(x) = Ψ_L(P_l x): the finest level's energy, seen from the vertices of level l (PCS, section 4).
-/// The gradient is exact; the matrix is the plain model of level l (`depth` 0, the paper's) or the
-/// Galerkin product of the plain model `depth` levels up.
+/// F_l(x) = Ψ_L(P_l x) + B_l(x) + D_l(x) + S_l(x): the finest level's shell and loads, seen from the vertices
+/// of level l, with that level's own contact and limits (PCS, section 4). The gradient is exact; the matrix
+/// is the plain model of level l (`depth` 0, the paper's) or the Galerkin product of the plain model `depth`
+/// levels up.
 class ProxyObjective : public Objective {
  public:
   ProxyObjective(const Problem& problem, int level, int depth);
-
-  const LevelModel& model() const override { return *problem_.models[level_]; }
-  double value(const Positions& x) override;
-  double gradient(const Positions& x, Positions& g) override;
-  const BlockMatrix& matrix(const Positions& x, Projection projection) override;
-  /// The load of the plain model: the finest one's, carried down, differs from it by rounding of areas.
-  double residual_scale(const Positions& x, const Positions& gradient) override;
   bool is_proxy() const override { return true; }
+
+ protected:
+  double smooth_value(const Positions& x) override;
+  double smooth_gradient(const Positions& x, Positions& g) override;
+  BlockMatrix& smooth_matrix(const Positions& x, Projection projection) override;
 
  private:
   /// x carried `count` levels up; the result is owned by carried_.

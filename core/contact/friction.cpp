@@ -1,0 +1,120 @@
+#include "core/contact/friction.h"
+
+#include <cmath>
+
+#include "core/numerics/parallel.h"
+
+namespace drape {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int grain = 1024;
+
+/// Σ c_k x_k over the cloth's vertices.
+Vector3d place(const FrictionContact& contact, const Positions& x) {
+  Vector3d sum = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k)
+    if (contact.vertices[k] >= 0) sum += contact.c[k] * x.row(contact.vertices[k]).transpose();
+  return sum;
+}
+
+class Friction final : public FrictionEnergy {
+ public:
+  Friction(const std::vector<FrictionContact>& contacts, const Positions& from, double slip_distance)
+      : contacts_(contacts), epsilon_(slip_distance) {
+    for (const FrictionContact& contact : contacts) start_.push_back(place(contact, from));
+  }
+
+  double value(const Positions& x) const override {
+    return parallel_sum(size(), grain, [&](int begin, int end) {
+      double sum = 0;
+      for (int i = begin; i < end; ++i) sum += potential(i, slip(i, x).norm());
+      return sum;
+    });
+  }
+
+  double add_gradient(const Positions& x, Positions& g) const override {
+    for (int i = 0; i < size(); ++i) {
+      const Vector3d u = slip(i, x), force = contacts_[i].force * ratio(u.norm()) * u;
+      for (int k = 0; k < 4; ++k)
+        if (contacts_[i].vertices[k] >= 0) g.row(contacts_[i].vertices[k]) += contacts_[i].c[k] * force;
+    }
+    return value(x);
+  }
+
+  void drag(const Positions& x, const Positions& from, Positions& anchors) const override {
+    std::vector<Vector3d> normals(x.rows(), Vector3d::Zero());  // of each vertex, weighted by force
+    for (const FrictionContact& contact : contacts_)
+      for (int k = 0; k < 4; ++k)
+        if (contact.vertices[k] >= 0)
+          normals[contact.vertices[k]] += contact.c[k] * contact.force * contact.normal;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const double length = normals[i].norm();
+      if (length == 0) continue;
+      const Vector3d n = normals[i] / length, moved = (x.row(i) - from.row(i)).transpose();
+      const Vector3d slid = moved - n.dot(moved) * n;
+      anchors.row(i) = x.row(i) - std::min(1.0, epsilon_ / slid.norm()) * slid.transpose();
+    }
+  }
+
+  Stencils stencils() const override {
+    Stencils result(size(), 4);
+    for (int i = 0; i < size(); ++i)
+      for (int k = 0; k < 4; ++k) result(i, k) = contacts_[i].vertices[k];
+    return result;
+  }
+
+  void add_hessian(const Positions& x, Projection, BlockSink& sink) const override {
+    for (int i = 0; i < size(); ++i) {
+      const FrictionContact& contact = contacts_[i];
+      const Eigen::Matrix3d h = stiffness(i, slip(i, x));
+      for (int b = 0; b < 4; ++b)
+        for (int a = 0; a <= b; ++a) {
+          if (contact.vertices[a] < 0 || contact.vertices[b] < 0) continue;
+          const Eigen::Matrix3d block = contact.c[a] * contact.c[b] * h;
+          sink.add(i, a, b, block.data());
+        }
+    }
+  }
+
+ private:
+  int size() const { return static_cast<int>(contacts_.size()); }
+
+  Vector3d slip(int i, const Positions& x) const {
+    const Vector3d& n = contacts_[i].normal;
+    const Vector3d u = place(contacts_[i], x) - start_[i];
+    return u - n.dot(u) * n;
+  }
+
+  double potential(int i, double y) const {
+    const double q = y / epsilon_;
+    return contacts_[i].force * (q < 1 ? y * q * (1 - q / 3) : y - epsilon_ / 3);
+  }
+
+  /// f₁(y) / y
+  double ratio(double y) const { return y < epsilon_ ? (2 - y / epsilon_) / epsilon_ : 1 / y; }
+
+  /// f₁/y (I - n nᵀ) + (f₁/y)' / y u uᵀ: symmetric, so its order in memory does not matter.
+  Eigen::Matrix3d stiffness(int i, const Vector3d& u) const {
+    const Vector3d& n = contacts_[i].normal;
+    const double y = u.norm(),
+                 along = y < epsilon_ ? (y > 0 ? -1 / (epsilon_ * epsilon_ * y) : 0) : -1 / (y * y * y);
+    return contacts_[i].force *
+           (ratio(y) * (Eigen::Matrix3d::Identity() - n * n.transpose()) + along * u * u.transpose());
+  }
+
+  std::vector<FrictionContact> contacts_;
+  std::vector<Vector3d> start_;
+  double epsilon_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrictionEnergy> make_friction(const std::vector<FrictionContact>& contacts,
+                                              const Positions& from, double slip_distance) {
+  if (contacts.empty()) return nullptr;
+  return std::make_unique<Friction>(contacts, from, slip_distance);
+}
+
+}  // namespace drape

@@ -1,0 +1,118 @@
+#include "core/contact/pair_contacts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/contact/contact_kernel.h"
+#include "core/contact/friction.h"
+#include "core/numerics/parallel.h"
+
+namespace drape {
+namespace {
+
+constexpr int grain = 128,
+              run = 1024;  // contacts a piece; contacts whose blocks are kept before they are added
+
+class PairContacts final : public ContactSet {
+ public:
+  PairContacts(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
+               const BarrierParameters& parameters)
+      : contacts_(std::move(contacts)), count_(count), cloth_count_(cloth_count), parameters_(parameters) {
+    double sum = 0;
+    for (int i = 0; i < count_; ++i) {
+      sum += contacts_[i].value(parameters_.range);
+      smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
+    }
+    value_ = parameters_.stiffness * sum;
+  }
+
+  int contact_count() const override { return count_; }
+  double smallest_gap() const override { return smallest_gap_; }
+  double value(const Positions&) const override { return value_; }
+
+  double add_gradient(const Positions&, Positions& g) const override {
+    for (int i = 0; i < count_; ++i) {
+      const Contact& contact = contacts_[i];
+      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact, parameters_.range);
+      for (int k = 0; k < 4; ++k)
+        if (const int v = contact.pair.vertices[k]; v < cloth_count_) g.row(v) += by_vertex.col(k);
+    }
+    return value_;
+  }
+
+  Stencils stencils() const override {
+    Stencils result(contact_count(), 4);
+    for (int i = 0; i < contact_count(); ++i)
+      for (int k = 0; k < 4; ++k) result(i, k) = cloth_vertex(contacts_[i], k);
+    return result;
+  }
+
+  // Blocks are made by all threads and added by one, in order.
+  void add_hessian(const Positions&, Projection projection, BlockSink& sink) const override {
+    const auto blocks = std::make_unique_for_overwrite<PairBlocks[]>(std::min(run, count_));
+    for (int first = 0; first < count_; first += run) {
+      const int size = std::min(run, count_ - first);
+      parallel_for(size, grain, [&](int begin, int end) {
+        contact_hessians(&contacts_[first + begin], end - begin, parameters_, cloth_count_, projection,
+                         blocks.get() + begin);
+      });
+      for (int i = 0; i < size; ++i)
+        for (int b = 0, place = 0; b < 4; ++b)
+          for (int a = 0; a <= b; ++a, ++place) sink.add(first + i, a, b, blocks[i].block[place]);
+    }
+  }
+
+  std::unique_ptr<FrictionEnergy> friction(const Positions& from) const override {
+    std::vector<FrictionContact> result;
+    for (int i = 0; i < count_; ++i) {
+      const Contact& contact = contacts_[i];
+      if (contact.pair.friction == 0) continue;
+      const auto vertex = [&](int k) { return cloth_vertex(contact, k); };
+      result.push_back({{vertex(0), vertex(1), vertex(2), vertex(3)},
+                        contact.closest.c,
+                        contact.normal,
+                        contact.pair.friction * parameters_.stiffness * contact.pressure()});
+    }
+    return make_friction(result, from, parameters_.slip_distance);
+  }
+
+ private:
+  int cloth_vertex(const Contact& contact, int k) const {
+    const int v = contact.pair.vertices[k];
+    return v < cloth_count_ ? v : -1;
+  }
+
+  std::unique_ptr<Contact[]> contacts_;
+  int count_, cloth_count_;
+  BarrierParameters parameters_;
+  double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+std::unique_ptr<ContactSet> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
+                                               const std::vector<ContactPair>& pairs,
+                                               const BarrierParameters& parameters) {
+  // First which, then all there are of them at their final place: it is much memory, and copying takes
+  // longest.
+  constexpr int pairs_a_piece = 2048;
+  const int size = static_cast<int>(pairs.size());
+  std::vector<std::vector<int>> near((size + pairs_a_piece - 1) / pairs_a_piece);
+  parallel_for(size, pairs_a_piece, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      if (within_range(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.range))
+        near[begin / pairs_a_piece].push_back(i);
+  });
+  std::vector<int> start = {0};
+  for (const auto& piece : near) start.push_back(start.back() + static_cast<int>(piece.size()));
+  auto contacts = std::make_unique_for_overwrite<Contact[]>(start.back());
+  parallel_for(static_cast<int>(near.size()), 1, [&](int piece, int) {
+    Contact* contact = contacts.get() + start[piece];
+    for (const int i : near[piece])
+      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.range);
+  });
+  return std::make_unique<PairContacts>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
+                                        parameters);
+}
+
+}  // namespace drape

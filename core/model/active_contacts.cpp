@@ -1,0 +1,93 @@
+#include "core/model/active_contacts.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace drape {
+
+void ActiveContacts::build(const Positions& x) {
+  if (state_.rows() == x.rows() && state_ == x) return;
+  if (sweeps_.empty())
+    for (const auto& model : models_) sweeps_.push_back(model->sweep(x, x));
+  sets_.clear();
+  for (const auto& sweep : sweeps_) sets_.push_back(sweep->build(x));
+  state_ = x;
+}
+
+void ActiveContacts::begin_step(const Positions& x) {
+  if (models_.empty()) return;
+  build(x);
+  Positions anchors = x;
+  for (const auto& friction : friction_) friction->drag(x, from_, anchors);
+  from_ = std::move(anchors);
+  lag();
+}
+
+void ActiveContacts::renew_lag(const Positions& x) {
+  build(x);
+  lag();
+}
+
+void ActiveContacts::lag() {
+  friction_.clear();
+  if (!with_friction_) return;
+  for (const auto& set : sets_)
+    if (auto friction = set->friction(from_)) friction_.push_back(std::move(friction));
+}
+
+StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {
+  StepLimit limit;
+  sweeps_.clear();
+  for (const auto& model : models_) {
+    sweeps_.push_back(model->sweep(x0, x1));
+    StepLimit own = sweeps_.back()->max_step();
+    if (own.fraction < limit.fraction) limit = std::move(own);
+  }
+  return limit;
+}
+
+double ActiveContacts::barrier(const Positions& x) {
+  if (models_.empty()) return 0;
+  build(x);
+  double sum = 0;
+  for (const auto& set : sets_) sum += set->value(x);
+  return sum;
+}
+
+double ActiveContacts::friction(const Positions& x) const {
+  double sum = 0;
+  for (const auto& friction : friction_) sum += friction->value(x);
+  return sum;
+}
+
+double ActiveContacts::add_gradient(const Positions& x, Positions& g) {
+  if (models_.empty()) return 0;
+  build(x);
+  double sum = 0;
+  for (const auto& set : sets_) sum += set->add_gradient(x, g);
+  for (const auto& friction : friction_) sum += friction->add_gradient(x, g);
+  return sum;
+}
+
+std::vector<const BoundEnergy*> ActiveContacts::energies(const Positions& x) {
+  if (!models_.empty()) build(x);
+  std::vector<const BoundEnergy*> all;
+  for (const auto& set : sets_)
+    if (set->contact_count() > 0) all.push_back(set.get());
+  for (const auto& friction : friction_) all.push_back(friction.get());
+  return all;
+}
+
+int ActiveContacts::count() const {
+  int sum = 0;
+  for (const auto& set : sets_) sum += set->contact_count();
+  return sum;
+}
+
+double ActiveContacts::smallest_gap() const {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const auto& set : sets_) gap = std::min(gap, set->smallest_gap());
+  return gap;
+}
+
+}  // namespace drape

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/model/contact_model.h"
+
+namespace drape {
+
+/// The contacts of one level while something is minimised on it: what may come near, what is near, and what
+/// friction remembers. Empty, and without any work, where the level has no contact model.
+class ActiveContacts {
+ public:
+  explicit ActiveContacts(const std::vector<std::unique_ptr<BoundContact>>& models) : models_(models) {}
+
+  bool any() const { return !models_.empty(); }
+  bool has_friction() const { return !friction_.empty(); }
+  /// For motions that are no sliding, as from a level to the next.
+  void leave_out_friction() { with_friction_ = false; }
+
+  /// A step begins at x: friction takes the normal forces and tangents there, and its anchors, which are
+  /// where displacements count from, have followed what slid in the last one.
+  void begin_step(const Positions& x);
+  /// Renews the normal forces and tangents at x; displacements count from where they did.
+  void renew_lag(const Positions& x);
+
+  /// How far from x0 towards x1 nothing touches. States on the way may then be evaluated.
+  StepLimit max_step(const Positions& x0, const Positions& x1);
+
+  /// Barrier [J] at x, which is the start or on the way of the last max_step.
+  double barrier(const Positions& x);
+  double friction(const Positions& x) const;
+  double add_gradient(const Positions& x, Positions& g);  ///< barrier and friction; adds both energies
+
+  /// All energies at x that the matrix is made of.
+  std::vector<const BoundEnergy*> energies(const Positions& x);
+
+  int count() const;            ///< contacts at the state last evaluated
+  double smallest_gap() const;  ///< there [m]; +∞ without a contact
+
+ private:
+  void build(const Positions& x);
+  void lag();
+
+  const std::vector<std::unique_ptr<BoundContact>>& models_;
+  std::vector<std::unique_ptr<ContactSweep>> sweeps_;
+  std::vector<std::unique_ptr<ContactSet>> sets_;  // at state_
+  std::vector<std::unique_ptr<FrictionEnergy>> friction_;
+  Positions state_, from_;
+  bool with_friction_ = true;
+};
+
+}  // namespace drape

@@ -1,0 +1,46 @@
+#include "core/model/objective.h"
+
+#include <cmath>
+
+namespace drape {
+
+double Objective::gradient(const Positions& x, Positions& g) {
+  double sum = smooth_gradient(x, g);
+  for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
+    sum += limits_[k]->add_gradient(x, g);
+  return std::isfinite(sum) ? sum + contacts_.add_gradient(x, g) : sum;
+}
+
+double Objective::plain_energy(const Positions& x) {
+  double sum = model_.value(x) + contacts_.barrier(x);
+  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
+  return sum;
+}
+
+double Objective::value(const Positions& x) {
+  double sum = smooth_value(x);
+  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
+  return std::isfinite(sum) ? sum + contacts_.barrier(x) + contacts_.friction(x) : sum;
+}
+
+const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
+  BlockMatrix& smooth = smooth_matrix(x, projection);
+  std::vector<const BoundEnergy*> local = contacts_.energies(x);
+  if (local.empty() && limits_.empty()) return smooth;
+  return sum_.add(smooth, limits_, local, x, projection);
+}
+
+StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {
+  StepLimit limit;
+  for (const BoundEnergy* energy : limits_)
+    if (const auto* filter = dynamic_cast<const StepFilter*>(energy)) {
+      StepLimit own = filter->max_step(x0, x1);
+      if (own.fraction < limit.fraction) limit = std::move(own);
+    }
+  if (!contacts_.any()) return limit;
+  const StepLimit apart = contacts_.max_step(x0, x0 + limit.fraction * (x1 - x0));
+  if (apart.fraction < 1) limit = {limit.fraction * apart.fraction, apart.by};
+  return limit;
+}
+
+}  // namespace drape

@@ -1,0 +1,185 @@
+#include "core/numerics/safe_refinement.h"
+
+#include <algorithm>
+
+#include "core/model/stretch_limit.h"
+#include "core/numerics/newton.h"
+#include "core/numerics/stretch_penalty.h"
+
+namespace drape {
+
+namespace {
+
+/// h of the pull towards the target [s]: a millimetre then weighs a hundred times the cloth's own weight.
+constexpr double pull = 1e-3;
+/// The descent ends where the pull left over is this part of what it was.
+constexpr double tolerance = 1e-2;
+constexpr int most_steps = 40, most_rounds = 8;
+
+/// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
+class PullToTarget : public Objective {
+ public:
+  PullToTarget(const LevelModel& model, const Positions& from, Positions target)
+      : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
+    contacts().leave_out_friction();
+    Positions g;
+    smooth_gradient(from, g);
+    scale_ = std::max(free_norm(g, model.fixed()), std::numeric_limits<double>::min());
+    divide(from);
+  }
+
+  /// Sorts the triangles at y into F and the others; the number of others.
+  int divide(const Positions& y) {
+    outside_.assign(model().level().triangle_count(), 0);
+    for (const BoundEnergy* energy : model().limits())
+      if (const auto* limit = dynamic_cast<const StretchLimited*>(energy))
+        for (const StretchedTriangle& t : limit->beyond(y)) outside_[t.triangle] = 1;
+    const int count = static_cast<int>(std::count(outside_.begin(), outside_.end(), 1));
+    inside_limits_.clear();
+    std::vector<const BoundEnergy*> limits;
+    for (const BoundEnergy* energy : model().limits()) {
+      const auto* limit = dynamic_cast<const StretchLimited*>(energy);
+      if (limit && count > 0) {
+        inside_limits_.push_back(limit->without(outside_));
+        limits.push_back(inside_limits_.back().get());
+      } else {
+        limits.push_back(energy);
+      }
+    }
+    set_limits(limits);
+    const Material& material = model().material();
+    penalty_.reset();
+    slots_.reset();
+    if (count > 0) {
+      penalty_ =
+          make_stretch_penalty(model().level(), material.thickness, material.membrane_modulus, outside_);
+      slots_ = std::make_unique<BlockSlots>(*pattern_, penalty_->stencils());
+    }
+    return count;
+  }
+
+  double residual_scale(const Positions&, const Positions&) const override { return scale_; }
+  bool is_proxy() const override { return false; }
+
+ protected:
+  double smooth_value(const Positions& y) override {
+    double sum = 0;
+    for (Eigen::Index i = 0; i < y.rows(); ++i)
+      sum += 0.5 * weight(i) * (y.row(i) - target_.row(i)).squaredNorm();
+    return penalty_ ? sum + penalty_->value(y) : sum;
+  }
+  double smooth_gradient(const Positions& y, Positions& g) override {
+    g.resize(y.rows(), 3);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < y.rows(); ++i) {
+      const Eigen::RowVector3d away = y.row(i) - target_.row(i);
+      g.row(i) = weight(i) * away;
+      sum += 0.5 * weight(i) * away.squaredNorm();
+    }
+    return penalty_ ? sum + penalty_->add_gradient(y, g) : sum;
+  }
+  BlockMatrix& smooth_matrix(const Positions& y, Projection projection) override {
+    matrix_.set_zero();
+    for (int i = 0; i < pattern_->rows(); ++i)
+      for (int c = 0; c < 3; ++c) matrix_.block(pattern_->row_start[i])[4 * c] = weight(i);
+    if (penalty_) {
+      BlockSink sink(*slots_, matrix_);
+      penalty_->add_hessian(y, projection, sink);
+    }
+    return matrix_;
+  }
+
+ private:
+  double weight(Eigen::Index i) const { return model().masses()[i] / (pull * pull); }
+
+  /// Without limits there is nothing between vertices but contact.
+  static std::shared_ptr<const BlockPattern> pattern_for(const LevelModel& model) {
+    return model.limits().empty() ? BlockPattern::of(model.level().vertex_count(), {}) : model.pattern();
+  }
+
+  Positions target_;
+  std::shared_ptr<const BlockPattern> pattern_;
+  BlockMatrix matrix_;
+  std::vector<char> outside_;
+  std::vector<std::unique_ptr<BoundEnergy>> inside_limits_;
+  std::unique_ptr<BoundEnergy> penalty_;
+  std::unique_ptr<BlockSlots> slots_;
+  double scale_ = 1;
+};
+
+/// Passes on nothing but the wish to stop.
+class Quiet : public Observer {
+ public:
+  explicit Quiet(Observer& observer) : observer_(observer) {}
+  bool stop_requested() override { return observer_.stop_requested(); }
+
+ private:
+  Observer& observer_;
+};
+
+/// Moves fixed vertices to where they are held, as far as nothing is in the way; what is, otherwise.
+std::string move_pins(const LevelModel& model, const Positions& start, Positions& y) {
+  Positions placed = y;
+  for (Eigen::Index i = 0; i < y.rows(); ++i)
+    if (model.fixed()[i]) placed.row(i) = start.row(i);
+  if (placed == y) return "";
+  ActiveContacts contacts(model.contacts());
+  const StepLimit limit = contacts.max_step(y, placed);
+  y += limit.fraction * (placed - y);
+  return limit.fraction < 1 ? "a pin cannot reach its place: " + limit.by : "";
+}
+
+std::string name_outside(const LevelModel& model, const Positions& y) {
+  constexpr std::size_t most_named = 5;
+  std::string text;
+  for (const BoundEnergy* energy : model.limits())
+    if (const auto* limit = dynamic_cast<const StretchLimited*>(energy)) {
+      const std::vector<StretchedTriangle> beyond = limit->beyond(y);
+      for (std::size_t k = 0; k < std::min(beyond.size(), most_named); ++k)
+        text += (text.empty() ? "" : ", ") + to_string(beyond[k], limit->limit());
+      if (beyond.size() > most_named) text += " and " + std::to_string(beyond.size() - most_named) + " more";
+    }
+  return text;
+}
+
+}  // namespace
+
+Refined refine_safely(const Problem& problem, int level, const Positions& x,
+                      const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
+  const Stopwatch watch;
+  const LevelModel& model = *problem.models[level + 1];
+  Refined refined;
+  if (model.contacts().empty() && model.limits().empty()) {
+    refined.x = problem.carry_up(weights, level, x);
+    refined.seconds = watch.seconds();
+    return refined;
+  }
+  refined.x = problem.hierarchy.midpoints[level] * x;
+  refined.fault = move_pins(model, problem.starts[level + 1], refined.x);
+  if (refined.fault.empty()) {
+    PullToTarget objective(model, refined.x, problem.carry_up(weights, level, x));
+    NewtonParameters newton;
+    newton.form = NewtonForm::statics;
+    newton.projection_share = ProjectionShare::full;
+    newton.force_tolerance = tolerance;
+    newton.max_steps = most_steps;
+    Quiet quiet(observer);
+    int outside = objective.divide(refined.x);
+    for (int round = 0; round < most_rounds; ++round) {
+      LevelResult result = minimise(objective, std::move(refined.x), newton, clock, quiet);
+      refined.x = std::move(result.x);
+      refined.iterations += result.iterations;
+      const int left = objective.divide(refined.x);
+      if (left == 0 || result.outcome == Outcome::cancelled) break;
+      if (left == outside && result.iterations == 0) break;
+      outside = left;
+    }
+    refined.fault = name_outside(model, refined.x);
+    if (!refined.fault.empty())
+      refined.fault = "the refined state is beyond the strain limit: " + refined.fault;
+  }
+  refined.seconds = watch.seconds();
+  return refined;
+}
+
+}  // namespace drape

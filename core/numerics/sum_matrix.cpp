@@ -1,0 +1,160 @@
+#include "core/numerics/sum_matrix.h"
+
+#include <algorithm>
+
+#include "core/numerics/parallel.h"
+
+namespace drape {
+
+namespace {
+
+/// Extra blocks are kept, once there, for so many calls without use when the pattern changes anyway.
+constexpr int patience = 20;
+
+/// The pairs i < j of an element's vertices that the pattern has no block for, ascending, each once.
+std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
+                                            const std::vector<Stencils>& stencils) {
+  std::vector<std::pair<int, int>> missing;
+  for (const Stencils& s : stencils)
+    for (Eigen::Index e = 0; e < s.rows(); ++e)
+      for (Eigen::Index b = 1; b < s.cols(); ++b)
+        for (Eigen::Index a = 0; a < b; ++a) {
+          if (s(e, a) < 0 || s(e, b) < 0) continue;
+          const std::pair<int, int> pair = std::minmax(s(e, a), s(e, b));
+          if (pattern.find(pair.first, pair.second) < 0) missing.push_back(pair);
+        }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  return missing;
+}
+
+std::vector<std::vector<int>> neighbours_in(const BlockPattern& pattern) {
+  std::vector<std::vector<int>> neighbours(pattern.rows());
+  for (int i = 0; i < pattern.rows(); ++i)
+    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
+      const int j = pattern.columns[b];
+      neighbours[i].push_back(j);
+      if (j != i) neighbours[j].push_back(i);
+    }
+  return neighbours;
+}
+
+/// The pairs, and those of each one's end with the neighbours of the other.
+std::vector<std::pair<int, int>> widened(const std::vector<std::pair<int, int>>& pairs,
+                                         const std::vector<std::vector<int>>& neighbours,
+                                         const BlockPattern& base) {
+  std::vector<std::pair<int, int>> all;
+  const auto add = [&](int i, int j) {
+    if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
+  };
+  for (const auto& [i, j] : pairs) {
+    for (int k : neighbours[j]) add(i, k);
+    for (int k : neighbours[i]) add(k, j);
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  std::erase_if(all, [&](const auto& pair) { return base.find(pair.first, pair.second) >= 0; });
+  return all;
+}
+
+std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
+                                                const std::vector<std::pair<int, int>>& extra) {
+  std::vector<int> row_start = {0}, columns;
+  columns.reserve(base.columns.size() + extra.size());
+  std::size_t next = 0;
+  for (int i = 0; i < base.rows(); ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(columns.size());
+    columns.insert(columns.end(), base.columns.begin() + base.row_start[i],
+                   base.columns.begin() + base.row_start[i + 1]);
+    const auto middle = static_cast<std::ptrdiff_t>(columns.size());
+    for (; next < extra.size() && extra[next].first == i; ++next) columns.push_back(extra[next].second);
+    std::inplace_merge(columns.begin() + first, columns.begin() + middle, columns.end());
+    row_start.push_back(static_cast<int>(columns.size()));
+  }
+  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+}
+
+}  // namespace
+
+void SumMatrix::make_room(const std::shared_ptr<const BlockPattern>& base,
+                          const std::vector<Stencils>& stencils) {
+  if (base != base_) {
+    base_ = pattern_ = base;
+    place_.clear();
+    extra_.clear();
+    idle_.clear();
+    lasting_slots_.clear();
+    neighbours_.clear();
+  }
+  const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
+  std::vector<std::pair<int, int>> kept;
+  bool grows = false;
+  std::size_t k = 0;
+  for (const auto& pair : needed) {
+    while (k < extra_.size() && extra_[k] < pair) ++idle_[k++];
+    if (k < extra_.size() && extra_[k] == pair)
+      idle_[k++] = 0;
+    else
+      grows = true;
+  }
+  while (k < extra_.size()) ++idle_[k++];
+  if (!grows) return;
+
+  for (std::size_t e = 0; e < extra_.size(); ++e)
+    if (idle_[e] <= patience) kept.push_back(extra_[e]);
+  std::vector<int> kept_idle;
+  for (std::size_t e = 0; e < extra_.size(); ++e)
+    if (idle_[e] <= patience) kept_idle.push_back(idle_[e]);
+  if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
+  const std::vector<std::pair<int, int>> wide = widened(needed, neighbours_, *base_);
+  std::vector<std::pair<int, int>> all;
+  std::set_union(kept.begin(), kept.end(), wide.begin(), wide.end(), std::back_inserter(all));
+  idle_.assign(all.size(), 0);
+  for (std::size_t a = 0, e = 0; a < all.size() && e < kept.size(); ++a)
+    if (all[a] == kept[e]) idle_[a] = kept_idle[e++];
+  extra_ = std::move(all);
+  pattern_ = with_blocks(*base_, extra_);
+  lasting_slots_.clear();
+  place_.resize(base_->columns.size());
+  parallel_for(base_->rows(), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      int to = pattern_->row_start[i];
+      for (int b = base_->row_start[i]; b < base_->row_start[i + 1]; ++b) {
+        while (pattern_->columns[to] != base_->columns[b]) ++to;
+        place_[b] = to;
+      }
+    }
+  });
+}
+
+const BlockMatrix& SumMatrix::add(BlockMatrix& smooth, const std::vector<const BoundEnergy*>& lasting,
+                                  const std::vector<const BoundEnergy*>& passing, const Positions& x,
+                                  Projection projection) {
+  std::vector<Stencils> stencils;
+  for (const BoundEnergy* energy : passing) stencils.push_back(energy->stencils());
+  make_room(smooth.pattern, stencils);
+  BlockMatrix* sum = &smooth;
+  if (!place_.empty()) {
+    if (matrix_.pattern != pattern_) matrix_ = BlockMatrix(pattern_);
+    matrix_.set_zero();
+    parallel_for(static_cast<int>(place_.size()), 8192, [&](int begin, int end) {
+      for (int b = begin; b < end; ++b) std::copy_n(smooth.block(b), 9, matrix_.block(place_[b]));
+    });
+    sum = &matrix_;
+  }
+  if (lasting_slots_.empty())
+    for (const BoundEnergy* energy : lasting)
+      lasting_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
+  for (std::size_t k = 0; k < lasting.size(); ++k) {
+    BlockSink sink(*lasting_slots_[k], *sum);
+    lasting[k]->add_hessian(x, projection, sink);
+  }
+  for (std::size_t k = 0; k < passing.size(); ++k) {
+    const BlockSlots slots(*pattern_, stencils[k]);
+    BlockSink sink(slots, *sum);
+    passing[k]->add_hessian(x, projection, sink);
+  }
+  return *sum;
+}
+
+}  // namespace drape

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "core/contact/broad_phase.h"
+#include "plugins/contact/ipc/candidates.h"
+#include "plugins/contact/ipc/ipc.h"
+
+namespace drape {
+
+/// What a sweep found: pairs that repel each other, and pairs that are only not to pass through each other.
+struct Candidates {
+  std::vector<ContactPair> repelling, passive;
+};
+
+/// Contact `ipc` of one level.
+class BoundIpc final : public BoundContact {
+ public:
+  BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
+           const Material& material);
+
+  /// Shortened, and its max_step with it, where the whole way would bring more pairs together than are
+  /// reasonable to hold (see README.md, "Long steps").
+  std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override;
+  std::vector<Touch> intersections(const Positions& x) const override;
+  std::vector<TriangleMesh> obstacles() const override;
+
+ private:
+  /// Numbers of pairs, of triangles whose boxes overlap and of primitives that may come near.
+  struct Counts {
+    long triangles = 0, primitives = 0;
+    bool operator==(const Counts&) const = default;
+  };
+  /// False if there are more than `limits`. Called by one thread at a time.
+  bool search(const Positions& x0, const Positions& x1, const Counts& limits, std::vector<ContactPair>& pairs,
+              Counts& counts) const;
+  void remember_close_at_rest(const Positions& rest);
+
+  double friction_, keep_;
+  bool self_contact_;
+  BarrierParameters barrier_;
+  std::shared_ptr<const Obstacles> obstacles_;
+  Surface cloth_;
+  SweptBoxes obstacle_boxes_;
+  std::unique_ptr<BroadPhase> obstacle_tree_;
+  std::vector<std::array<int, 4>> close_at_rest_;  // self pairs that rest within the range, in order
+
+  // Kept from call to call for speed alone: results do not depend on them.
+  mutable std::mutex busy_;
+  mutable std::unique_ptr<BroadPhase> cloth_tree_;
+  mutable SweptBoxes boxes_;
+  mutable AdjacencyList rows_;
+};
+
+}  // namespace drape

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/pair_contacts.h"
+#include "core/mesh/topology.h"
+#include "plugins/contact/ipc/obstacle.h"
+#include "plugins/contact/ipc/surface.h"
+
+namespace drape {
+
+/// The cloth's straight way from x0 to x1, and how near counts.
+struct Way {
+  const Positions& x0;
+  const Positions& x1;
+  double range;  ///< d̂ [m]
+};
+
+/// Share of |e|²|e'|² (at rest) below which nearly parallel edges are faded out: IPC (Li et al. 2020),
+/// section 5.
+inline constexpr double mollifier_share = 1e-3;
+
+// Both list the pairs of primitives that may come within the range on the way, from rows of triangles whose
+// swept boxes overlap, in an order that depends on the rows alone. They append to `pairs`, and give up and
+// return false once these are more than `limit`.
+
+/// Vertices against triangles and edges against edges of the cloth; none that share a vertex.
+bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows, const Way& way,
+                     double friction, long limit, std::vector<ContactPair>& pairs);
+
+/// Cloth vertices against obstacle triangles, obstacle vertices against cloth triangles, edges against edges.
+bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Obstacles& obstacles,
+                         const SweptBoxes& obstacle_boxes, const AdjacencyList& rows, const Way& way,
+                         double friction, long limit, std::vector<ContactPair>& pairs);
+
+}  // namespace drape

@@ -1,0 +1,59 @@
+#include "plugins/contact/ipc/ipc.h"
+
+#include "core/plugin/plugin.h"
+#include "plugins/contact/ipc/bound_ipc.h"
+
+namespace drape {
+
+void Ipc::Parameters::declare(Declaration<Parameters>& d) {
+  using P = Parameters;
+  d.add("self_contact", &P::self_contact).meaning("keep the cloth apart from itself");
+  d.add_sections("obstacles", &P::obstacles).meaning("meshes in the cloth's way; they do not move");
+  d.add("friction", &P::friction)
+      .unit("1")
+      .at_least(0)
+      .meaning("Coulomb's μ, of the cloth against itself and against obstacles without their own");
+  d.add("range", &P::range)
+      .unit("m")
+      .above(0)
+      .meaning("distance d̂ below which the barrier acts")
+      .source("docs/method.md, section 6");
+  d.add("stiffness", &P::stiffness)
+      .unit("Pa")
+      .above(0)
+      .meaning("κ: pressure of the barrier is κ |b'(distance / d̂)|; null chooses it from the cloth's weight")
+      .source("core/contact/stiffness.h");
+  d.add("slip_distance", &P::slip_distance)
+      .unit("m")
+      .above(0)
+      .meaning("a contact that has slid less than this in a step sticks: friction is smoothed below")
+      .source("Li et al. 2020, equation 14: ε_v h");
+  d.add("keep", &P::keep)
+      .unit("1")
+      .above(0)
+      .below(1)
+      .meaning("part of every gap that a step leaves")
+      .source("Li et al. 2021, additive CCD");
+  d.add_choice("broad_phase", &P::broad_phase,
+               {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
+      .meaning("how near pairs are looked for: own tree, FCL's or CGAL's; they find the same");
+}
+
+Ipc::Ipc(const Parameters& parameters) : p_(parameters) {
+  std::vector<Obstacle> bodies;
+  for (const ObstacleParameters& p : p_.obstacles)
+    bodies.push_back(Obstacle::of(p, static_cast<int>(bodies.size())));
+  obstacles_ = std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies)));
+}
+
+std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
+  if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
+  return std::make_unique<BoundIpc>(p_, obstacles_, level, material);
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::ContactModel, drape::Ipc>(
+      "ipc", "IPC's barrier and friction: the cloth against itself and against triangle meshes.");
+}

@@ -1,0 +1,51 @@
+#include "plugins/contact/ipc/surface.h"
+
+#include <Eigen/Geometry>
+
+#include "core/numerics/parallel.h"
+
+namespace drape {
+
+Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
+  Surface s;
+  s.triangles = rest.triangles;
+  s.triangle_edges = topology.triangle_edges;
+  s.edges = topology.edges;
+  s.owned.assign(rest.triangles.rows(), 0);
+  s.vertex_area.setZero(rest.vertices.rows());
+  s.edge_area.setZero(s.edges.rows());
+  s.triangle_area.resize(rest.triangles.rows());
+  for (int t = 0; t < s.triangle_count(); ++t) {
+    const auto corner = [&](int k) -> Eigen::Vector3d { return rest.vertices.row(s.triangles(t, k)); };
+    s.triangle_area[t] = 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    for (int k = 0; k < 3; ++k) {
+      const int v = s.triangles(t, k), e = s.triangle_edges(t, k);
+      s.vertex_area[v] += s.triangle_area[t] / 3;
+      s.edge_area[e] += s.triangle_area[t] / 3;
+      if (*topology.vertex_triangles.begin(v) == t) s.owned[t] |= static_cast<char>(1 << k);
+      if (topology.edge_triangles(e, 0) == t) s.owned[t] |= static_cast<char>(1 << (3 + k));
+    }
+  }
+  s.edge_length_squared.resize(s.edges.rows());
+  for (int e = 0; e < s.edges.rows(); ++e)
+    s.edge_length_squared[e] =
+        (rest.vertices.row(s.edges(e, 0)) - rest.vertices.row(s.edges(e, 1))).squaredNorm();
+  return s;
+}
+
+void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin) {
+  vertices.resize(x0.rows());
+  triangles.resize(surface.triangle_count());
+  parallel_for(static_cast<int>(vertices.size()), 4096, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) vertices[v] = Box::around(x0.row(v), x1.row(v), margin);
+  });
+  parallel_for(surface.triangle_count(), 4096, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) {
+      triangles[t] = vertices[surface.triangles(t, 0)];
+      triangles[t].include(vertices[surface.triangles(t, 1)]);
+      triangles[t].include(vertices[surface.triangles(t, 2)]);
+    }
+  });
+}
+
+}  // namespace drape

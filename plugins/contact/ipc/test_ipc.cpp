@@ -1,0 +1,366 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+
+#include "core/contact/pair_geometry.h"
+#include "core/contact/stiffness.h"
+#include "core/mesh/generate.h"
+#include "core/numerics/stopwatch.h"
+#include "plugins/contact/ipc/bound_ipc.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+ObstacleParameters box_obstacle(const Vector& size, const Vector& translate) {
+  ObstacleParameters box;
+  box.name = "table";
+  box.shape = "box";
+  box.size = size;
+  box.translate = translate;
+  return box;
+}
+
+ObstacleParameters sphere_obstacle(double radius, int subdivisions, const Vector& translate) {
+  ObstacleParameters sphere;
+  sphere.name = "ball";
+  sphere.shape = "sphere";
+  sphere.radius = radius;
+  sphere.subdivisions = subdivisions;
+  sphere.translate = translate;
+  return sphere;
+}
+
+/// A square cloth of side 1 folded like a letter, unstretched: straight layers `gap` apart, half circles
+/// between them; with noise.
+Positions folded(const Level& level, int layers, double gap, double noise, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> move(-noise, noise);
+  const double turn = M_PI * gap / 2,
+               straight = (level.rest.vertices.col(0).maxCoeff() + turn) / layers - turn;
+  Positions x = level.rest.vertices;
+  for (int v = 0; v < x.rows(); ++v) {
+    const double along = level.rest.vertices(v, 0);
+    const int layer = std::min(static_cast<int>(along / (straight + turn)), layers - 1);
+    const double rest = along - layer * (straight + turn), angle = std::max(rest - straight, 0.0) / (gap / 2);
+    const double across = std::min(rest, straight) - straight / 2 + gap / 2 * std::sin(angle);
+    x.row(v) << (layer % 2 ? -across : across) + move(random), x(v, 1) + move(random),
+        gap * (layer + 0.5 - 0.5 * std::cos(angle)) + move(random);
+  }
+  return x;
+}
+
+/// All pairs of primitives whose distance at x is below the range, with its own idea of the weights.
+std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstacles, const Positions& x,
+                                     double range, double friction) {
+  const Surface own = Surface::of(level.rest, level.topology);
+  const Surface& other = obstacles.surface;
+  const int n = level.vertex_count();
+  std::vector<ContactPair> pairs;
+  const auto add = [&](ContactPair pair, double weight, double mu) {
+    const PairPositions at = positions_of(pair, x, obstacles.vertices);
+    if (connection(at, closest(pair.kind, at)).norm() >= range) return;
+    pair.weight = weight;
+    pair.friction = mu;
+    pairs.push_back(pair);
+  };
+  const auto point_triangle = [](int v, Eigen::RowVector3i t) {
+    return ContactPair{{v, t[0], t[1], t[2]}, PairKind::point_triangle};
+  };
+  const auto edges = [](Eigen::RowVector2i e, Eigen::RowVector2i f, double lengths) {
+    ContactPair pair{{e[0], e[1], f[0], f[1]}, PairKind::edge_edge};
+    pair.mollifier = 1e-3 * lengths;
+    return pair;
+  };
+  for (int v = 0; v < n; ++v) {
+    for (int t = 0; t < own.triangle_count(); ++t)
+      if ((own.triangles.row(t).array() != v).all())
+        add(point_triangle(v, own.triangles.row(t)), own.vertex_area[v] / 2, friction);
+    for (int t = 0; t < other.triangle_count(); ++t)
+      add(point_triangle(v, other.triangles.row(t).array() + n), own.vertex_area[v], friction);
+  }
+  for (int v = 0; v < obstacles.vertices.rows(); ++v)
+    for (int t = 0; t < own.triangle_count(); ++t)
+      add(point_triangle(n + v, own.triangles.row(t)),
+          std::min(other.vertex_area[v], own.triangle_area[t]) / 2, friction);
+  for (int e = 0; e < own.edges.rows(); ++e) {
+    for (int f = e + 1; f < own.edges.rows(); ++f) {
+      const std::set<int> ends{own.edges(e, 0), own.edges(e, 1), own.edges(f, 0), own.edges(f, 1)};
+      if (ends.size() == 4)
+        add(edges(own.edges.row(e), own.edges.row(f),
+                  own.edge_length_squared[e] * own.edge_length_squared[f]),
+            std::min(own.edge_area[e], own.edge_area[f]) / 4, friction);
+    }
+    for (int f = 0; f < other.edges.rows(); ++f)
+      add(edges(own.edges.row(e), other.edges.row(f).array() + n,
+                own.edge_length_squared[e] * other.edge_length_squared[f]),
+          std::min(own.edge_area[e], other.edge_area[f]) / 2, friction);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+TEST_CASE("ipc: a surface's areas and owners") {
+  const Level level = Level::of(0, grid({2, 1}, 9, 7, Diagonals::criss_cross));
+  const Surface s = Surface::of(level.rest, level.topology);
+  CHECK(s.vertex_area.sum() == Approx(2));
+  CHECK(s.edge_area.sum() == Approx(2));
+  CHECK(s.triangle_area.sum() == Approx(2));
+  CHECK((s.vertex_area - level.vertex_area).norm() < 1e-14);
+  std::vector<int> vertex_owners(level.vertex_count()), edge_owners(s.edges.rows());
+  for (int t = 0; t < s.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      vertex_owners[s.triangles(t, k)] += s.owns_vertex(t, k);
+      edge_owners[s.triangle_edges(t, k)] += s.owns_edge(t, k);
+    }
+  CHECK(std::all_of(vertex_owners.begin(), vertex_owners.end(), [](int owners) { return owners == 1; }));
+  CHECK(std::all_of(edge_owners.begin(), edge_owners.end(), [](int owners) { return owners == 1; }));
+}
+
+TEST_CASE("ipc: obstacles are sound, where they should be, and named when they are not") {
+  ObstacleParameters p = sphere_obstacle(0.3, 3, {1, 2, 3});
+  const Obstacle ball = Obstacle::of(p, 0);
+  CHECK(ball.mesh.triangles.rows() == 20 * 64);
+  CHECK(((ball.mesh.vertices.rowwise() - Eigen::RowVector3d(1, 2, 3)).rowwise().norm().array() - 0.3)
+            .abs()
+            .maxCoeff() < 1e-14);
+  p = box_obstacle({1, 2, 4}, {0, 0, 1});
+  p.rotate = {0, 90, 0};
+  p.scale = 0.5;
+  const Obstacle box = Obstacle::of(p, 0);
+  CHECK((box.mesh.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
+  double volume = 0;  // positive: triangles face outwards
+  for (const auto& t : box.mesh.triangles.rowwise())
+    volume += Vector(box.mesh.vertices.row(t[0]))
+                  .dot(Vector(box.mesh.vertices.row(t[1])).cross(Vector(box.mesh.vertices.row(t[2])))) /
+              6;
+  CHECK(volume == Approx(1));
+  volume = 0;
+  for (const auto& t : ball.mesh.triangles.rowwise())
+    volume += Vector(ball.mesh.vertices.row(t[0]))
+                  .dot(Vector(ball.mesh.vertices.row(t[1])).cross(Vector(ball.mesh.vertices.row(t[2])))) /
+              6;
+  CHECK(volume == Approx(4 * M_PI / 3 * 0.027).epsilon(0.02));
+
+  ObstacleParameters missing;
+  missing.name = "bunny";
+  CHECK_THROWS_WITH(Obstacle::of(missing, 0), Catch::Contains("\"bunny\"") && Catch::Contains("\"file\""));
+  missing.file = "no/such/bunny.off";
+  CHECK_THROWS_WITH(Obstacle::of(missing, 0),
+                    Catch::Contains("\"bunny\"") && Catch::Contains("no/such/bunny.off"));
+
+  Ipc::Parameters nothing;
+  nothing.self_contact = false;
+  CHECK(Ipc(nothing).bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), Material()) == nullptr);
+}
+
+TEST_CASE("ipc: made from a config") {
+  const auto model = make_plugin_from<ContactModel>(
+      "{type: ipc, friction: 0.2, stiffness: 5, broad_phase: fcl, obstacles: [{shape: sphere, radius: 0.3, "
+      "subdivisions: 1, translate: [0, 0, -1]}, {name: table, shape: box, size: [2, 2, 0.1], friction: "
+      "0.5}]}");
+  const auto contact = model->bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), Material());
+  const std::vector<TriangleMesh> meshes = contact->obstacles();
+  REQUIRE(meshes.size() == 2);
+  CHECK(meshes[0].vertices.rows() == 42);
+  CHECK(meshes[0].vertices.col(2).maxCoeff() == Approx(-0.7).margin(0.05));
+  CHECK(meshes[1].vertices.col(2).maxCoeff() == Approx(0.05));
+  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{shape: ball}]}"),
+                    Catch::Contains("shape") && Catch::Contains("sphere"));
+  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{name: x, file: no.obj}]}"),
+                    Catch::Contains("\"x\"") && Catch::Contains("no.obj"));
+}
+
+TEST_CASE("ipc: a sweep holds every pair that comes within range, and contacts are those of a brute search") {
+  const Level level = Level::of(0, grid({1, 1}, 24, 16, Diagonals::criss_cross));
+  Ipc::Parameters p;
+  p.range = 0.012;
+  p.friction = 0.3;
+  p.obstacles = {sphere_obstacle(0.1, 2, {0, 0.5, -0.105}),
+                 box_obstacle({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
+  std::vector<Obstacle> bodies;
+  for (const auto& obstacle : p.obstacles) bodies.push_back(Obstacle::of(obstacle, 0));
+  const Obstacles obstacles = Obstacles::of(bodies);
+  const Positions x0 = folded(level, 4, 0.02, 0.002, 1);
+  Positions x1 = folded(level, 4, 0.011, 0.003, 2);
+  x1.col(2).array() -= 0.003;
+  Material material;
+  std::vector<double> energies;
+  REQUIRE(Ipc(p).bind(level, material)->intersections(x0).empty());
+  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl, BroadPhaseKind::cgal}) {
+    p.broad_phase = kind;
+    const auto contact = Ipc(p).bind(level, material);
+    const auto sweep = contact->sweep(x0, x1);
+    const BarrierParameters barrier{p.range, contact_stiffness(material), p.slip_distance};
+    for (const double part : {0.0, 0.3, 1.0}) {
+      const Positions x = x0 + part * (x1 - x0);
+      const std::vector<ContactPair> pairs = brute_force(level, obstacles, x, p.range, p.friction);
+      const auto expected = make_pair_contacts(x, obstacles.vertices, pairs, barrier);
+      const auto found = sweep->build(x);
+      REQUIRE(expected->contact_count() > 100);
+      CHECK(found->contact_count() == expected->contact_count());
+      CHECK(found->smallest_gap() == expected->smallest_gap());
+      CHECK(found->value(x) == Approx(expected->value(x)).epsilon(1e-10));
+      const Positions g = gradient_of(*found, x), exact = gradient_of(*expected, x);
+      CHECK((g - exact).norm() <= 1e-10 * exact.norm());
+      const auto friction = found->friction(x0), exact_friction = expected->friction(x0);
+      REQUIRE(friction);
+      CHECK(friction->value(x) == Approx(exact_friction->value(x)).epsilon(1e-10));
+      energies.push_back(found->value(x));
+    }
+    const StepLimit limit = sweep->max_step();
+    CHECK(limit.fraction > 0);
+    if (limit.fraction < 1) CHECK(!limit.by.empty());
+    CHECK(contact->intersections(x0 + limit.fraction * (x1 - x0)).empty());
+  }
+  for (int i = 0; i < 3; ++i) {  // to the bit, whatever the broad phase
+    CHECK(energies[i] == energies[3 + i]);
+    CHECK(energies[i] == energies[6 + i]);
+  }
+}
+
+TEST_CASE("ipc: a flat cloth over one big triangle is pushed by the barrier's pressure") {
+  for (const int columns : {5, 17}) {
+    const Level level = Level::of(0, grid({0.2, 0.2}, columns, columns, Diagonals::one_way));
+    Ipc::Parameters p;
+    p.stiffness = 7;
+    p.obstacles = {box_obstacle({4, 4, 1}, {0.5, -1, -0.5})};  // clear of its diagonal
+    Positions x = level.rest.vertices;
+    x.col(2).setConstant(4e-4);
+    const auto contact = Ipc(p).bind(level, Material());
+    const auto set = contact->sweep(x, x)->build(x);
+    CHECK(set->contact_count() == columns * columns);
+    const double s = 0.4, pressure = 7 * ((1 - s) * (1 - s) / s - 2 * (s - 1) * -std::log(s));
+    const Positions force = -gradient_of(*set, x);
+    for (int v = 0; v < x.rows(); ++v)
+      CHECK((force.row(v) - pressure * level.vertex_area[v] * Eigen::RowVector3d(0, 0, 1)).norm() <
+            1e-9 * pressure * level.vertex_area[v]);  // the gap is a difference of coordinates of a metre
+  }
+}
+
+TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth stays within bounds") {
+  const Level level = Level::of(0, grid({0.2, 0.2}, 21, 21, Diagonals::criss_cross));
+  const double s = 0.4, pressure = 7 * ((1 - s) * (1 - s) / s - 2 * (s - 1) * -std::log(s));
+  Ipc::Parameters p;
+  p.stiffness = 7;
+  for (const double range : {1e-4, 1e-3})
+    for (const int columns : {4, 20, 61, 120}) {
+      p.range = range;
+      TriangleMesh floor = grid({0.3, 0.3}, columns, columns, Diagonals::one_way);
+      floor.vertices.rowwise() -= Eigen::RowVector3d(0.0517, 0.0533, 0);
+      auto obstacles = std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}}}));
+      Positions x = level.rest.vertices;
+      x.col(2).setConstant(s * range);
+      const BoundIpc contact(p, obstacles, level, Material());
+      const auto set = contact.sweep(x, x)->build(x);
+      const double total = -gradient_of(*set, x).col(2).sum() / (pressure * 0.04);
+      CAPTURE(range, columns);
+      CHECK(total >= 1);
+      // Vertices within the range of an edge see the triangles on both its sides.
+      CHECK(total <= (range < 5e-4 ? 2.5 : 4));
+    }
+}
+
+TEST_CASE("ipc: max_step stops before anything passes through, and says what was in the way") {
+  const Level level = Level::of(0, grid({0.4, 0.4}, 21, 21, Diagonals::criss_cross));
+  Ipc::Parameters p;
+  p.obstacles = {sphere_obstacle(0.05, 3, {0.2, 0.2, -0.06})};
+  const auto contact = Ipc(p).bind(level, Material());
+  const Positions x0 = level.rest.vertices;
+  Positions x1 = x0;
+  x1.col(2).array() -= 0.5;
+  CHECK(contact->intersections(x0).empty());
+  StepLimit limit = contact->sweep(x0, x1)->max_step();
+  CHECK(limit.fraction < 0.01 / 0.5);
+  CHECK(limit.fraction > 0.8 * 0.9 * 0.01 / 0.5);
+  CHECK_THAT(limit.by, Catch::Contains("cloth") && Catch::Contains("ball") && Catch::Contains(" and "));
+  Positions sunk = x0;
+  sunk.col(2).array() -= 0.02;
+  const auto touches = contact->intersections(sunk);
+  REQUIRE(!touches.empty());
+  CHECK_THAT(touches[0].first, Catch::Contains("cloth triangle "));
+  CHECK_THAT(touches[0].second, Catch::Contains("ball triangle "));
+  CHECK((touches[0].where - Vector(0.2, 0.2, -0.02)).norm() < 0.06);
+
+  // Steps that would crumple it: applied as far as they are allowed, over and over.
+  std::mt19937 random(5);
+  Positions x = x0;
+  int shortened = 0;
+  for (int step = 0; step < 60; ++step) {
+    std::normal_distribution<double> move(0, step % 3 == 2 ? 0.05 : 0.005);
+    Positions to = x;
+    for (int i = 0; i < to.size(); ++i) to.data()[i] += move(random);
+    limit = contact->sweep(x, to)->max_step();
+    REQUIRE(limit.fraction > 0);
+    REQUIRE(limit.fraction <= 1);
+    shortened += limit.fraction < 1;
+    x += limit.fraction * (to - x);
+    REQUIRE(contact->intersections(x).empty());
+  }
+  CHECK(shortened > 30);
+}
+
+TEST_CASE("ipc: a mesh finer than the range does not push itself apart, yet never passes through itself") {
+  const Level level = Level::of(0, grid({0.01, 0.01}, 21, 21, Diagonals::one_way));
+  Ipc::Parameters p;  // the range is twice the edges
+  const auto contact = Ipc(p).bind(level, Material());
+  const Positions& rest = level.rest.vertices;
+  CHECK(contact->sweep(rest, rest)->build(rest)->contact_count() == 0);
+  Positions through = rest;
+  through.row(10 * 21 + 10) << rest.row(10 * 21 + 13) + Eigen::RowVector3d(0, 0, -1e-3);
+  Positions above = rest;
+  above.row(10 * 21 + 10).z() += 1e-3;
+  const StepLimit limit = contact->sweep(above, through)->max_step();
+  CHECK(limit.fraction < 1);
+  CHECK(contact->intersections(above + limit.fraction * (through - above)).empty());
+  CHECK(!contact->intersections(0.5 * (above + through)).empty());
+  // Layers that rest far from each other repel as ever.
+  const Positions layers = folded(level, 2, 4e-4, 0, 1);
+  CHECK(contact->sweep(layers, layers)->build(layers)->contact_count() > 100);
+}
+
+TEST_CASE("ipc: a way that brings too much together is searched in part") {
+  const Level level = Level::of(0, grid({1, 1}, 60, 60, Diagonals::one_way));
+  const auto contact = Ipc(Ipc::Parameters()).bind(level, Material());
+  const Positions x0 = level.rest.vertices;
+  Positions x1 = x0.rowwise() + Eigen::RowVector3d(0, 0, -100);  // together: no matter how far
+  CHECK(contact->sweep(x0, x1)->max_step().fraction == 1);
+  std::mt19937 random(5);
+  std::normal_distribution<double> move(0, 10);
+  for (int i = 0; i < x1.size(); ++i) x1.data()[i] += move(random);
+  const StepLimit limit = contact->sweep(x0, x1)->max_step();
+  CHECK(limit.fraction > 0);
+  CHECK(limit.fraction < 0.1);
+  CHECK(contact->intersections(x0 + limit.fraction * (x1 - x0)).empty());
+}
+
+TEST_CASE("ipc: time to find that nothing is near") {
+  const Level level = Level::of(0, grid({1, 1}, 313, 313, Diagonals::one_way));
+  Ipc::Parameters p;
+  p.obstacles = {sphere_obstacle(0.3, 5, {0.5, 0.5, -0.4})};
+  const auto contact = Ipc(p).bind(level, Material());
+  for (const double wave : {0.0, 0.1}) {
+    Positions x0 = level.rest.vertices;
+    for (int v = 0; v < x0.rows(); ++v) x0(v, 2) = wave * std::sin(7 * x0(v, 0) + 5 * x0(v, 1));
+    Positions x1 = x0;
+    x1.col(2) += 1e-3 * (3 * x0.col(0)).array().sin().matrix();
+    contact->sweep(x0, x1);
+    Stopwatch watch;
+    const auto sweep = contact->sweep(x0, x1);
+    const double search = watch.seconds();
+    watch = Stopwatch();
+    CHECK(sweep->max_step().fraction == 1);
+    const double filter = watch.seconds();
+    watch = Stopwatch();
+    CHECK(sweep->build(x1)->contact_count() == 0);
+    const double build = watch.seconds();
+    CAPTURE(wave, search, filter, build);
+    CHECK(search + filter + build < 1.5);  // 0.1 on two idle cores
+  }
+}

@@ -1,0 +1,88 @@
+#include "plugins/contact/shapes/bound_shapes.h"
+
+#include <utility>
+
+#include "core/numerics/parallel.h"
+#include "plugins/contact/shapes/contact_stack.h"
+#include "plugins/contact/shapes/shape_scene.h"
+
+namespace drape {
+
+namespace {
+
+std::string triangle_name(int i) { return "cloth triangle " + std::to_string(i); }
+
+class ShapeSweep final : public ContactSweep {
+ public:
+  ShapeSweep(std::shared_ptr<const ShapeScene> scene, const Positions& x0, const Positions& x1)
+      : scene_(std::move(scene)), x0_(x0), x1_(x1), candidates_(find_candidates(*scene_, x0, x1)) {}
+
+  StepLimit max_step() const override {
+    const auto& pairs = candidates_.triangles;
+    std::vector<double> fractions(pairs.size());
+    parallel_for(static_cast<int>(pairs.size()), 256, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        fractions[i] = advance(scene_->solids[pairs[i].solid], scene_->corners(pairs[i].triangle, x0_),
+                               scene_->corners(pairs[i].triangle, x1_), scene_->keep);
+    });
+    StepLimit limit;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (fractions[i] < limit.fraction)
+        limit = {fractions[i],
+                 triangle_name(pairs[i].triangle) + " and " + scene_->solids[pairs[i].solid].name};
+    return limit;
+  }
+
+  std::unique_ptr<ContactSet> build(const Positions& x) const override {
+    std::vector<std::unique_ptr<ContactSet>> parts;
+    if (!candidates_.vertices.empty())
+      parts.push_back(make_vertex_contacts(x, candidates_.vertices, scene_->barrier));
+    if (!candidates_.pairs.empty())
+      parts.push_back(make_pair_contacts(x, scene_->obstacle_points, candidates_.pairs, scene_->barrier));
+    if (parts.size() == 1) return std::move(parts.front());
+    return std::make_unique<ContactStack>(std::move(parts));
+  }
+
+ private:
+  std::shared_ptr<const ShapeScene> scene_;
+  Positions x0_, x1_;
+  Candidates candidates_;
+};
+
+class BoundShapes final : public BoundContact {
+ public:
+  explicit BoundShapes(ShapeScene scene) : scene_(std::make_shared<const ShapeScene>(std::move(scene))) {}
+
+  std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override {
+    return std::make_unique<ShapeSweep>(scene_, x0, x1);
+  }
+
+  std::vector<Touch> intersections(const Positions& x) const override {
+    std::vector<Touch> found;
+    for (const TrianglePair& pair : find_candidates(*scene_, x, x).triangles) {
+      const Corners c = scene_->corners(pair.triangle, x);
+      if (touches(scene_->solids[pair.solid], c))
+        found.push_back(
+            {triangle_name(pair.triangle), scene_->solids[pair.solid].name, (c[0] + c[1] + c[2]) / 3});
+    }
+    return found;
+  }
+
+  std::vector<TriangleMesh> obstacles() const override {
+    std::vector<TriangleMesh> meshes;
+    for (const Solid& solid : scene_->solids) meshes.push_back(tessellate(solid, scene_->diagonal));
+    return meshes;
+  }
+
+ private:
+  std::shared_ptr<const ShapeScene> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<BoundContact> bind_shapes(const Level& level, const std::vector<Solid>& solids,
+                                          const BarrierParameters& barrier, double keep) {
+  return std::make_unique<BoundShapes>(ShapeScene::of(level, solids, barrier, keep));
+}
+
+}  // namespace drape

@@ -1,0 +1,166 @@
+#include "plugins/contact/shapes/features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector2d, Eigen::Vector3d;
+
+/// Corners of the core in its own axes: 8 of a box, 2 of a capsule, 1 of a sphere.
+std::vector<Vector3d> core_corners(const Vector3d& half) {
+  std::vector<Vector3d> corners{Vector3d::Zero()};
+  for (int k = 0; k < 3; ++k) {
+    if (half[k] == 0) continue;
+    const std::size_t count = corners.size();
+    for (std::size_t i = 0; i < count; ++i) corners.push_back(corners[i]);
+    for (std::size_t i = 0; i < 2 * count; ++i) corners[i][k] = i < count ? -half[k] : half[k];
+  }
+  return corners;
+}
+
+Vector3d on_circle(const Solid& solid, int k, int sides, double z) {
+  const double angle = 2 * M_PI * k / sides;
+  return {solid.radius * std::cos(angle), solid.radius * std::sin(angle), z};
+}
+
+/// Calls visit(i) for the elements, points or edges, that may be within `radius` of `centre`. A prism's come
+/// in rings, and element k of each ring begins at angle k: bottom, top and, of edges, those between.
+template <class Visit>
+void visit_candidates(const Features& f, int count, const Solid& solid, const Vector3d& centre, double radius,
+                      const Visit& visit) {
+  if (f.side == 0) {
+    for (int i = 0; i < count; ++i) visit(i);
+    return;
+  }
+  const int sides = static_cast<int>(f.points.rows()) / 2;
+  const Vector3d q = solid.to_local(centre);
+  const double rho = q.head<2>().norm(), angle = std::atan2(q.y(), q.x()), unit = 2 * M_PI / sides;
+  if (rho + radius < solid.radius * std::cos(unit / 2)) return;
+  const double spread = radius < rho ? std::asin(radius / rho) : M_PI;  // of the ball, seen from the axis
+  const int first = static_cast<int>(std::floor((angle - spread) / unit)) - 1;
+  const int last = std::min(static_cast<int>(std::ceil((angle + spread) / unit)), first + sides - 1);
+  for (int ring = 0; ring < count; ring += sides)
+    for (int k = first; k <= last; ++k) visit(ring + ((k % sides) + sides) % sides);
+}
+
+double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d e = b - a;
+  return (p - a - std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0) * e).norm();
+}
+
+/// Turns a profile of (radius, z), from the top down, about the axis.
+TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
+  const int sides = 64, rings = static_cast<int>(profile.size());
+  TriangleMesh mesh;
+  mesh.vertices.resize(rings * sides + 2, 3);
+  mesh.triangles.resize(2 * rings * sides, 3);
+  int row = 0;
+  for (int i = 0; i < rings; ++i)
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * M_PI * k / sides;
+      const Vector3d q(profile[i].x() * std::cos(angle), profile[i].x() * std::sin(angle), profile[i].y());
+      mesh.vertices.row(i * sides + k) = solid.to_world(q);
+      const int next = (k + 1) % sides, a = i * sides;
+      if (i + 1 < rings) {
+        mesh.triangles.row(row++) << a + k, a + sides + k, a + next;
+        mesh.triangles.row(row++) << a + next, a + sides + k, a + sides + next;
+      }
+    }
+  const double top = solid.half.z() + (solid.kind == SolidKind::cylinder ? 0 : solid.radius);
+  for (const double side : {1.0, -1.0}) {
+    const int pole = rings * sides + (side > 0 ? 0 : 1), ring = side > 0 ? 0 : (rings - 1) * sides;
+    mesh.vertices.row(pole) = solid.to_world({0, 0, side * top});
+    for (int k = 0; k < sides; ++k) {
+      const int next = (k + 1) % sides;
+      mesh.triangles.row(row++) << pole, ring + (side > 0 ? k : next), ring + (side > 0 ? next : k);
+    }
+  }
+  return mesh;
+}
+
+TriangleMesh box_surface(const Solid& solid) {
+  TriangleMesh mesh;
+  const std::vector<Vector3d> corners = core_corners(solid.half);  // corner i has x, y, z by its bits
+  mesh.vertices.resize(8, 3);
+  for (int i = 0; i < 8; ++i) mesh.vertices.row(i) = solid.to_world(corners[i]);
+  mesh.triangles.resize(12, 3);
+  mesh.triangles << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6,
+      1, 3, 5, 3, 7, 5;
+  return mesh;
+}
+
+}  // namespace
+
+Features Features::of(const Solid& solid, double slack) {
+  Features f;
+  std::vector<Vector3d> points;
+  std::vector<std::pair<int, int>> edges;
+  if (solid.kind == SolidKind::cylinder) {
+    const double step = std::acos(1 - std::min(0.5, slack / solid.radius));
+    const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
+    f.side = 2 * solid.radius * std::sin(M_PI / sides);
+    for (const int ring : {0, sides})
+      for (int k = 0; k < sides; ++k) {
+        points.push_back(on_circle(solid, k, sides, ring ? solid.half.z() : -solid.half.z()));
+        edges.push_back({ring + k, ring + (k + 1) % sides});
+      }
+    for (int k = 0; k < sides; ++k) edges.push_back({k, sides + k});
+  } else if (solid.kind != SolidKind::half_space) {
+    points = core_corners(solid.half);
+    f.offset = solid.radius;
+    const int count = static_cast<int>(points.size());
+    for (int i = 0; i < count; ++i)
+      for (int bit = 1; bit < count; bit *= 2)
+        if (!(i & bit)) edges.push_back({i, i | bit});
+  }
+  f.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) f.points.row(i) = solid.to_world(points[i]);
+  f.edges.resize(static_cast<Eigen::Index>(edges.size()), 2);
+  for (std::size_t i = 0; i < edges.size(); ++i) f.edges.row(i) << edges[i].first, edges[i].second;
+  return f;
+}
+
+void Features::points_near(const Solid& solid, const Vector3d& centre, double radius,
+                           std::vector<int>& found) const {
+  visit_candidates(*this, static_cast<int>(points.rows()), solid, centre, radius, [&](int i) {
+    if ((points.row(i).transpose() - centre).norm() <= radius) found.push_back(i);
+  });
+}
+
+void Features::edges_near(const Solid& solid, const Vector3d& centre, double radius,
+                          std::vector<int>& found) const {
+  visit_candidates(*this, static_cast<int>(edges.rows()), solid, centre, radius, [&](int i) {
+    if (distance_to_segment(centre, points.row(edges(i, 0)), points.row(edges(i, 1))) <= radius)
+      found.push_back(i);
+  });
+}
+
+TriangleMesh tessellate(const Solid& solid, double half_side) {
+  if (solid.kind == SolidKind::box) return box_surface(solid);
+  TriangleMesh mesh;
+  if (solid.kind == SolidKind::half_space) {
+    mesh.vertices.resize(4, 3);
+    for (int i = 0; i < 4; ++i)
+      mesh.vertices.row(i) = solid.to_world(half_side * Vector3d(i % 2 ? 1 : -1, i / 2 ? 1 : -1, 0));
+    mesh.triangles.resize(2, 3);
+    mesh.triangles << 0, 1, 2, 1, 3, 2;
+    return mesh;
+  }
+  if (solid.kind == SolidKind::cylinder)
+    return revolve(solid, {{solid.radius, solid.half.z()}, {solid.radius, -solid.half.z()}});
+  std::vector<Vector2d> profile;  // two quarter circles, apart by the capsule's core
+  const int steps = 16;
+  for (int i = 1; i < 2 * steps; ++i) {
+    const double angle = 0.5 * M_PI * i / steps;
+    const double shift = i < steps ? solid.half.z() : -solid.half.z();
+    if (i == steps) profile.push_back({solid.radius, solid.half.z()});
+    if (i != steps || solid.half.z() > 0)
+      profile.push_back({solid.radius * std::sin(angle), solid.radius * std::cos(angle) + shift});
+  }
+  return revolve(solid, profile);
+}
+
+}  // namespace drape

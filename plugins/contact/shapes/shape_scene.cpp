@@ -1,0 +1,191 @@
+#include "plugins/contact/shapes/shape_scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/numerics/parallel.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int grain = 2048;
+constexpr double parallel_edges = 1e-3;  // (Li et al. 2020, eq. 18): sin² of the angle that fading begins at
+constexpr double slack = 0.0005;         // of the range: how far a cylinder's features are inside it
+constexpr double half = 0.5;             // the share of edges and of triangles' insides
+
+/// A ball that an element stays in.
+struct Ball {
+  Vector3d centre;
+  double radius;
+};
+
+Ball ball_of(const int* vertices, int count, const Positions& x0, const Positions& x1) {
+  Ball ball{Vector3d::Zero(), 0};
+  for (int k = 0; k < count; ++k) ball.centre += (x0.row(vertices[k]) + x1.row(vertices[k])).transpose();
+  ball.centre /= 2 * count;
+  for (int k = 0; k < count; ++k)
+    for (const Positions* x : {&x0, &x1})
+      ball.radius = std::max(ball.radius, (x->row(vertices[k]).transpose() - ball.centre).norm());
+  return ball;
+}
+
+/// The candidates with one solid.
+class Finder {
+ public:
+  Finder(const ShapeScene& scene, int solid, const Positions& x0, const Positions& x1)
+      : scene_(scene), solid_(scene.solids[solid]), features_(scene.features[solid]), x0_(x0), x1_(x1) {}
+
+  /// Triangles that the range may be entered by, ascending.
+  std::vector<int> near_triangles() const {
+    std::vector<char> near(scene_.triangles.rows());
+    parallel_for(static_cast<int>(near.size()), grain, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) near[i] = is_near(ball_of(&scene_.triangles(i, 0), 3, x0_, x1_));
+    });
+    return marked(near);
+  }
+
+  std::vector<int> vertices_of(const std::vector<int>& triangles) const {
+    return near_of(triangles, scene_.triangles, static_cast<int>(x0_.rows()),
+                   [&](int i) { return is_near(ball_of(&i, 1, x0_, x1_)); });
+  }
+  std::vector<int> edges_of(const std::vector<int>& triangles) const {
+    return near_of(triangles, scene_.triangle_edges, static_cast<int>(scene_.edges.rows()),
+                   [&](int i) { return is_near(ball_of(&scene_.edges(i, 0), 2, x0_, x1_)); });
+  }
+
+  /// Points of the solid against insides of triangles.
+  void add_insides(const std::vector<int>& triangles, int first_point,
+                   std::vector<ContactPair>& pairs) const {
+    const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has nothing else
+    std::vector<int> found;
+    for (const int i : triangles) {
+      const Ball ball = ball_of(&scene_.triangles(i, 0), 3, x0_, x1_);
+      found.clear();
+      features_.points_near(solid_, ball.centre, ball.radius + reach(), found);
+      ContactPair pair;
+      pair.kind = PairKind::point_triangle;
+      pair.offset = features_.offset;
+      pair.friction = solid_.friction;
+      pair.weight = share * scene_.triangle_area[i] * part(std::sqrt(2 * scene_.triangle_area[i]));
+      for (const int point : found) {
+        pair.vertices = {static_cast<int>(x0_.rows()) + first_point + point, scene_.triangles(i, 0),
+                         scene_.triangles(i, 1), scene_.triangles(i, 2)};
+        pairs.push_back(pair);
+      }
+    }
+  }
+
+  /// Edges of the solid against those of the cloth.
+  void add_edges(const std::vector<int>& edges, int first_point, std::vector<ContactPair>& pairs) const {
+    std::vector<int> found;
+    for (const int i : edges) {
+      const Ball ball = ball_of(&scene_.edges(i, 0), 2, x0_, x1_);
+      found.clear();
+      features_.edges_near(solid_, ball.centre, ball.radius + reach(), found);
+      ContactPair pair;
+      pair.kind = PairKind::edge_edge;
+      pair.offset = features_.offset;
+      pair.friction = solid_.friction;
+      const double length = scene_.edge_length[i];
+      pair.weight = half * scene_.edge_area[i] * part(length);
+      const int first = static_cast<int>(x0_.rows()) + first_point;
+      for (const int edge : found) {
+        const int a = features_.edges(edge, 0), b = features_.edges(edge, 1);
+        pair.vertices = {scene_.edges(i, 0), scene_.edges(i, 1), first + a, first + b};
+        pair.mollifier = parallel_edges * length * length *
+                         (features_.points.row(b) - features_.points.row(a)).squaredNorm();
+        pairs.push_back(pair);
+      }
+    }
+  }
+
+ private:
+  double reach() const { return scene_.barrier.range + features_.offset; }
+  bool is_near(const Ball& ball) const {
+    return solid_.distance(ball.centre) - ball.radius < scene_.barrier.range;
+  }
+  /// The part of an element of the cloth that meets one side of a cylinder's polygon.
+  double part(double length) const { return features_.side > 0 ? std::min(1.0, features_.side / length) : 1; }
+
+  static std::vector<int> marked(const std::vector<char>& marks) {
+    std::vector<int> result;
+    for (std::size_t i = 0; i < marks.size(); ++i)
+      if (marks[i]) result.push_back(static_cast<int>(i));
+    return result;
+  }
+
+  template <class IsNear>
+  static std::vector<int> near_of(const std::vector<int>& triangles, const Triangles& corners, int count,
+                                  const IsNear& is_near) {
+    std::vector<char> marks(count);
+    for (const int i : triangles)
+      for (int k = 0; k < 3; ++k) marks[corners(i, k)] = 1;
+    std::vector<int> result;
+    for (const int i : marked(marks))
+      if (is_near(i)) result.push_back(i);
+    return result;
+  }
+
+  const ShapeScene& scene_;
+  const Solid& solid_;
+  const Features& features_;
+  const Positions &x0_, &x1_;
+};
+
+}  // namespace
+
+ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
+                          const BarrierParameters& barrier, double keep) {
+  ShapeScene s;
+  s.triangles = level.rest.triangles;
+  s.triangle_edges = level.topology.triangle_edges;
+  s.edges = level.topology.edges;
+  s.vertex_area = level.vertex_area;
+  const Positions& rest = level.rest.vertices;
+  s.diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  s.edge_length.resize(s.edges.rows());
+  for (Eigen::Index i = 0; i < s.edges.rows(); ++i)
+    s.edge_length[i] = (rest.row(s.edges(i, 1)) - rest.row(s.edges(i, 0))).norm();
+  s.triangle_area.resize(s.triangles.rows());
+  s.edge_area.setZero(s.edges.rows());
+  for (int i = 0; i < static_cast<int>(s.triangles.rows()); ++i) {
+    const Corners c = s.corners(i, rest);
+    s.triangle_area[i] = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    for (int k = 0; k < 3; ++k) s.edge_area[s.triangle_edges(i, k)] += s.triangle_area[i] / 3;
+  }
+  s.solids = solids;
+  s.barrier = barrier;
+  s.keep = keep;
+  int points = 0;
+  for (const Solid& solid : solids) {
+    s.features.push_back(Features::of(solid, slack * barrier.range));
+    s.first_point.push_back(points);
+    points += static_cast<int>(s.features.back().points.rows());
+  }
+  s.obstacle_points.resize(points, 3);
+  for (std::size_t k = 0; k < solids.size(); ++k)
+    s.obstacle_points.middleRows(s.first_point[k], s.features[k].points.rows()) = s.features[k].points;
+  return s;
+}
+
+Candidates find_candidates(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+  Candidates c;
+  for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
+    const Solid& solid = scene.solids[k];
+    const Finder finder(scene, k, x0, x1);
+    const std::vector<int> triangles = finder.near_triangles();
+    for (const int i : triangles) c.triangles.push_back({i, k});
+    finder.add_insides(triangles, scene.first_point[k], c.pairs);
+    if (solid.kind == SolidKind::sphere) continue;
+    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, &solid, scene.vertex_area[i]});
+    if (solid.kind == SolidKind::half_space) continue;
+    finder.add_edges(finder.edges_of(triangles), scene.first_point[k], c.pairs);
+  }
+  return c;
+}
+
+}  // namespace drape

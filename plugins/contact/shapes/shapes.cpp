@@ -1,0 +1,140 @@
+#include "plugins/contact/shapes/shapes.h"
+
+#include <Eigen/Geometry>
+#include <stdexcept>
+
+#include "core/contact/stiffness.h"
+#include "core/plugin/plugin.h"
+#include "plugins/contact/shapes/bound_shapes.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector3d;
+
+const std::vector<std::pair<std::string, SolidKind>> words = {{"sphere", SolidKind::sphere},
+                                                              {"box", SolidKind::box},
+                                                              {"capsule", SolidKind::capsule},
+                                                              {"cylinder", SolidKind::cylinder},
+                                                              {"half_space", SolidKind::half_space}};
+
+/// About x, then y, then z, as start.rotate.
+Matrix3d turned(const Vector3d& degrees) {
+  const Vector3d angle = degrees * (M_PI / 180);
+  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
+          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+Solid solid_of(const ShapeParameters& p, int index, double friction) {
+  Solid s;
+  s.kind = p.shape;
+  s.name = (p.name.empty() ? "shape " + std::to_string(index) : p.name) + ": " + word(p.shape);
+  s.centre = p.centre;
+  s.axes = turned(p.rotate);
+  s.friction = p.friction.value_or(friction);
+  if (p.shape == SolidKind::half_space) {
+    if (!(p.normal.norm() > 0)) throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
+    s.axes = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p.normal).toRotationMatrix();
+  } else if (p.shape == SolidKind::box) {
+    s.half = p.size / 2;
+  } else {
+    s.radius = p.radius;
+    if (p.shape != SolidKind::sphere) s.half.z() = p.height / 2;
+  }
+  return s;
+}
+
+}  // namespace
+
+std::string word(SolidKind kind) {
+  for (const auto& [word, own] : words)
+    if (own == kind) return word;
+  throw std::runtime_error("a kind of solid has no word");
+}
+
+void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
+  d.add("name", &ShapeParameters::name)
+      .meaning("what messages call it; empty: its number")
+      .source("this project");
+  d.add_choice("shape", &ShapeParameters::shape, words)
+      .required()
+      .meaning("capsule: all points within radius of a segment; half_space: all behind a plane")
+      .source("this project");
+  d.add("centre", &ShapeParameters::centre)
+      .unit("m")
+      .meaning("its middle; of a half_space any point of the plane")
+      .source("this project");
+  d.add("radius", &ShapeParameters::radius)
+      .unit("m")
+      .above(0)
+      .meaning("of a sphere, capsule or cylinder")
+      .source("this project");
+  d.add("size", &ShapeParameters::size).unit("m").above(0).meaning("edges of a box").source("this project");
+  d.add("height", &ShapeParameters::height)
+      .unit("m")
+      .above(0)
+      .meaning("along the z axis before it is turned: of a cylinder, or of a capsule without its round ends")
+      .source("this project");
+  d.add("rotate", &ShapeParameters::rotate)
+      .unit("degrees")
+      .meaning("about the x axis, then y, then z")
+      .source("this project");
+  d.add("normal", &ShapeParameters::normal)
+      .meaning("of a half_space, towards the cloth; any length")
+      .source("this project");
+  d.add("friction", &ShapeParameters::friction)
+      .at_least(0)
+      .meaning("coefficient μ; null: that of all shapes")
+      .source("Li et al. 2020, section 5");
+}
+
+void Shapes::Parameters::declare(Declaration<Parameters>& d) {
+  d.add_sections("shapes", &Parameters::shapes).required().meaning("the obstacles").source("this project");
+  d.add("friction", &Parameters::friction)
+      .unit("1")
+      .at_least(0)
+      .meaning("coefficient μ of Coulomb friction")
+      .source("Li et al. 2020, section 5");
+  d.add("range", &Parameters::range)
+      .unit("m")
+      .above(0)
+      .meaning("d̂, the distance below which the barrier acts")
+      .source("Li et al. 2020, eq. 6");
+  d.add("stiffness", &Parameters::stiffness)
+      .unit("Pa")
+      .above(0)
+      .meaning("κ, the barrier's; null: ten times the cloth's weight a unit of area")
+      .source("this project");
+  d.add("slip_distance", &Parameters::slip_distance)
+      .unit("m")
+      .above(0)
+      .meaning("a contact that moved less in a step sticks")
+      .source("Li et al. 2020, eq. 14, ε_v h");
+  d.add("keep", &Parameters::keep)
+      .unit("1")
+      .above(0)
+      .below(1)
+      .meaning("part of every gap that a step leaves")
+      .source("Li et al. 2021, additive CCD");
+}
+
+Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
+  for (const ShapeParameters& shape : p_.shapes)
+    solids_.push_back(solid_of(shape, static_cast<int>(solids_.size()), p_.friction));
+}
+
+std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {
+  if (solids_.empty()) return nullptr;
+  const BarrierParameters barrier{p_.range, p_.stiffness.value_or(contact_stiffness(material)),
+                                  p_.slip_distance};
+  return bind_shapes(level, solids_, barrier, p_.keep);
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::ContactModel, drape::Shapes>(
+      "shapes", "Contact with balls, boxes, capsules, cylinders and half-spaces in closed form.");
+}

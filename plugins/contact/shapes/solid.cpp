@@ -1,0 +1,140 @@
+#include "plugins/contact/shapes/solid.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// Of a box with rounding, in its own axes.
+Nearest nearest_to_box(const Solid& s, const Vector3d& q) {
+  Nearest n;
+  const Vector3d v = q - q.cwiseMax(-s.half).cwiseMin(s.half);
+  const double length = v.norm();
+  if (length == 0) {  // inside the core: the nearest of its faces
+    Eigen::Index k;
+    n.distance = (q.cwiseAbs() - s.half).maxCoeff(&k) - s.radius;
+    n.normal = Vector3d::Unit(k) * (q[k] < 0 ? -1 : 1);
+    n.tangent = Vector3d::Unit((k + 1) % 3);
+    return n;
+  }
+  n.distance = length - s.radius;
+  n.normal = v / length;
+  int outside = 0, along = 0;
+  for (int k = 0; k < 3; ++k)
+    if (s.half[k] == 0 || std::abs(q[k]) > s.half[k])
+      ++outside;
+    else
+      along = k;
+  n.tangent = outside == 2 ? Vector3d(Vector3d::Unit(along)) : Vector3d(n.normal.unitOrthogonal());
+  if (outside > 1) n.curvature[1] = 1 / length;
+  if (outside > 2) n.curvature[0] = 1 / length;
+  return n;
+}
+
+Nearest nearest_to_cylinder(const Solid& s, const Vector3d& q) {
+  Nearest n;
+  const double rho = std::hypot(q.x(), q.y()), out = rho - s.radius, up = std::abs(q.z()) - s.half.z();
+  const Vector3d radial = rho > 0 ? Vector3d(q.x() / rho, q.y() / rho, 0) : Vector3d(1, 0, 0);
+  const Vector3d axial(0, 0, q.z() < 0 ? -1 : 1);
+  n.tangent = {-radial.y(), radial.x(), 0};
+  if (out > 0 && up > 0) {  // the rim
+    n.distance = std::hypot(out, up);
+    n.normal = (out * radial + up * axial) / n.distance;
+    n.curvature = {out / n.distance / rho, 1 / n.distance};
+  } else if (out > up) {
+    n.distance = out;
+    n.normal = radial;
+    n.curvature = {rho > 0 ? 1 / rho : 0, 0};
+  } else {
+    n.distance = up;
+    n.normal = axial;
+  }
+  return n;
+}
+
+/// Where the monotone `slope` on [0, 1] changes its sign.
+template <class Slope>
+double sign_change(const Slope& slope) {
+  double low = 0, high = 1;
+  if (slope(0.0) >= 0) return 0;
+  if (slope(1.0) <= 0) return 1;
+  for (int i = 0; i < 60 && low < high; ++i) {
+    const double middle = 0.5 * (low + high);
+    (slope(middle) < 0 ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// The slope of half the squared distance to the core is piecewise linear: the root is found exactly.
+double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vector3d& e) {
+  const auto slope = [&](double t) {
+    const Vector3d q = a + t * e;
+    return (q - q.cwiseMax(-half).cwiseMin(half)).dot(e);
+  };
+  double low = 0, high = 1, low_slope = slope(0), high_slope = slope(1);
+  if (low_slope >= 0) return 0;
+  if (high_slope <= 0) return 1;
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {-half[k], half[k]}) {
+      const double t = (side - a[k]) / e[k];  // a kink, unless e[k] is 0
+      if (!(t > low && t < high)) continue;
+      const double here = slope(t);
+      (here < 0 ? low : high) = t;
+      (here < 0 ? low_slope : high_slope) = here;
+    }
+  return low + (high - low) * low_slope / (low_slope - high_slope);
+}
+
+}  // namespace
+
+Nearest Solid::nearest(const Vector3d& p) const {
+  const Vector3d q = to_local(p);
+  Nearest n;
+  if (kind == SolidKind::half_space)
+    n.distance = q.z();
+  else
+    n = kind == SolidKind::cylinder ? nearest_to_cylinder(*this, q) : nearest_to_box(*this, q);
+  n.normal = axes * n.normal;
+  n.tangent = axes * n.tangent;
+  return n;
+}
+
+double Solid::distance(const Vector3d& p) const {
+  const Vector3d q = to_local(p);
+  if (kind == SolidKind::half_space) return q.z();
+  if (kind == SolidKind::cylinder) {
+    const double out = std::hypot(q.x(), q.y()) - radius, up = std::abs(q.z()) - half.z();
+    return out > 0 && up > 0 ? std::hypot(out, up) : std::max(out, up);
+  }
+  const double length = (q - q.cwiseMax(-half).cwiseMin(half)).norm();
+  return (length > 0 ? length : (q.cwiseAbs() - half).maxCoeff()) - radius;
+}
+
+double Solid::support(const Vector3d& n) const {
+  const double middle = n.dot(centre);
+  const Vector3d m = axes.transpose() * n;
+  if (kind == SolidKind::half_space)  // 1e-7: m.z() of a unit vector that far off is 1 in double
+    return m.z() > 0 && m.head<2>().norm() < 1e-7 ? middle : std::numeric_limits<double>::infinity();
+  if (kind == SolidKind::cylinder) return middle + radius * m.head<2>().norm() + half.z() * std::abs(m.z());
+  return middle + half.dot(m.cwiseAbs()) + radius;
+}
+
+double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
+  const Vector3d p = to_local(a), e = axes.transpose() * (b - a);
+  if (kind == SolidKind::half_space) return e.z() < 0 ? 1 : 0;
+  if (kind != SolidKind::cylinder) return nearest_to_box_on_edge(half, p, e);
+  return sign_change([&](double t) {  // of half the squared distance
+    const Vector3d q = p + t * e;
+    const double rho = std::hypot(q.x(), q.y());
+    const double out = std::max(0.0, 1 - radius / rho), up = std::abs(q.z()) - half.z();
+    return out * (q.x() * e.x() + q.y() * e.y()) + (up > 0 ? std::copysign(up, q.z()) * e.z() : 0.0);
+  });
+}
+
+}  // namespace drape

@@ -1,0 +1,520 @@
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <random>
+
+#include "core/contact/barrier.h"
+#include "core/contact/stiffness.h"
+#include "core/mesh/generate.h"
+#include "plugins/contact/shapes/features.h"
+#include "plugins/contact/shapes/separation.h"
+#include "plugins/contact/shapes/shapes.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::capsule, SolidKind::cylinder,
+                               SolidKind::half_space};
+constexpr double range = 1e-3, keep = 0.1, kappa = 20;
+
+std::mt19937 generator(7);
+double uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(generator);
+}
+Vector3d random_vector(double size) {
+  return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+}
+
+/// A shape of about 0.1 m, turned and off the origin.
+ShapeParameters some(SolidKind kind) {
+  ShapeParameters p;
+  p.name = "thing";
+  p.shape = kind;
+  p.centre = {0.03, -0.02, 0.05};
+  p.radius = 0.06;
+  p.size = {0.1, 0.14, 0.08};
+  p.height = 0.1;
+  p.rotate = {20, -35, 50};
+  p.normal = {0.3, -0.2, 1.1};
+  return p;
+}
+
+/// The same, straight: top faces at z = 0.
+ShapeParameters level_with(SolidKind kind) {
+  ShapeParameters p = some(kind);
+  p.rotate.setZero();
+  p.normal = {0, 0, 2};
+  p.centre = {0, 0, kind == SolidKind::half_space ? 0 : kind == SolidKind::box ? -0.04 : -0.05};
+  return p;
+}
+
+Shapes::Parameters with(const std::vector<ShapeParameters>& shapes, double friction = 0) {
+  Shapes::Parameters p;
+  p.shapes = shapes;
+  p.range = range;
+  p.keep = keep;
+  p.stiffness = kappa;
+  p.friction = friction;
+  return p;
+}
+
+/// The plugin's own conversion is tested through the model; here the solid is made by hand.
+Solid solid_of(const ShapeParameters& p) {
+  Solid s;
+  s.kind = p.shape;
+  s.centre = p.centre;
+  const Vector3d angle = p.rotate * (M_PI / 180);
+  s.axes = (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) *
+            Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) * Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
+               .toRotationMatrix();
+  if (p.shape == SolidKind::half_space)
+    s.axes = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p.normal).toRotationMatrix();
+  if (p.shape == SolidKind::box)
+    s.half = p.size / 2;
+  else if (p.shape != SolidKind::half_space)
+    s.radius = p.radius;
+  if (p.shape == SolidKind::capsule || p.shape == SolidKind::cylinder) s.half.z() = p.height / 2;
+  return s;
+}
+
+/// The solid's definition, by its own axes: nothing of solid.cpp is in it.
+bool contains(const Solid& s, const Vector3d& p) {
+  const Vector3d q = s.axes.transpose() * (p - s.centre);
+  switch (s.kind) {
+    case SolidKind::sphere:
+      return q.norm() <= s.radius;
+    case SolidKind::box:
+      return (q.cwiseAbs() - s.half).maxCoeff() <= 0;
+    case SolidKind::capsule:
+      return (q - Vector3d(0, 0, std::clamp(q.z(), -s.half.z(), s.half.z()))).norm() <= s.radius;
+    case SolidKind::cylinder:
+      return q.head<2>().norm() <= s.radius && std::abs(q.z()) <= s.half.z();
+    case SolidKind::half_space:
+      break;
+  }
+  return q.z() <= 0;
+}
+
+/// min f over [0, 1], f convex.
+template <class Function>
+double smallest(const Function& f, int rounds = 80) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  double low = 0, high = 1, a = 1 - golden, b = golden, fa = f(a), fb = f(b);
+  for (int i = 0; i < rounds; ++i) {
+    if (fa < fb) {
+      high = b, b = a, fb = fa, a = high - golden * (high - low), fa = f(a);
+    } else {
+      low = a, a = b, fa = fb, b = low + golden * (high - low), fb = f(b);
+    }
+  }
+  return std::min({fa, fb, f(0.0), f(1.0)});
+}
+
+/// The distance is convex, so a search within a search finds its minimum over the triangle.
+double searched_distance(const Solid& s, const Corners& c) {
+  return smallest(
+      [&](double u) {
+        return smallest(
+            [&](double v) { return s.distance((1 - u) * c[0] + u * ((1 - v) * c[1] + v * c[2])); }, 60);
+      },
+      60);
+}
+
+/// A triangle whose distance is positive and mostly small.
+Corners some_triangle(const Solid& s, double size) {
+  for (;;) {
+    const Vector3d middle = s.centre + random_vector(0.15);
+    const Nearest n = s.nearest(middle);
+    if (n.distance < 0 && s.kind != SolidKind::half_space) continue;
+    const Vector3d at = middle - (n.distance - std::pow(10.0, uniform(-5, -1.5))) * n.normal;
+    Corners c{at, at + random_vector(size), at + random_vector(size)};
+    if (uniform(0, 1) < 0.5) {  // nearly tangent
+      for (Vector3d& p : c) p -= 0.98 * n.normal.dot(p - at) * n.normal;
+    }
+    const double d = searched_distance(s, c);
+    if (d > 1e-6) return c;
+  }
+}
+
+Level square(int side, double size) {
+  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
+  return Level::of(0, mesh);
+}
+
+/// The cloth's positions at a height.
+Positions lifted(const Level& level, double height, double x = 0, double y = 0) {
+  Positions p = level.rest.vertices;
+  p.rowwise() += Eigen::RowVector3d(x, y, height);
+  return p;
+}
+
+double energy_at(const BoundContact& bound, const Positions& x) {
+  return bound.sweep(x, x)->build(x)->value(x);
+}
+Positions gradient_at(const BoundContact& bound, const Positions& x) {
+  return gradient_of(*bound.sweep(x, x)->build(x), x);
+}
+
+double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
+  double d = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < level.triangle_count(); ++i) {
+    const auto t = level.rest.triangles.row(i);
+    d = std::min(d, separate(s, {x.row(t[0]), x.row(t[1]), x.row(t[2])}).gap);
+  }
+  return d;
+}
+
+/// A cloth of few triangles, crumpled, its distance to the solid between 5 and 90 % of the range.
+Positions near_cloth(const Solid& s, const Level& level) {
+  for (;;) {
+    const Vector3d middle = s.centre + random_vector(0.15);
+    const Nearest n = s.nearest(middle);
+    if (n.distance <= 0) continue;
+    const Eigen::Quaterniond turn = uniform(0, 1) < 0.5
+                                        ? Eigen::Quaterniond::UnitRandom()
+                                        : Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), n.normal);
+    Positions x = level.rest.vertices * turn.toRotationMatrix().transpose();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) += (middle + random_vector(5e-4)).transpose();
+    for (int round = 0; round < 60; ++round) {
+      const double d = cloth_distance(s, level, x);
+      if (d > 0.05 * range && d < 0.9 * range) return x;
+      x.rowwise() -= (d - 0.4 * range) * n.normal.transpose();
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("shapes: distance, gradient and curvature of solids") {
+  for (const SolidKind kind : kinds) {
+    const Solid s = solid_of(some(kind));
+    int tested = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const Vector3d p = s.centre + random_vector(0.2);
+      const Nearest n = s.nearest(p);
+      INFO(word(kind) << " at " << p.transpose());
+      CHECK(s.distance(p) == Approx(n.distance).margin(1e-15));
+      CHECK((n.distance <= 0) == contains(s, p));
+      CHECK(touches(s, {p, p, p}) == contains(s, p));
+      CHECK(n.normal.norm() == Approx(1));
+      CHECK(n.normal.dot(n.tangent) == Approx(0).margin(1e-14));
+      if (n.distance < 1e-4) continue;
+      ++tested;
+      // The nearest point is in the solid's closure, and nothing nearer is: a plane separates.
+      CHECK(contains(s, p - (n.distance + 1e-9) * n.normal));
+      CHECK(!contains(s, p - (n.distance - 1e-9) * n.normal));
+      CHECK(n.normal.dot(p) - s.support(n.normal) == Approx(n.distance).epsilon(1e-12));
+      const double h = 1e-6;
+      const Vector3d b = n.normal.cross(n.tangent);
+      const Eigen::Matrix3d hessian =
+          n.curvature[0] * n.tangent * n.tangent.transpose() + n.curvature[1] * b * b.transpose();
+      for (int k = 0; k < 3; ++k) {
+        const Nearest plus = s.nearest(p + h * Vector3d::Unit(k)),
+                      minus = s.nearest(p - h * Vector3d::Unit(k));
+        CHECK((plus.distance - minus.distance) / (2 * h) == Approx(n.normal[k]).margin(1e-6));
+        if ((plus.curvature - minus.curvature).norm() < 1e-2 * (1 + n.curvature.norm()))
+          CHECK(((plus.normal - minus.normal) / (2 * h) - hessian.col(k)).norm() <
+                1e-4 * (1 + hessian.norm()));
+      }
+    }
+    REQUIRE(tested > 500);
+  }
+}
+
+TEST_CASE("shapes: a solid's support and its drawing") {
+  const double volumes[] = {4.0 / 3 * M_PI * std::pow(0.06, 3), 0.1 * 0.14 * 0.08,
+                            4.0 / 3 * M_PI * std::pow(0.06, 3) + M_PI * 0.06 * 0.06 * 0.1,
+                            M_PI * 0.06 * 0.06 * 0.1};
+  for (const SolidKind kind : kinds) {
+    if (kind == SolidKind::half_space) continue;
+    INFO(word(kind));
+    const Solid s = solid_of(some(kind));
+    const TriangleMesh mesh = tessellate(s, 1);
+    double volume = 0;
+    for (Eigen::Index i = 0; i < mesh.triangles.rows(); ++i) {
+      const Vector3d a = mesh.vertices.row(mesh.triangles(i, 0)), b = mesh.vertices.row(mesh.triangles(i, 1)),
+                     c = mesh.vertices.row(mesh.triangles(i, 2));
+      volume += a.dot(b.cross(c)) / 6;
+    }
+    CHECK(volume == Approx(volumes[static_cast<int>(kind)]).epsilon(0.01));
+    const Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+    CHECK(topology.edge_triangles.col(1).minCoeff() >= 0);  // closed
+    for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
+      CHECK(std::abs(s.distance(mesh.vertices.row(i))) < 1e-12);
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d n = random_vector(1).normalized();
+      const double drawn = (mesh.vertices * n).maxCoeff();
+      CHECK(drawn <= s.support(n) + 1e-12);
+      CHECK(drawn >= s.support(n) - 5e-4);
+    }
+  }
+}
+
+TEST_CASE("shapes: the distance of a triangle is the widest slab") {
+  for (const SolidKind kind : kinds) {
+    const Solid s = solid_of(some(kind));
+    int small = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Corners c = some_triangle(s, i % 2 ? 0.02 : 0.3);
+      const double d = searched_distance(s, c), gap = separate(s, c).gap;
+      INFO(word(kind) << " " << i << " distance " << d << " slab " << gap);
+      CHECK(gap <= d * (1 + 1e-9) + 1e-14);
+      CHECK(gap >= d * (1 - 1e-4) - 1e-10);
+      small += d < range;
+    }
+    REQUIRE(small > 10);
+  }
+}
+
+TEST_CASE("shapes: derivatives of the barrier") {
+  const Level level = square(3, 0.02);
+  for (const SolidKind kind : kinds) {
+    const ShapeParameters p = some(kind);
+    const Solid s = solid_of(p);
+    const auto bound = Shapes(with({p})).bind(level, Material());
+    for (int i = 0; i < 25; ++i) {
+      const Positions x = near_cloth(s, level);
+      const auto set = bound->sweep(x, x)->build(x);
+      INFO(word(kind) << " state " << i << ", smallest gap " << set->smallest_gap());
+      REQUIRE(set->contact_count() > 0);
+      const Positions g = gradient_of(*set, x);
+      REQUIRE(g.norm() > 0);
+      const Eigen::MatrixXd slope =
+          differences([&](const Positions& y) { return energy_at(*bound, y); }, x, 1e-8);
+      CHECK((slope.transpose() - flat(g)).norm() <= 1e-5 * g.norm());
+      const Eigen::MatrixXd h = dense(hessian_of(*set, x, Projection::none));
+      const Eigen::MatrixXd bend =
+          differences([&](const Positions& y) { return gradient_at(*bound, y); }, x, 1e-8);
+      CHECK((bend - h).norm() <= 1e-4 * h.norm());
+      const Eigen::MatrixXd clamped = dense(hessian_of(*set, x, Projection::clamp));
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(clamped);
+      CHECK(eigen.eigenvalues()[0] >= -1e-10 * clamped.norm());
+    }
+  }
+}
+
+TEST_CASE("shapes: the barrier sees the cloth's distance") {
+  const Level level = square(3, 0.02), big = square(2, 0.2);
+  for (const SolidKind kind : kinds) {
+    const ShapeParameters p = some(kind);
+    const Solid s = solid_of(p);
+    for (const Level* l : {&level, &big}) {
+      const auto bound = Shapes(with({p})).bind(*l, Material());
+      for (int i = 0; i < 150; ++i) {
+        const Positions x = near_cloth(s, *l);
+        const double distance = cloth_distance(s, *l, x), seen = bound->sweep(x, x)->build(x)->smallest_gap();
+        INFO(word(kind) << " state " << i << " distance " << distance << " seen " << seen);
+        CHECK(seen >= distance - 1e-12);
+        CHECK(seen <= distance + (kind == SolidKind::cylinder ? 0.0101 * range : 1e-9));
+      }
+    }
+  }
+}
+
+TEST_CASE("shapes: flat cloth on a face is carried by κ |b'| of its area") {
+  const Level level = square(5, 0.04);
+  for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
+    const auto bound = Shapes(with({level_with(kind)})).bind(level, Material());
+    for (const double s : {0.05, 0.5, 0.9}) {
+      const Positions x = lifted(level, s * range), g = gradient_at(*bound, x);
+      INFO(word(kind) << " at " << s);
+      CHECK(-g.col(2).sum() == Approx(-kappa * barrier(s).first * 0.04 * 0.04).epsilon(1e-9));
+      CHECK(g.leftCols(2).norm() <= 1e-12 * g.norm());
+    }
+    CHECK(energy_at(*bound, lifted(level, 1.001 * range)) == 0);
+    // The material's own stiffness leaves the gap that core/contact/stiffness.h tells.
+    Shapes::Parameters own = with({level_with(kind)});
+    own.stiffness.reset();
+    const Material cotton;
+    const double weight = cotton.area_density() * 9.81 * 0.04 * 0.04;
+    const Positions rest = lifted(level, 0.82853 * range);
+    CHECK(-gradient_at(*Shapes(own).bind(level, cotton), rest).col(2).sum() == Approx(weight).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("shapes: sliding changes forces without jumps") {
+  const Level level = square(4, 0.03);
+  for (const SolidKind kind : kinds) {
+    ShapeParameters p = level_with(kind);
+    if (kind == SolidKind::sphere) p.centre.z() = -p.radius;
+    const bool lies = kind == SolidKind::capsule || kind == SolidKind::cylinder;
+    for (const bool lying : {false, true}) {
+      if (lying && !lies) continue;
+      if (lying) p.rotate = {0, 90, 0}, p.centre = {0, 0, -p.radius};
+      if (kind == SolidKind::capsule && !lying) p.centre.z() = -p.radius - p.height / 2;
+      const auto bound = Shapes(with({p})).bind(level, Material());
+      const auto largest_jump = [&](int steps) {
+        double jump = 0, force = 0;
+        Positions last;
+        for (int i = 0; i <= steps; ++i) {
+          const double way = 0.12 * i / steps;
+          const Positions g = gradient_at(*bound, lifted(level, 0.4 * range, way, 0.31 * way));
+          if (i > 0) jump = std::max(jump, (g - last).norm());
+          force = std::max(force, g.norm());
+          last = g;
+        }
+        REQUIRE(force > 0);
+        return jump / force;
+      };
+      const double coarse = largest_jump(2000), fine = largest_jump(16000);
+      INFO(word(kind) << (lying ? " lying" : "") << ": " << coarse << " → " << fine);
+      CHECK(fine < std::max(0.25 * coarse, 1e-12));  // 0 on a plane
+      CHECK(fine < 0.03);
+    }
+  }
+}
+
+TEST_CASE("shapes: a step never lets a triangle touch") {
+  int cut = 0, free = 0, loose = 0;
+  for (const SolidKind kind : kinds) {
+    ShapeParameters p = some(kind);
+    for (int i = 0; i < 400; ++i) {
+      if (i % 2) p.radius = 0.004, p.size.setConstant(0.006), p.height = 0.006;  // between the vertices
+      const Solid s = solid_of(p);
+      const Corners from = some_triangle(s, i % 3 ? 0.05 : 0.2);
+      Corners to = from;
+      const Vector3d through = 2.2 * (s.centre - (from[0] + from[1] + from[2]) / 3);
+      const double turn = i % 5 ? 0.02 : 0.5, size = i % 7 ? 1 : 10;
+      for (Vector3d& q : to) q += size * (through + random_vector(turn));
+      const double start = searched_distance(s, from), part = advance(s, from, to, keep);
+      INFO(word(kind) << " " << i << ": " << part);
+      CHECK(part >= 0);
+      CHECK(part <= 1);
+      (part < 1 ? cut : free) += 1;
+      for (int k = 1; k <= 20; ++k) {
+        Corners now;
+        for (int c = 0; c < 3; ++c) now[c] = from[c] + part * k / 20 * (to[c] - from[c]);
+        CHECK(searched_distance(s, now) >= keep * start * (1 - 1e-3) - 1e-11);
+      }
+      // Not more careful than needed, unless it rolls a long way about an edge.
+      if (part < 1) {
+        Corners now;
+        for (int c = 0; c < 3; ++c) now[c] = from[c] + part * (to[c] - from[c]);
+        loose += searched_distance(s, now) > 1.1 * keep * start;
+      }
+    }
+  }
+  REQUIRE(cut > 1000);
+  REQUIRE(free > 20);
+  CHECK(loose < 0.01 * cut);
+}
+
+TEST_CASE("shapes: the sweep's step, in words") {
+  const Level level = square(2, 0.1);  // two triangles
+  ShapeParameters p = level_with(SolidKind::sphere);
+  p.name = "ball";
+  p.radius = 0.002;
+  p.centre = {0.01, -0.02, -0.002};
+  const auto bound = Shapes(with({p})).bind(level, Material());
+  const Positions x0 = lifted(level, 0.01), x1 = lifted(level, -0.09);
+  const StepLimit limit = bound->sweep(x0, x1)->max_step();
+  CHECK(limit.fraction == Approx(0.09).epsilon(1e-9));
+  CHECK(limit.by == "cloth triangle 0 and ball: sphere");
+  CHECK(bound->intersections(x0).empty());
+  CHECK(bound->intersections(x1).empty());  // it is on the other side
+  const auto touches = bound->intersections(lifted(level, -0.001));
+  REQUIRE(touches.size() == 1);
+  CHECK(touches[0].first == "cloth triangle 0");
+  CHECK(touches[0].second == "ball: sphere");
+  const StepLimit away = bound->sweep(x0, lifted(level, 1))->max_step();
+  CHECK(away.fraction == 1);
+  CHECK(away.by.empty());
+  const auto far = bound->sweep(lifted(level, 1), lifted(level, 2))->build(lifted(level, 1.5));
+  CHECK(far->contact_count() == 0);
+  CHECK(far->smallest_gap() == std::numeric_limits<double>::infinity());
+  CHECK(bound->obstacles().size() == 1);
+}
+
+TEST_CASE("shapes: a sweep's sets are those of the places themselves") {
+  const Level level = square(9, 0.16);
+  std::vector<ShapeParameters> all;
+  for (const SolidKind kind : kinds) all.push_back(some(kind));
+  all[4].centre.z() = -0.2;
+  for (int i = 0; i < 4; ++i)
+    all[i].centre.head<2>() = Eigen::Vector2d(i % 2 ? 0.1 : -0.1, i / 2 ? 0.1 : -0.1);
+  const auto bound = Shapes(with(all, 0.3)).bind(level, Material());
+  double height = 0.4;
+  Positions x0 = lifted(level, height);
+  int contacts = 0;
+  for (int i = 0; i < 12; ++i) {
+    Positions x1 = x0;
+    x1.col(2).array() -= 0.05;
+    const auto sweep = bound->sweep(x0, x1);
+    const double part = sweep->max_step().fraction;
+    const Positions x = x0 + part * (x1 - x0);
+    CHECK(bound->intersections(x).empty());
+    const auto set = sweep->build(x);
+    contacts += set->contact_count();
+    CHECK(set->value(x) == Approx(energy_at(*bound, x)).epsilon(1e-12));
+    CHECK((gradient_of(*set, x) - gradient_at(*bound, x)).norm() <= 1e-12 * gradient_at(*bound, x).norm());
+    if (set->contact_count() > 0) {
+      check_threads(*set, x);
+      const auto friction = set->friction(x0);
+      REQUIRE(friction);
+      const Positions y = x0 + (x - x0) * 0.9;
+      CHECK(friction->stencils().rows() == set->stencils().rows());
+      const Positions g = gradient_of(*friction, y);
+      const Eigen::MatrixXd slope =
+          differences([&](const Positions& z) { return friction->value(z); }, y, 1e-8);
+      if (g.norm() > 0) CHECK((slope.transpose() - flat(g)).norm() <= 1e-4 * g.norm());
+    }
+    x0 = x;
+  }
+  REQUIRE(contacts > 0);
+}
+
+TEST_CASE("shapes: friction is at most μ times the normal force") {
+  const Level level = square(4, 0.03);
+  for (const SolidKind kind :
+       {SolidKind::half_space, SolidKind::box, SolidKind::cylinder, SolidKind::sphere}) {
+    ShapeParameters p = level_with(kind);
+    if (kind == SolidKind::sphere) p.centre.z() = -p.radius;
+    if (kind == SolidKind::box) p.friction = 0.3;  // its own
+    const auto bound = Shapes(with({p}, kind == SolidKind::box ? 0.0 : 0.3)).bind(level, Material());
+    const Positions x = lifted(level, 0.4 * range);
+    const auto set = bound->sweep(x, x)->build(x);
+    const double normal = -gradient_of(*set, x).col(2).sum();
+    INFO(word(kind));
+    REQUIRE(normal > 0);
+    // The normal forces themselves: on a sphere they lean by up to 0.14 rad, the range over its curvature.
+    const double all = normal * (kind == SolidKind::sphere ? 1.01 : 1 + 1e-12);
+    double last = 0;
+    for (const double slip : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
+      const auto friction = set->friction(lifted(level, 0.4 * range, -slip));
+      REQUIRE(friction);
+      const Positions g = gradient_of(*friction, x);
+      const double force = g.col(0).sum();  // the gradient is against the motion's force
+      CHECK(force > last * (1 - 1e-12));
+      CHECK(force <= 0.3 * all);
+      last = force;
+    }
+    CHECK(last == Approx(0.3 * normal).epsilon(kind == SolidKind::sphere ? 0.01 : 1e-12));
+    CHECK(Shapes(with({level_with(kind)})).bind(level, Material())->sweep(x, x)->build(x)->friction(x) ==
+          nullptr);
+  }
+}
+
+TEST_CASE("shapes: parameters") {
+  const Level level = square(3, 0.1);
+  CHECK(Shapes(with({})).bind(level, Material()) == nullptr);
+  ShapeParameters p = level_with(SolidKind::half_space);
+  p.normal.setZero();
+  CHECK_THROWS_WITH(Shapes(with({level_with(SolidKind::box), p})),
+                    "thing: half_space needs a \"normal\" that is not zero");
+  p.normal = {0, 0, -3};  // turned over: the cloth is below
+  p.name.clear();
+  const auto bound = Shapes(with({p})).bind(level, Material());
+  CHECK(bound->intersections(lifted(level, -0.01)).empty());
+  const auto touches = bound->intersections(lifted(level, 0.01));
+  REQUIRE(touches.size() == 8);
+  CHECK(touches[7].second == "shape 0: half_space");
+  Material foil;
+  foil.density = 1e-9;
+  CHECK(contact_stiffness(foil) == Approx(0.0981));
+  CHECK(contact_stiffness(Material()) == Approx(10 * 472.6 * 3.18e-4 * 9.81));
+}

@@ -1,0 +1,141 @@
+#include "plugins/energy/strain_limit/strain_limit.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "core/model/stretch_limit.h"
+#include "core/numerics/element_energy.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/plugin.h"
+#include "plugins/energy/strain_limit/strain_limit_law.h"
+#include "plugins/energy/strain_limit/stretch_path.h"
+
+namespace drape {
+namespace {
+
+using Kernel = StretchKernel<StrainLimitLaw>;
+constexpr double kept_room = 0.1;  // of what is left below the limit, after a filtered step
+
+/// The limited triangles of a level.
+struct Limited {
+  int level_triangles = 0;     ///< of the whole level
+  std::vector<int> triangles;  ///< by rising index
+  Stencils corners;            ///< of each
+  std::vector<Kernel::Rest> rest;
+  std::shared_ptr<const Positions> places;
+};
+
+class BoundStrainLimit final : public BoundEnergy, public StepFilter, public StretchLimited {
+ public:
+  BoundStrainLimit(double limit, Limited limited)
+      : limit_(limit),
+        limited_(std::move(limited)),
+        energy_(limited_.corners, limited_.rest, *limited_.places) {}
+
+  double value(const Positions& x) const override { return energy_.value(x); }
+  double add_gradient(const Positions& x, Positions& g) const override { return energy_.add_gradient(x, g); }
+  Stencils stencils() const override { return energy_.stencils(); }
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    energy_.add_hessian(x, projection, sink);
+  }
+
+  StepLimit max_step(const Positions& x0, const Positions& x1) const override {
+    struct Shortest {
+      double fraction = 1;
+      int element = -1;
+    };
+    constexpr int grain = 256;
+    std::vector<Shortest> shortest(count() / grain + 1);
+    parallel_for(count(), grain, [&](int begin, int end) {
+      Shortest& own = shortest[begin / grain];
+      for (int i = begin; i < end; ++i)
+        if (const double fraction = reach(path(i, x0, x1)); fraction < own.fraction) own = {fraction, i};
+    });
+    Shortest first;
+    for (const Shortest& s : shortest)
+      if (s.fraction < first.fraction) first = s;
+    if (first.element < 0) return {};
+    const double stretch = path(first.element, x0, x1).at(first.fraction).largest;
+    return {first.fraction, to_string({limited_.triangles[first.element], stretch}, limit_)};
+  }
+
+  double limit() const override { return limit_; }
+
+  std::vector<StretchedTriangle> beyond(const Positions& x) const override {
+    std::vector<StretchedTriangle> found;
+    for (int i = 0; i < count(); ++i) {
+      const double stretch = path(i, x, x).at(0).largest;
+      if (!(stretch < limit_)) found.push_back({limited_.triangles[i], stretch});
+    }
+    return found;
+  }
+
+  std::unique_ptr<BoundEnergy> without(const std::vector<char>& skipped) const override {
+    if (static_cast<int>(skipped.size()) != limited_.level_triangles)
+      throw std::runtime_error("strain_limit: " + std::to_string(skipped.size()) + " flags for " +
+                               std::to_string(limited_.level_triangles) + " triangles");
+    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, limited_.places};
+    for (int i = 0; i < count(); ++i) {
+      if (skipped[limited_.triangles[i]]) continue;
+      left.corners.row(left.triangles.size()) = limited_.corners.row(i);
+      left.triangles.push_back(limited_.triangles[i]);
+      left.rest.push_back(limited_.rest[i]);
+    }
+    left.corners.conservativeResize(left.triangles.size(), 3);
+    return std::make_unique<BoundStrainLimit>(limit_, std::move(left));
+  }
+
+ private:
+  int count() const { return static_cast<int>(limited_.triangles.size()); }
+
+  StretchPath path(int i, const Positions& x0, const Positions& x1) const {
+    const auto v = limited_.corners.row(i);
+    const Kernel::Rest& rest = limited_.rest[i];
+    const auto columns = [&](const Positions& x, Eigen::Vector3d& f1, Eigen::Vector3d& f2) {
+      const Eigen::Vector3d e1 = x.row(v[1]) - x.row(v[0]), e2 = x.row(v[2]) - x.row(v[0]);
+      f1 = rest[0] * e1;
+      f2 = rest[1] * e1 + rest[2] * e2;
+    };
+    StretchPath path;
+    columns(x0, path.f1, path.f2);
+    columns(x1, path.d1, path.d2);
+    path.d1 -= path.f1;
+    path.d2 -= path.f2;
+    return path;
+  }
+
+  /// How far a triangle may go, a part of its room kept. A triangle that is not stretched has all of s - 1.
+  double reach(const StretchPath& path) const {
+    const double stretch = path.at(0).largest;
+    if (!(stretch < limit_)) return 0;
+    const double bound = limit_ - kept_room * (limit_ - std::max(stretch, 1.0));
+    return stretch < bound ? path.reach(bound) : 0;
+  }
+
+  double limit_;
+  Limited limited_;
+  ElementEnergy<Kernel> energy_;
+};
+
+}  // namespace
+
+std::unique_ptr<BoundEnergy> StrainLimit::bind(const Level& level, const Material& material) const {
+  Limited all{
+      level.triangle_count(), {}, level.rest.triangles, {}, std::make_shared<Positions>(level.rest.vertices)};
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const RestTriangle triangle = RestTriangle::of(level, t);
+    Kernel::Rest rest;
+    rest << triangle.a, triangle.b, triangle.c, p_.stiffness * material.thickness * triangle.area,
+        1 / (p_.limit - 1);
+    all.triangles.push_back(t);
+    all.rest.push_back(rest);
+  }
+  return std::make_unique<BoundStrainLimit>(p_.limit, std::move(all));
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Energy, drape::StrainLimit>(
+      "strain_limit", "Barrier that keeps every triangle's principal stretches below a limit.");
+}

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// C-IPC's strain limit (docs/method.md, section 5): a barrier on the principal stretches above 1, +∞ at the
+/// limit. What it binds is a StepFilter and a StretchLimited too.
+class StrainLimit final : public Energy {
+ public:
+  struct Parameters {
+    double limit = 1.1;
+    double stiffness = 1e3;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("limit", &Parameters::limit)
+          .unit("1")
+          .above(1)
+          .meaning("largest principal stretch s of every triangle, never reached")
+          .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
+      d.add("stiffness", &Parameters::stiffness)
+          .unit("Pa")
+          .above(0)
+          .meaning("κ_s, energy per volume that the barrier is scaled by")
+          .source("Li et al. 2021, section 5");
+    }
+  };
+
+  explicit StrainLimit(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::limit; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape

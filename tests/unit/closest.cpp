@@ -1,0 +1,158 @@
+#include "core/contact/closest.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "core/contact/pair_geometry.h"
+
+using namespace drape;
+using Eigen::Vector3d;
+
+namespace {
+
+/// The weights are those of a point on either side, and no other pair of points is nearer: by convexity that
+/// holds when no vertex lies on the near side of its side's point, seen along r.
+void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-15) {
+  const Closest found = closest(kind, x);
+  const int first = first_side(kind);
+  CAPTURE(x, found.c.transpose());
+  CHECK(std::abs(found.c.head(first).sum() - 1) <= 1e-15);
+  CHECK(std::abs(found.c.sum()) <= 1e-15 * found.c.norm());
+  if (kind != PairKind::point_plane) {
+    CHECK(found.c.head(first).minCoeff() >= 0);
+    CHECK(found.c.tail(4 - first).maxCoeff() <= 0);
+  }
+  const Vector3d r = connection(x, found);
+  Vector3d a = Vector3d::Zero(), b = Vector3d::Zero();  // from x_0
+  for (int k = 1; k < 4; ++k)
+    (k < first ? a : b) += (k < first ? 1 : -1) * found.c[k] * (x.col(k) - x.col(0));
+  const double size = (x.colwise() - x.col(0)).norm();
+  for (int k = 0; k < 4; ++k) {
+    const Vector3d from_own = x.col(k) - x.col(0) - (k < first ? a : b);
+    const double ahead = r.dot(from_own) * (k < first ? 1 : -1);
+    if (kind == PairKind::point_plane)
+      CHECK(std::abs(ahead) <= tolerance * size * (from_own.norm() + r.norm()));
+    else
+      CHECK(ahead >= -tolerance * size * (from_own.norm() + r.norm()));
+  }
+}
+
+/// The free directions leave the sides' sums alone, touch free vertices only, and r is at right angles to the
+/// motion along them.
+void check_directions(PairKind kind, const PairPositions& x) {
+  const Closest found = closest(kind, x);
+  const int first = first_side(kind);
+  CAPTURE(x, found.c.transpose(), found.direction, found.free);
+  for (int m = 0; m < found.free; ++m) {
+    const auto d = found.direction.col(m);
+    CHECK(d.head(first).sum() == 0);
+    CHECK(d.tail(4 - first).sum() == 0);
+    CHECK(d.norm() > 0);
+    for (int k = 0; k < 4; ++k)
+      if (found.c[k] == 0 && kind != PairKind::point_plane) CHECK(d[k] == 0);
+    const Vector3d motion = x * d;
+    CHECK(std::abs(connection(x, found).dot(motion)) <= 1e-13 * x.norm() * motion.norm());
+  }
+  for (int m = found.free; m < 2; ++m) CHECK(found.direction.col(m).norm() == 0);
+}
+
+PairPositions random_positions(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return PairPositions::NullaryExpr([&] { return normal(random); });
+}
+
+}  // namespace
+
+TEST_CASE("no other points of a random pair are nearer") {
+  std::mt19937 random(1);
+  for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge, PairKind::point_plane}) {
+    std::set<std::vector<bool>> regions;
+    for (int i = 0; i < 3000; ++i) {
+      const PairPositions x = random_positions(random);
+      check_optimal(kind, x);
+      check_directions(kind, x);
+      const Closest found = closest(kind, x);
+      std::vector<bool> zeros;
+      for (int k = 0; k < 4; ++k) zeros.push_back(found.c[k] == 0);
+      regions.insert(zeros);
+    }
+    // face, 3 edges, 3 vertices; 3 × 3 places on two edges; the plane
+    CHECK(regions.size() == (kind == PairKind::edge_edge ? 9 : kind == PairKind::point_triangle ? 7 : 1));
+  }
+}
+
+TEST_CASE("near-degenerate pairs keep an exact distance") {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const auto small = [&] { return std::pow(10, -16 * unit(random)); };
+  for (int i = 0; i < 40000; ++i) {
+    PairPositions x = random_positions(random);
+    const double size = small();
+    switch (i % 7) {
+      case 0:  // nearly parallel edges, or a needle
+        x.col(3) = x.col(2) + x.col(1) - x.col(0) + size * x.col(3);
+        break;
+      case 1:  // nearly in one line
+        x.col(2) = x.col(0) + unit(random) * (x.col(1) - x.col(0)) + size * x.col(2);
+        x.col(3) = x.col(0) + 2 * unit(random) * (x.col(1) - x.col(0)) + small() * x.col(3);
+        break;
+      case 2:  // a short edge
+        x.col(3) = x.col(2) + size * x.col(3);
+        break;
+      case 3:  // near to touching, in the middle
+        x.col(0) = (x.col(1) + x.col(2) + x.col(3)) / 3 + size * x.col(0);
+        break;
+      case 4:  // a cap: vertex 1 next to the middle of the side opposite
+        x.col(1) = x.col(2) + unit(random) * (x.col(3) - x.col(2)) + size * x.col(1);
+        break;
+      case 5:  // next to the inside of a needle, either way round
+        x.col(3) = x.col(i % 2 ? 2 : 1) + size * x.col(3);
+        x.col(0) = x.col(1) + 0.3 * (x.col(2) - x.col(1)) + 0.4 * (x.col(3) - x.col(1)) + small() * x.col(0);
+        break;
+      default:  // near to one plane
+        x.row(2) *= size;
+    }
+    check_optimal(PairKind::point_triangle, x);
+    check_optimal(PairKind::edge_edge, x);
+  }
+}
+
+TEST_CASE("exactly degenerate pairs") {
+  const auto columns = [](Vector3d a, Vector3d b, Vector3d c, Vector3d d) {
+    PairPositions x;
+    x << a, b, c, d;
+    return x;
+  };
+  const Vector3d o(0, 0, 0), e1(1, 0, 0), e2(0, 1, 0), e3(0, 0, 1);
+  const auto distance = [](PairKind kind, const PairPositions& x) {
+    check_optimal(kind, x);
+    check_directions(kind, x);
+    return connection(x, closest(kind, x)).norm();
+  };
+  using enum PairKind;
+  // Parallel edges: side by side, one behind the other, of opposite directions, on one line.
+  CHECK(distance(edge_edge, columns(o, e1, e2, e1 + e2)) == 1);
+  CHECK(distance(edge_edge, columns(o, e1, 3 * e1, 4 * e1)) == 2);
+  CHECK(distance(edge_edge, columns(o, e1, 0.5 * e1 + e2, -2 * e1 + e2)) == 1);
+  CHECK(distance(edge_edge, columns(o, e1, -2 * e1 + e2, -3 * e1 + e2)) == Approx(std::sqrt(5)));
+  CHECK(distance(edge_edge, columns(o, e1, 0.5 * e1, 2 * e1)) == 0);
+  CHECK(distance(edge_edge, columns(o, o, -e1, e1)) == 0);
+  CHECK(distance(edge_edge, columns(-e1, e1, e3, e3)) == 1);
+  CHECK(distance(edge_edge, columns(o, o, e3, e3)) == 1);
+  CHECK(distance(edge_edge, columns(-e1, e1, e3 - e2, e3 + e2)) == 1);
+  // Triangles without area: a line, a point.
+  CHECK(distance(point_triangle, columns(e2, o, e1, 2 * e1)) == 1);
+  CHECK(distance(point_triangle, columns(e2 + 1.5 * e1, o, 2 * e1, e1)) == 1);
+  CHECK(distance(point_triangle, columns(e2 + 1.5 * e1, e1, o, 2 * e1)) == 1);
+  CHECK(distance(point_triangle, columns(e2, o, o, o)) == 1);
+  CHECK(distance(point_triangle, columns(e2, o, o, e1)) == 1);
+  CHECK(distance(point_triangle, columns(e3, o, e1, e2)) == 1);
+  CHECK(closest_point_triangle(e3, o, e1, e2).free == 0);
+  CHECK(closest_point_triangle(e3 + 0.5 * e1, o, e1, e2).free == 1);
+  CHECK(closest_point_triangle(e3 + 0.3 * (e1 + e2), o, e1, e2).free == 2);
+  CHECK(distance(point_plane, columns(5 * e1 - 2 * e3, o, e1, e2)) == 2);
+  CHECK(closest_point_plane(5 * e1 - 2 * e3, o, e1, e2).free == 2);
+}
