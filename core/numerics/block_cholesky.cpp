@@ -19,7 +19,6 @@ struct Cholmod {
     common.print = 0;
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_METIS;
     common.postorder = 1;
   }
   Cholmod(const Cholmod&) = delete;
@@ -29,12 +28,32 @@ struct Cholmod {
     cholmod_free_factor(&factor, &common);
     cholmod_finish(&common);
   }
+  /// In this order, or without one in METIS's.
+  void analyse(std::vector<int> order) {
+    cholmod_free_factor(&factor, &common);
+    common.method[0].ordering = order.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
+    factor = order.empty() ? cholmod_analyze(graph, &common)
+                           : cholmod_analyze_p(graph, order.data(), nullptr, 0, &common);
+    require(factor, "symbolic analysis");
+  }
   void require(const void* result, const char* what) const {
     if (!result)
       throw std::runtime_error(std::string("sparse Cholesky: ") + what + " failed (CHOLMOD status " +
                                std::to_string(common.status) + "; -2 means out of memory)");
   }
 };
+
+/// An order that was good for another pattern is kept while it costs less than this many times as much as it
+/// did there: to find a new one takes longer than several factorisations.
+constexpr double worn = 1.5;
+
+/// The order of vertices as indices into `free`.
+std::vector<int> places_in(const std::vector<int>& free, const std::vector<int>& order, int vertices) {
+  std::vector<int> index(vertices, -1), places;
+  for (std::size_t i = 0; i < free.size(); ++i) index[free[i]] = static_cast<int>(i);
+  for (int v : order) places.push_back(index[v]);
+  return places;
+}
 
 /// The graph of the free vertices, by their index in `free`.
 void make_graph(const BlockPattern& pattern, const std::vector<int>& free, Cholmod& c) {
@@ -76,22 +95,26 @@ SupernodalTree tree_of(const cholmod_factor& factor) {
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
+  const bool same_vertices = pattern_ && fixed == fixed_ && pattern->rows() == pattern_->rows();
   pattern_ = std::move(pattern);
   fixed_ = fixed;
   has_factor_ = false;
   ++analyses_;
-  order_.clear();
-  flops_ = entries_ = 0;
   std::vector<int> free;
   for (int v = 0; v < pattern_->rows(); ++v)
     if (!fixed_[v]) free.push_back(v);
-  if (free.empty()) return;
+  flops_ = entries_ = 0;
+  if (free.empty()) return order_.clear();
 
   Cholmod c;
   make_graph(*pattern_, free, c);
-  c.factor = cholmod_analyze(c.graph, &c.common);
-  c.require(c.factor, "symbolic analysis");
+  if (same_vertices) c.analyse(places_in(free, order_, pattern_->rows()));
+  if (!same_vertices || c.common.fl > worn * ordered_flops_) {
+    c.analyse({});
+    ordered_flops_ = c.common.fl;
+  }
   const auto* permutation = static_cast<const int*>(c.factor->Perm);
+  order_.clear();
   for (std::size_t p = 0; p < free.size(); ++p) order_.push_back(free[permutation[p]]);
   for (std::size_t p = 0; p < free.size(); ++p)
     for (int k = 0; k < 3; ++k) {

@@ -12,8 +12,8 @@ namespace drape {
 
 /// Sparse Cholesky factorisation of a symmetric block matrix plus a diagonal, without the rows and columns of
 /// fixed vertices. Vertices are ordered by nested dissection (METIS) and gathered into supernodes by CHOLMOD
-/// (Chen, Davis, Hager and Rajamanickam 2008); SupernodalFactor does the numbers. Order and supernodes are
-/// kept until the pattern or the fixed vertices change.
+/// (Chen, Davis, Hager and Rajamanickam 2008); SupernodalFactor does the numbers. Supernodes are kept
+/// until the pattern changes, the order until it has become a bad one for it or the fixed vertices change.
 class BlockCholesky {
  public:
   /// Orders and analyses; does nothing when called again with the same pattern and flags.
@@ -43,6 +43,7 @@ class BlockCholesky {
   SupernodalFactor factor_;
   Eigen::VectorXd x_;
   double flops_ = 0, entries_ = 0;
+  double ordered_flops_ = 0;  // of CHOLMOD's count, when order_ was found
   bool has_factor_ = false;
   int analyses_ = 0;
 };
