@@ -170,7 +170,7 @@ struct Mollified {
 /// Projects the matrices of up to native_pack_width contacts in step.
 template <class Kind>
 void project_all(std::vector<Kind>& kinds, Projection projection) {
-  if (projection == Projection::none) return;
+  if (projection.is_exact()) return;
   constexpr int W = native_pack_width, entries = Kind::size * (Kind::size + 1) / 2;
   const int count = static_cast<int>(kinds.size());
   for (int first = 0; first < count; first += W) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -10,8 +11,25 @@
 
 namespace drape {
 
-/// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5).
-enum class Projection { clamp, absolute, none };
+/// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5), and how much of it:
+/// λ becomes (1 - share) λ + share max(λ, 0) for clamp, or |λ| in place of max(λ, 0) for absolute.
+struct Projection {
+  enum Kind { clamp, absolute, none };
+  Kind kind = clamp;
+  double share = 1;  ///< in [0, 1]; 0 leaves the Hessian as it is
+
+  constexpr Projection(Kind kind_in, double share_in = 1)  // NOLINT: a kind is a whole projection
+      : kind(kind_in), share(share_in) {}
+  /// Whether the Hessian stays as it is.
+  bool is_exact() const { return kind == none || share == 0; }
+  /// What becomes of the eigenvalue, a double or a Pack.
+  template <class T>
+  T map(const T& eigenvalue) const {
+    using std::max;
+    const T lifted = max(eigenvalue, T(0.0)) - eigenvalue;
+    return kind == none ? eigenvalue : eigenvalue + (kind == clamp ? share : 2 * share) * lifted;
+  }
+};
 
 /// The part an energy plays: `external` ones define the load of the force residual; a `limit` belongs to the
 /// mesh it is on, as contact does, and is never evaluated on a finer one in its place.

@@ -52,7 +52,10 @@ class Objective {
   virtual BlockMatrix& smooth_matrix(const Positions& x, Projection projection) = 0;
 
   /// Restricts or replaces the limits of the model.
-  void set_limits(std::vector<const BoundEnergy*> limits) { limits_ = std::move(limits); }
+  void set_limits(std::vector<const BoundEnergy*> limits) {
+    limits_ = std::move(limits);
+    sum_ = SumMatrix();  // which keeps the places of the elements that limits had
+  }
 
  private:
   const LevelModel& model_;

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "core/numerics/block_cholesky.h"
-#include "core/numerics/parallel.h"
 
 namespace drape {
 
@@ -49,8 +48,8 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
   d.add_choice("projection_share", &NewtonParameters::projection_share,
                {{"full", ProjectionShare::full}, {"least", ProjectionShare::least}})
       .meaning(
-          "full: the projected matrix; least: the smallest mixture of it with the exact Hessian that is "
-          "positive definite, which tends to the exact one near an equilibrium")
+          "how much of the projection is made: full, or the least of a few shares that leaves the matrix "
+          "positive definite, which tends to the exact Hessian near an equilibrium")
       .source("departure from the paper");
   d.add("refresh", &NewtonParameters::refresh)
       .at_least(1)
@@ -69,6 +68,7 @@ constexpr double no_fresh_direction = 2;
 /// Differences of energies below this part of them are rounding, not descent.
 constexpr double energy_noise = 1e-12;
 constexpr double smallest_step_size = 1e-8;
+constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
 /// Shares of the projection that `least` tries, in turn.
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
 
@@ -167,6 +167,7 @@ class Newton {
         continue;
       }
       if (is_static()) {
+        if (add_mass()) continue;
         message_ =
             "the line search found no descent (the direction's slope is " + brief(slope_) + ")" + held();
         return false;
@@ -182,11 +183,22 @@ class Newton {
     decrements_[result_.iterations % 3] = decrement;
     result_.decrement = decrement;
     ++result_.iterations;
+    added_mass_ = 0;
     update_residual();
     report(iteration);
     age_factor();
     return true;
   }
+
+  /// The static form's matrix may be positive definite by rounding alone, as where the cloth falls freely.
+  /// Its direction is then so long that contact leaves nothing of it; mass makes it shorter.
+  bool add_mass() {
+    age_ = p_.refresh;
+    added_mass_ = std::max(10 * added_mass_, first_added_mass());
+    return added_mass_ < most_added_mass;
+  }
+
+  double first_added_mass() const { return 1e-3 / (p_.step_size * p_.step_size); }
 
   /// What kept the last step short, for messages.
   std::string held() const { return limit_.by.empty() ? "" : "; the step is held by " + limit_.by; }
@@ -228,47 +240,25 @@ class Newton {
   void factorise() {
     if (cholesky_.has_factor() && age_ < p_.refresh) return;
     age_ = 0;
-    const bool mixture = p_.projection != Projection::none && p_.projection_share == ProjectionShare::least;
-    if (mixture && factorise_mixture()) return;
+    const bool least = p_.projection != Projection::none && p_.projection_share == ProjectionShare::least;
+    if (least && factorise_least()) return;
     const BlockMatrix& matrix = assemble(p_.projection);
-    if (!mixture && try_factor(matrix, 0)) return;
+    if (!least && try_factor(matrix, 0)) return;
     // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
-    for (double shift = 1e-3 / (p_.step_size * p_.step_size); shift < 1e30; shift *= 10)
+    for (double shift = first_added_mass(); shift < 1e30; shift *= 10)
       if (try_factor(matrix, shift)) return;
     throw std::runtime_error(
         "the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
   }
 
-  /// Factorises the exact Hessian plus the smallest share of its projection that works, beginning with the
-  /// one that worked last, or one below after a step taken in full.
-  bool factorise_mixture() {
+  /// Factorises the Hessian with the smallest share of its projection that works, beginning with the one that
+  /// worked last, or one below after a step taken in full.
+  bool factorise_least() {
     constexpr int last = static_cast<int>(std::size(shares)) - 1;
-    const int first = alpha_ == 1 ? std::max(share_ - 1, 0) : share_;
-    const bool needs_exact = first < last;
-    const BlockMatrix* matrix = &assemble(needs_exact ? Projection::none : p_.projection);
-    for (share_ = first; share_ <= last; ++share_) {
-      if (share_ == std::max(first, 1) && needs_exact) {
-        exact_ = *matrix;
-        matrix = &assemble(p_.projection);
-      }
-      if (0 < share_ && share_ < last) {
-        mix(exact_, *matrix, shares[share_]);
-        if (try_factor(mixed_, 0)) return true;
-      } else if (try_factor(*matrix, 0)) {
-        return true;
-      }
-    }
+    for (share_ = alpha_ == 1 ? std::max(share_ - 1, 0) : share_; share_ <= last; ++share_)
+      if (try_factor(assemble({p_.projection, shares[share_]}), 0)) return true;
     share_ = last;
     return false;
-  }
-
-  void mix(const BlockMatrix& exact, const BlockMatrix& projected, double share) {
-    PhaseTimer t(result_.seconds_by_phase, "hessian");
-    if (mixed_.pattern != exact.pattern) mixed_ = BlockMatrix(exact.pattern);
-    parallel_for(static_cast<int>(mixed_.values.size()), 1 << 16, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        mixed_.values[i] = (1 - share) * exact.values[i] + share * projected.values[i];
-    });
   }
 
   const BlockMatrix& assemble(Projection projection) {
@@ -283,7 +273,7 @@ class Newton {
     }
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
-    return cholesky_.factorise(matrix, (inverse_h2() + extra_shift) * model_.masses());
+    return cholesky_.factorise(matrix, (inverse_h2() + added_mass_ + extra_shift) * model_.masses());
   }
 
   /// Backtracks along the direction, from where limits and contact let it, until the energy has decreased
@@ -379,10 +369,10 @@ class Newton {
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
   double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
-  BlockMatrix exact_, mixed_;
   int share_ = std::size(shares) - 1;
   double decrements_[3] = {};
   int age_ = 0;
+  double added_mass_ = 0;  // of the static form, as 1/h²
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ struct NewtonParameters {
   int max_steps = 5000;
   double force_tolerance = 1e-3;
   double decrement_tolerance = 0;
-  Projection projection = Projection::clamp;
+  Projection::Kind projection = Projection::clamp;
   ProjectionShare projection_share = ProjectionShare::least;
   int refresh = 1;
 

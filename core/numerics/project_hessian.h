@@ -64,10 +64,7 @@ void mix_blocks(SymmetricMatrix<Size, T>& h, double w) {
 
 template <int Size, class T>
 void project_eigenvalues(SymmetricMatrix<Size, T>& a, Projection projection) {
-  map_eigenvalues(a, [projection](T eigenvalue) {
-    using std::abs, std::max;
-    return projection == Projection::clamp ? max(eigenvalue, T(0.0)) : abs(eigenvalue);
-  });
+  map_eigenvalues(a, [projection](T eigenvalue) { return projection.map(eigenvalue); });
 }
 
 /// Has body(back) project h as it is in an orthonormal basis without translations, unless h is known to be
@@ -95,7 +92,7 @@ void in_vertex_metric(SymmetricMatrix<Size, T>& h, const Body& body) {
 template <int Size, class T>
 void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection) {
   using namespace projection_detail;
-  if (projection == Projection::none) return;
+  if (projection.is_exact()) return;
   in_vertex_metric(h, [&](double) { project_eigenvalues(h, projection); });
 }
 
@@ -103,7 +100,7 @@ void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection) {
 template <int Size, class T>
 void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection, const T* null) {
   using namespace projection_detail;
-  if (projection == Projection::none) return;
+  if (projection.is_exact()) return;
   in_vertex_metric(h, [&](double back) {
     const Reflection<Size, T> reflection(null, back);
     reflection.apply(h);

@@ -112,8 +112,10 @@ struct KernelCheck {
     const Hessian h = evaluate(x, rest).hessian;
     const Eigen::MatrixXd full = by_vertices(h);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
-    for (const auto projection :
-         {drape::Projection::clamp, drape::Projection::absolute, drape::Projection::none}) {
+    using drape::Projection;
+    for (const Projection projection :
+         {Projection(Projection::clamp), Projection(Projection::absolute), Projection(Projection::none),
+          Projection(Projection::clamp, 0.3), Projection(Projection::absolute, 0.2)}) {
       drape::SymmetricMatrix<n, T> a;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i <= j; ++i) a(i, j) = h(i, j);
@@ -124,12 +126,13 @@ struct KernelCheck {
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
       Eigen::VectorXd values = eigen.eigenvalues();
-      if (projection == drape::Projection::clamp) values = values.cwiseMax(0);
-      if (projection == drape::Projection::absolute) values = values.cwiseAbs();
+      const double share = projection.share;
+      if (projection.kind == Projection::clamp) values = (1 - share) * values + share * values.cwiseMax(0);
+      if (projection.kind == Projection::absolute) values = (1 - share) * values + share * values.cwiseAbs();
       const Eigen::MatrixXd expected =
           eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
       CHECK((by_vertices(projected) - expected).norm() <= 1e-10 * full.norm());
-      if (projection == drape::Projection::none) continue;
+      if (projection.kind == Projection::none || share < 1) continue;
       const double smallest =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(by_vertices(projected)).eigenvalues()[0];
       CHECK(smallest >= -1e-12 * full.norm());

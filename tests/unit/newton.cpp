@@ -37,8 +37,7 @@ class Wells : public Energy, public BoundEnergy {
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     for (int i = 0; i < a_.rows(); ++i) {
       const Eigen::Vector3d d = (x - a_).row(i);
-      double away = k_ * (d.squaredNorm() - w2_);
-      if (projection == Projection::clamp) away = std::max(away, 0.0);
+      const double away = projection.map(k_ * (d.squaredNorm() - w2_));
       const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> h =
           away * Eigen::Matrix3d::Identity() + 2 * k_ * d * d.transpose();
       sink.add(i, 0, 0, h.data());
@@ -96,7 +95,7 @@ NewtonParameters tight() {
 TEST_CASE("Newton finds the ring of minima behind a hump, in both forms and with any projection",
           "[newton]") {
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
-    for (Projection projection : {Projection::clamp, Projection::none}) {
+    for (Projection::Kind projection : {Projection::clamp, Projection::none}) {
       Case c;
       c.centres = c.level.rest.vertices.array() + 0.05;  // the start is on the hump
       NewtonParameters p = tight();

@@ -55,9 +55,8 @@ class VertexContacts final : public ContactSet {
     for (int i = 0; i < contact_count(); ++i) {
       const Contact& c = contacts_[i];
       const Vector3d &n = c.nearest.normal, &a = c.nearest.tangent, b = n.cross(a);
-      Eigen::Vector2d across = -force(c) * c.nearest.curvature;  // ≤ 0, as solids are convex
-      if (projection == Projection::clamp) across.setZero();
-      if (projection == Projection::absolute) across = across.cwiseAbs();
+      const Eigen::Vector2d bent = -force(c) * c.nearest.curvature;  // ≤ 0, as solids are convex
+      const Eigen::Vector2d across(projection.map(bent[0]), projection.map(bent[1]));
       const Matrix3d h = p_.stiffness * c.weight / p_.range * c.barrier.second * n * n.transpose() +
                          across[0] * a * a.transpose() + across[1] * b * b.transpose();
       sink.add(i, 0, 0, h.data());
