@@ -1,6 +1,8 @@
 # make          install what is needed, configure, build: build/bin/drape
 # make setup    install what third_party/apt-packages.txt lists (Debian 12, asks apt-get)
-# make demo     run configs/pinned_square.yaml and say where its report is
+# make demo     run configs/sphere.yaml to 25K vertices by three methods; its figures beside the supplement's
+# make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
+#               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
 # make test     build and run every test
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
@@ -16,7 +18,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo test data bench format fix-format lint clean
+.PHONY: all setup configure build demo table1 test data bench format fix-format lint clean
 all: build
 
 setup:
@@ -29,8 +31,12 @@ build: configure
 	@cmake --build $(BUILD) -j $(JOBS)
 
 demo: build
-	$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/pinned_square --overwrite
-	@echo "Open results/pinned_square/report.html in a browser."
+	@$(BUILD)/bin/drape run configs/sphere.yaml --levels 3 --out results/sphere --overwrite; ended=$$?; \
+	  $(BUILD)/bin/drape table1 results/sphere; \
+	  echo "Open results/sphere/report.html in a browser."; exit $$ended
+
+table1: build
+	@benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS))
 
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
@@ -41,7 +47,8 @@ data: configure
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
-	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square
+	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs,newton --out results/bench_sphere --overwrite
+	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square results/bench_sphere
 
 format: setup
 	@clang-format --dry-run -Werror $(SOURCES)

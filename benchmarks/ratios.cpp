@@ -1,10 +1,10 @@
-// Speed of the contact-free solver as ratios of times taken in one run, medians of several:
+// Speed of the solver as ratios of times taken in one run, medians of several:
 //
-//     drape_bench_ratios [RESULT.json [RUN_FOLDER]]
+//     drape_bench_ratios [RESULT.json [RUN_FOLDER]...]
 //
-// The finest level's evaluations and whole Newton iterations against its factorisation, and the steps of
-// PCS's coarsest level against those of the plain coarse model. With the folder of a finished run of an
-// experiment, also its whole PCS progression against its direct fine solve.
+// Without contact and with it: the finest level's whole Newton iterations against its factorisation and
+// solve, and the steps of PCS's coarsest level against those of the plain coarse model. With folders of
+// finished runs of experiments, also each one's whole PCS progression against its direct fine solve.
 
 #include <algorithm>
 #include <cstdio>
@@ -43,21 +43,25 @@ double median_seconds(const Body& body) {
   return median(seconds);
 }
 
-/// Stops a method after some iterations of its first level and keeps the time of each.
+/// Stops a method after some iterations of one level and keeps the time of each.
 class FirstIterations : public Observer {
  public:
-  explicit FirstIterations(int count) : count_(count) {}
-  void iteration(const IterationRow& row, const Positions&) override { times_.push_back(row.seconds); }
+  explicit FirstIterations(int count, int level = 0) : count_(count), level_(level) {}
+  void iteration(const IterationRow& row, const Positions&) override {
+    if (row.level == level_) times_.push_back(row.seconds);
+    contacts = row.contacts.value_or(0);
+  }
   bool stop_requested() override { return static_cast<int>(times_.size()) >= count_; }
+  int contacts = 0;  ///< at the last iteration
   /// Median time between iterations, the first ones left out.
-  double seconds_per_iteration() const {
+  double seconds_per_iteration(std::size_t left_out = 4) const {
     std::vector<double> between;
-    for (std::size_t i = 4; i < times_.size(); ++i) between.push_back(times_[i] - times_[i - 1]);
+    for (std::size_t i = left_out; i < times_.size(); ++i) between.push_back(times_[i] - times_[i - 1]);
     return median(between);
   }
 
  private:
-  int count_;
+  int count_, level_;
   std::vector<double> times_;
 };
 
@@ -128,19 +132,39 @@ void finest_level(const Experiment& e, const Scene& scene, Table& table) {
   std::printf("  (separate: solve %.2f)\n", 1e3 * solve);
 }
 
-void coarsest_level(const Experiment& e, const Scene& scene, Table& table) {
-  constexpr int iterations = 60;
+/// `left_out` iterations until the cloth has come to where it is measured.
+void coarsest_level(const Experiment& e, const Scene& scene, int left_out, Table& table) {
+  const int iterations = left_out + 50;
   // In turn, several times: the machine's speed drifts.
   std::map<std::string, std::vector<double>> seconds;
   for (int i = 0; i < 3; ++i)
     for (const char* name : {"newton", "pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"}) {
       FirstIterations some(iterations);
       method(e, name).solve(scene.problem(), some);
-      seconds[name].push_back(some.seconds_per_iteration());
+      seconds[name].push_back(some.seconds_per_iteration(left_out));
     }
   for (const char* name : {"pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"})
-    table.add(std::string("level-0 step of ") + name, median(seconds[name]), "direct coarse step",
+    table.add(e.parameters.name + ": level-0 step of " + name, median(seconds[name]), "direct coarse step",
               median(seconds["newton"]), 1.56);
+}
+
+/// Iterations of a level that a cascadic solve has brought the draped cloth to.
+void draped_level(const Experiment& e, const Scene& scene, Table& table) {
+  const int finest = static_cast<int>(scene.models.size()) - 1;
+  FirstIterations some(20, finest);
+  const LevelResult r = method(e, "cascadic").solve(scene.problem(), some).back();
+  auto phase = r.seconds_by_phase;
+  const double n = r.iterations, whole = r.seconds - phase["refinement"];
+  const std::string size = std::to_string(scene.hierarchy.levels.back().vertex_count()) + " vertices: ";
+  std::printf("%s%d contacts\n", size.c_str(), static_cast<int>(some.contacts));
+  table.add(size + "Newton iteration with contact", (whole - phase["analyse"]) / n,
+            "its factorisation + solve", (phase["factorise"] + phase["solve"]) / n, 1.6);
+  table.add(size + "broad + narrow phase + CCD", (phase["step filter"] + phase["contact set"]) / n,
+            "whole iteration", (whole - phase["analyse"]) / n, 0.2);
+  table.add(size + "analyses of changed patterns", phase["analyse"], "whole run of the level", whole, 0.1);
+  std::printf("  by phase, ms an iteration:");
+  for (const auto& [name, seconds] : phase) std::printf("  %s %.2f", name.c_str(), 1e3 * seconds / n);
+  std::printf("\n");
 }
 
 /// Both to the same force residual; the energies are stored beside the times, since equilibria differ.
@@ -151,23 +175,40 @@ void whole_progression(const std::string& folder, Table& table) {
   const auto &fine = methods["newton"]["levels"].back(), &pcs = methods["pcs"]["levels"].back();
   std::printf("finest level of %s: energy of PCS %.8f J, of the direct solve %.8f J\n", folder.c_str(),
               pcs["energy"].get<double>(), fine["energy"].get<double>());
-  table.add("whole PCS progression", methods["pcs"]["seconds"], "direct fine solve", fine["seconds"], 1);
+  table.add(folder + ": whole PCS progression", methods["pcs"]["seconds"], "direct fine solve",
+            fine["seconds"], 0.2);
 }
+
+/// An experiment of this folder and its scene; errors are printed and leave the scene empty.
+struct Loaded {
+  std::optional<Experiment> experiment;
+  std::unique_ptr<Scene> scene;
+  Loaded(const Registry& registry, const std::string& file, const Overrides& overrides = {}) {
+    ConfigErrors errors;
+    experiment = read_experiment(DRAPE_BENCHMARKS_DIR "/" + file, overrides, registry, errors);
+    scene = experiment ? build_scene(*experiment, errors) : nullptr;
+    for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+    if (!scene) throw std::runtime_error(file + " cannot be measured");
+  }
+};
 
 }  // namespace
 
 int main(int argc, char** argv) try {
   Registry registry;
   load_plugins(registry, plugin_directories());
-  ConfigErrors errors;
-  const auto e = read_experiment(DRAPE_BENCHMARKS_DIR "/contact_free.yaml", {}, registry, errors);
-  const auto scene = e ? build_scene(*e, errors) : nullptr;
-  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
-  if (!scene) return 2;
   Table table;
-  finest_level(*e, *scene, table);
-  coarsest_level(*e, *scene, table);
-  if (argc > 2) whole_progression(argv[2], table);
+  {
+    const Loaded free(registry, "contact_free.yaml");
+    finest_level(*free.experiment, *free.scene, table);
+    coarsest_level(*free.experiment, *free.scene, 10, table);
+  }
+  for (const char* levels : {"3", "4"}) {
+    const Loaded contact(registry, "contact.yaml", {{"levels", levels}, {"newton.max_steps", "150"}});
+    draped_level(*contact.experiment, *contact.scene, table);
+    if (levels == std::string("4")) coarsest_level(*contact.experiment, *contact.scene, 50, table);
+  }
+  for (int i = 2; i < argc; ++i) whole_progression(argv[i], table);
   if (argc > 1) {
     nlohmann::ordered_json result = {
         {"benchmark", "ratios"}, {"version", version()},      {"commit", commit()}, {"cpu", cpu_name()},

@@ -8,11 +8,13 @@
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
 #include "core/experiment/runner.h"
+#include "core/experiment/start_repair.h"
 #include "core/numerics/parallel.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
 #include "core/plugin/words.h"
 #include "core/report/report.h"
+#include "core/report/tables.h"
 #include "core/version.h"
 
 namespace {
@@ -38,6 +40,7 @@ struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
   int levels = 0;
+  bool allow_start_repair = false;
 
   void add_to(CLI::App& command) {
     command.add_option("config", config, "experiment file (YAML)")->required();
@@ -46,6 +49,8 @@ struct ConfigArguments {
         ->allow_extra_args(false);
     command.add_option("--levels", levels, "number of levels, in place of the experiment's")
         ->check(positive_integer);
+    command.add_flag("--allow-start-repair", allow_start_repair,
+                     "move a start that touches something up or to a side until it does not");
   }
 
   Overrides overrides() const {
@@ -76,8 +81,21 @@ struct Loaded {
   Loaded(const ConfigArguments& arguments, const Registry& registry) {
     ConfigErrors errors;
     experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
-    if (errors.empty()) scene = build_scene(*experiment, errors);
+    if (errors.empty())
+      scene = build_scene(*experiment, errors,
+                          arguments.allow_start_repair ? TouchingStart::kept : TouchingStart::refused);
+    if (scene && arguments.allow_start_repair) repair(errors);
     if (!errors.empty()) exit_code = report_errors(errors);
+  }
+
+ private:
+  void repair(ConfigErrors& errors) {
+    const Eigen::Vector3d way = repair_start(*experiment, *scene, errors);
+    if (way.isZero(0)) return;
+    scene = build_scene(*experiment, errors);
+    if (errors.empty())
+      std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m so that it touches nothing\n", way.x(),
+                   way.y(), way.z());
   }
 };
 
@@ -202,6 +220,9 @@ int main_checked(int argc, char** argv) {
   describe_command->add_option("plugin", plugin, "name of the plugin")->required();
   CLI::App* report_command = app.add_subcommand("report", "write the report of a results folder again");
   report_command->add_option("folder", run_folder, "results folder")->required();
+  CLI::App* table1_command =
+      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
+  table1_command->add_option("folder", run_folder, "results folder")->required();
   CLI::App* schema_command =
       app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
   CLI::App* reference_command =
@@ -222,6 +243,10 @@ int main_checked(int argc, char** argv) {
   if (*report_command) {
     write_report(run_folder);
     std::cout << "report: " << (std::filesystem::path(run_folder) / "report.html").string() << "\n";
+    return 0;
+  }
+  if (*table1_command) {
+    std::cout << table1_text(read_run(run_folder));
     return 0;
   }
   Registry registry;

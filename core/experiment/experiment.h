@@ -95,6 +95,9 @@ struct Experiment {
   std::vector<std::shared_ptr<ContactModel>> contacts;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
+
+  /// Where a key of the file is set; without it, where the file begins.
+  Location place_of(const std::string& key) const;
 };
 
 /// Values given beside the file, `key.path=value`, in order.
@@ -113,8 +116,12 @@ struct Scene {
   Problem problem() const;
 };
 
-/// Builds the scene; null, with every fault of the mesh and every pin that holds nothing appended, if it
-/// cannot be built.
-std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors);
+/// What becomes of a start that touches something.
+enum class TouchingStart { refused, kept };
+
+/// Builds the scene; null, with every fault of the mesh, every pin that holds nothing and what the start
+/// touches appended, if it cannot be built. A touching start is `kept` for repair_start alone.
+std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
+                                   TouchingStart touching = TouchingStart::refused);
 
 }  // namespace drape

@@ -11,11 +11,6 @@ namespace drape {
 
 namespace {
 
-Location place_of(const Experiment& e, const std::string& key) {
-  const ConfigNode* node = e.source.find(key);
-  return node ? node->where : e.source.where;
-}
-
 TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
   const double density = std::sqrt(c.vertices / (size.x() * size.y()));
   const int columns =
@@ -122,16 +117,21 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
   for (const auto& contact : model.contacts()) {
     const std::vector<Touch> touches = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
-      errors.push_back({place_of(e, "start"), "the start of level " + std::to_string(model.level().index) +
-                                                  " touches: " + to_string(touches[k])});
+      errors.push_back({e.place_of("start"), "the start of level " + std::to_string(model.level().index) +
+                                                 " touches: " + to_string(touches[k])});
     if (touches.size() > most_said)
       errors.push_back(
-          {place_of(e, "start"), "… and " + std::to_string(touches.size() - most_said) +
-                                     " more pairs; move the start or the obstacle so that they are apart"});
+          {e.place_of("start"), "… and " + std::to_string(touches.size() - most_said) +
+                                    " more pairs; move the start or the obstacle so that they are apart"});
   }
 }
 
 }  // namespace
+
+Location Experiment::place_of(const std::string& key) const {
+  const ConfigNode* node = source.find(key);
+  return node ? node->where : source.where;
+}
 
 Problem Scene::problem() const {
   Problem p{hierarchy, {}, starts};
@@ -139,24 +139,24 @@ Problem Scene::problem() const {
   return p;
 }
 
-std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors) {
+std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, TouchingStart touching) {
   const ExperimentParameters& p = e.parameters;
   TriangleMesh cloth;
   try {
     cloth = make_cloth(e);
   } catch (const std::exception& error) {
-    errors.push_back({place_of(e, "cloth"), error.what()});
+    errors.push_back({e.place_of("cloth"), error.what()});
     return nullptr;
   }
   const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
-  for (const std::string& fault : check_mesh(cloth)) errors.push_back({place_of(e, "cloth"), file + fault});
+  for (const std::string& fault : check_mesh(cloth)) errors.push_back({e.place_of("cloth"), file + fault});
   if (!errors.empty()) return nullptr;
 
   auto scene = std::make_unique<Scene>();
   try {
     scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
   } catch (const std::exception& error) {
-    errors.push_back({place_of(e, "cloth"), error.what()});
+    errors.push_back({e.place_of("cloth"), error.what()});
     return nullptr;
   }
   const ConfigNode* pins = e.source.find("pins");
@@ -189,10 +189,11 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors) {
       scene->models.push_back(
           std::make_unique<LevelModel>(level, p.material, e.energies, std::move(fixed), e.contacts));
     } catch (const std::exception& error) {
-      errors.push_back({place_of(e, "energies"), error.what()});
+      errors.push_back({e.place_of("energies"), error.what()});
       return nullptr;
     }
-    refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
+    if (touching == TouchingStart::refused)
+      refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
   return scene;

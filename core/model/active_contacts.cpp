@@ -9,8 +9,10 @@ void ActiveContacts::build(const Positions& x) {
   if (state_.rows() == x.rows() && state_ == x) return;
   if (sweeps_.empty())
     for (const auto& model : models_) sweeps_.push_back(model->sweep(x, x));
+  const Stopwatch watch;
   sets_.clear();
   for (const auto& sweep : sweeps_) sets_.push_back(sweep->build(x));
+  seconds_building_ += watch.seconds();
   state_ = x;
 }
 

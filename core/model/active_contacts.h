@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/model/contact_model.h"
+#include "core/numerics/stopwatch.h"
 
 namespace drape {
 
@@ -35,6 +36,8 @@ class ActiveContacts {
   /// All energies at x that the matrix is made of.
   std::vector<const BoundEnergy*> energies(const Positions& x);
 
+  double seconds_building() const { return seconds_building_; }  ///< in all, for contact sets
+
   int count() const;            ///< contacts at the state last evaluated
   double smallest_gap() const;  ///< there [m]; +∞ without a contact
 
@@ -48,6 +51,7 @@ class ActiveContacts {
   std::vector<std::unique_ptr<FrictionEnergy>> friction_;
   Positions state_, from_;
   bool with_friction_ = true;
+  double seconds_building_ = 0;
 };
 
 }  // namespace drape

@@ -351,7 +351,12 @@ class Newton {
     result_.message = std::move(message);
     result_.seconds = watch_.seconds();
     result_.analyses = cholesky_.analyses();
-    if (f_.contacts().any()) result_.smallest_gap = f_.contacts().smallest_gap();
+    if (f_.contacts().any()) {
+      result_.smallest_gap = f_.contacts().smallest_gap();
+      // Contact sets are built where energies are evaluated.
+      result_.seconds_by_phase["contact set"] = f_.contacts().seconds_building();
+      result_.seconds_by_phase["gradient"] -= f_.contacts().seconds_building();
+    }
     return std::move(result_);
   }
 

@@ -12,9 +12,9 @@ namespace {
 
 /// h of the pull towards the target [s]: a millimetre then weighs a hundred times the cloth's own weight.
 constexpr double pull = 1e-3;
-/// The descent ends where the pull left over is this part of what it was.
-constexpr double tolerance = 1e-2;
-constexpr int most_steps = 40, most_rounds = 8;
+/// The descent ends where the force left over is this part of what it was.
+constexpr double tolerance = 0.05;
+constexpr int most_steps = 20, most_rounds = 8;
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
 class PullToTarget : public Objective {
@@ -156,8 +156,10 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
   }
   refined.x = problem.hierarchy.midpoints[level] * x;
   refined.fault = move_pins(model, problem.starts[level + 1], refined.x);
-  if (refined.fault.empty()) {
-    PullToTarget objective(model, refined.x, problem.carry_up(weights, level, x));
+  Positions target = problem.carry_up(weights, level, x);
+  const bool there = target == refined.x && name_outside(model, target).empty();
+  if (refined.fault.empty() && !there) {
+    PullToTarget objective(model, refined.x, std::move(target));
     NewtonParameters newton;
     newton.form = NewtonForm::statics;
     newton.projection_share = ProjectionShare::full;

@@ -32,6 +32,16 @@ Figure objective(const RunData& run, const IterationSeries& series, const StepRo
   return is_proxy(run, series, row) ? row.proxy_energy : row.energy;
 }
 
+/// Root mean square length of the Newton direction over the vertices [m]. A static step has no h of its own;
+/// its decrement was made with the first one.
+Figure newton_step(const RunData& run, const IterationSeries& series, const StepRow& row) {
+  Figure h = row.step_size;
+  for (const MethodRecord& method : run.methods) {
+    if (!h && method.name == series.method) h = method.step_size;
+  }
+  return h && row.decrement ? Figure(*h * *row.decrement) : Figure();
+}
+
 Json series_json(const RunData& run) {
   std::map<std::pair<int, bool>, double> best;
   for (const IterationSeries& series : run.iterations) {
@@ -45,7 +55,8 @@ Json series_json(const RunData& run) {
   }
   Json all = Json::array();
   for (const IterationSeries& series : run.iterations) {
-    Json iteration = Json::array(), seconds = iteration, residual = iteration, gap = iteration;
+    Json iteration = Json::array(), seconds = iteration, residual = iteration, step = iteration,
+         gap = iteration;
     const std::size_t count = series.rows.size(), stride = (count + most_points - 1) / most_points;
     for (std::size_t k = 0; k < count; ++k) {
       if (k % stride != 0 && k + 1 != count) continue;
@@ -54,6 +65,7 @@ Json series_json(const RunData& run) {
       iteration.push_back(k + 1);
       seconds.push_back(rounded(row.seconds));
       residual.push_back(rounded(row.force_residual));
+      step.push_back(rounded(newton_step(run, series, row)));
       gap.push_back(energy ? rounded(*energy - best.at({series.level, is_proxy(run, series, row)})) : Json());
     }
     all.push_back({{"method", series.method},
@@ -61,6 +73,7 @@ Json series_json(const RunData& run) {
                    {"iteration", iteration},
                    {"seconds", seconds},
                    {"residual", residual},
+                   {"step", step},
                    {"gap", gap}});
   }
   return all;
@@ -99,6 +112,7 @@ std::string chart_data(const RunData& run) {
   Json methods = Json::array();
   for (const MethodRecord& method : run.methods) methods.push_back(method.name);
   const Json data = {{"methods", methods},
+                     {"coarsest", run.coarsest_level()},
                      {"finest", run.finest_level()},
                      {"tolerance", rounded(run.force_tolerance)},
                      {"series", series_json(run)},

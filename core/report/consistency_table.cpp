@@ -26,7 +26,7 @@ std::vector<Source> sources_of(const RunData& run) {
   std::vector<Source> sources;
   for (const MethodRecord& method : run.methods) {
     if (method.consistency.empty()) continue;
-    sources.push_back({escape(method.name), [&method](int coarse, int fine) {
+    sources.push_back({method.name, [&method](int coarse, int fine) {
                          const ConsistencyRecord* pair = method.pair(coarse, fine);
                          return pair ? std::optional(*pair) : std::nullopt;
                        }});
@@ -57,17 +57,19 @@ std::vector<Source> sources_of(const Table1Block& block) {
 }
 
 struct Measure {
-  const char* name;
+  const char* plain_name;
+  const char* name;  ///< HTML
   const char* unit;
   Figure ConsistencyRecord::*value;
 };
 
 constexpr Measure curvature_measures[] = {
-    {"d<sub>H</sub><sup>fit</sup>", "1", &ConsistencyRecord::d_H_fit},
-    {"d<sub>H</sub><sup>ddg</sup>", "1", &ConsistencyRecord::d_H_ddg},
-    {"d<sub>K</sub><sup>fit</sup>", "1/m²", &ConsistencyRecord::d_K_fit},
-    {"d<sub>K</sub><sup>ddg</sup>", "1/m²", &ConsistencyRecord::d_K_ddg}};
-constexpr Measure distance_measure = {"distance, RMS", "diagonal", &ConsistencyRecord::distance_rms};
+    {"d_H_fit", "d<sub>H</sub><sup>fit</sup>", "1", &ConsistencyRecord::d_H_fit},
+    {"d_H_ddg", "d<sub>H</sub><sup>ddg</sup>", "1", &ConsistencyRecord::d_H_ddg},
+    {"d_K_fit", "d<sub>K</sub><sup>fit</sup>", "1/m²", &ConsistencyRecord::d_K_fit},
+    {"d_K_ddg", "d<sub>K</sub><sup>ddg</sup>", "1/m²", &ConsistencyRecord::d_K_ddg}};
+constexpr Measure distance_measure = {"distance", "distance, RMS", "diagonal",
+                                      &ConsistencyRecord::distance_rms};
 
 /// The cells of one row, its lowest figures strong when there is something to compare.
 void add_compared(Row& row, const std::vector<Source>& sources, const Measure& measure, int coarse,
@@ -90,7 +92,7 @@ void add_compared(Row& row, const std::vector<Source>& sources, const Measure& m
 std::string measures_table(const std::vector<std::pair<int, int>>& pairs, const std::vector<Source>& run,
                            const std::vector<Source>& paper) {
   Row titles = {words("levels"), words("measure"), words("unit")};
-  for (const Source& source : run) titles.push_back({source.title});
+  for (const Source& source : run) titles.push_back({escape(source.title)});
   for (const Source& source : paper) titles.push_back({source.title});
   std::vector<Row> head = {titles};
   if (!run.empty() && !paper.empty()) {
@@ -118,6 +120,26 @@ std::string measures_table(const std::vector<std::pair<int, int>>& pairs, const 
   return html::table(head, body);
 }
 
+/// Columns of a terminal: bytes that continue a character take none.
+std::size_t columns_of(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; });
+}
+
+/// Rows of equally many cells, in columns two spaces apart.
+std::string text_table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns_of(row[k]));
+  std::string text;
+  for (const auto& row : rows) {
+    for (std::size_t k = 0; k < row.size(); ++k)
+      text += (k > 0 ? "  " : "") + row[k] +
+              (k + 1 < row.size() ? std::string(widths[k] - columns_of(row[k]), ' ') : "");
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string consistency_table(const RunData& run, const Table1Block* published) {
@@ -133,6 +155,34 @@ std::string published_table(const Table1Block& block) {
     if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
   }
   return measures_table(pairs, {}, sources_of(block));
+}
+
+std::string table1_text(const RunData& run) {
+  const Table1Block* published = table1_block(run.table1_scene);
+  std::vector<Source> sources = sources_of(run);
+  if (sources.empty()) return run.experiment + ": no pair of levels has been compared\n";
+  if (published) {
+    for (Source& source : sources_of(*published)) {
+      source.title = "paper: " + source.title;
+      sources.push_back(std::move(source));
+    }
+  }
+  std::vector<std::vector<std::string>> rows = {{"levels", "measure", "unit"}};
+  for (const Source& source : sources) rows.front().push_back(source.title);
+  for (const auto& [coarse, fine] : run.pairs()) {
+    for (const Measure& measure : curvature_measures) {
+      rows.push_back(
+          {std::to_string(coarse) + " → " + std::to_string(fine), measure.plain_name, measure.unit});
+      for (const Source& source : sources) {
+        const auto record = source.find(coarse, fine);
+        rows.back().push_back(figure(record ? (*record).*(measure.value) : Figure()));
+      }
+    }
+  }
+  std::string text = text_table(rows);
+  if (published) text = "This run beside “" + published->scene + "” of the supplement's Table 1:\n" + text;
+  const std::optional<Verdict> verdict = intersection_verdict(run);
+  return verdict ? text + verdict->text + "\n" : text;
 }
 
 }  // namespace drape

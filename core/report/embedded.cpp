@@ -31,6 +31,7 @@
 DRAPE_EMBED(page_html, "core/report/assets/page.html")
 DRAPE_EMBED(page_css, "core/report/assets/page.css")
 DRAPE_EMBED(page_js, "core/report/assets/page.js")
+DRAPE_EMBED(table1_json, "core/report/assets/table1.json")
 DRAPE_EMBED(chart_js, DRAPE_CHART_JS)
 DRAPE_EMBED(cloth_vertex_shader, "core/report/assets/cloth.vert")
 DRAPE_EMBED(cloth_fragment_shader, "core/report/assets/cloth.frag")

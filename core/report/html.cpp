@@ -68,6 +68,13 @@ std::string figure(const Figure& value) {
   return plain;
 }
 
+std::string fixed(const Figure& value, int decimals) {
+  if (!value) return dash;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", decimals, *value);
+  return text;
+}
+
 std::string count(const Figure& value) {
   if (!value) return dash;
   std::string digits = std::to_string(std::llround(std::abs(*value)));

@@ -14,6 +14,8 @@ std::string escape(std::string_view text);
 
 /// Three significant digits ("403", "0.0213", "7.21e4"), or a dash.
 std::string figure(const Figure& value);
+/// With so many digits after the point, or a dash.
+std::string fixed(const Figure& value, int decimals);
 /// A whole number with thin spaces between thousands, or a dash.
 std::string count(const Figure& value);
 /// "812 MB", or a dash.

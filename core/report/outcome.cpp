@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "core/report/html.h"
@@ -39,7 +41,79 @@ std::string most_consistent(const RunData& run) {
          "</b> changes its mean curvature least (d<sub>H</sub><sup>fit</sup> = " + figure(lowest) + ")";
 }
 
+/// "1 pair" or "3 pairs".
+std::string counted(double number, const std::string& thing) {
+  return std::to_string(std::llround(number)) + " " + thing + (number == 1 ? "" : "s");
+}
+
+/// What was looked at in a run: states of levels, and of iterations where every step was to be verified.
+struct Looked {
+  int levels = 0, iterations = 0;
+  std::string found;  ///< where there were intersections
+  Figure smallest_gap;
+
+  void gap(const Figure& gap) {
+    if (gap) smallest_gap = std::min(smallest_gap.value_or(*gap), *gap);
+  }
+  void note(const std::string& method, int level, const std::string& what) {
+    found += (found.empty() ? "" : "; ") + method + ", level " + std::to_string(level) + ": " + what;
+  }
+};
+
+void look_at_levels(const RunData& run, Looked& looked) {
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& level : method.levels) {
+      looked.gap(level.smallest_gap);
+      if (!level.intersections) continue;
+      ++looked.levels;
+      if (*level.intersections > 0)
+        looked.note(method.name, level.level, counted(*level.intersections, "intersecting pair"));
+    }
+  }
+}
+
+void look_at_iterations(const RunData& run, Looked& looked) {
+  for (const IterationSeries& series : run.iterations) {
+    int crossing = 0;
+    for (const StepRow& row : series.rows) {
+      looked.gap(row.smallest_gap);
+      looked.iterations += row.intersections.has_value();
+      crossing += row.intersections.value_or(0) > 0;
+    }
+    if (crossing > 0)
+      looked.note(series.method, series.level, "intersections in " + counted(crossing, "iteration"));
+  }
+}
+
 }  // namespace
+
+std::optional<Verdict> intersection_verdict(const RunData& run) {
+  Looked looked;
+  look_at_levels(run, looked);
+  look_at_iterations(run, looked);
+  if (looked.levels + looked.iterations == 0) return {};
+  if (!looked.found.empty())
+    return Verdict{false, "Intersections: " + looked.found + ". log.jsonl names the first ones."};
+  std::string text = "No intersection at any recorded state (" + counted(looked.levels, "level");
+  if (looked.iterations > 0) text += " and " + counted(looked.iterations, "iteration");
+  text += " looked at";
+  if (looked.smallest_gap) text += ", smallest gap on the way " + figure(looked.smallest_gap) + " m";
+  return Verdict{true, text + ")."};
+}
+
+std::string troubles(const RunData& run) {
+  std::string items;
+  for (const MethodRecord& method : run.methods) {
+    for (const LevelRecord& level : method.levels) {
+      if (level.status == "converged" || level.status.empty()) continue;
+      items += "<li><b>" + escape(method.name) + "</b>, level " + std::to_string(level.level) + ": " +
+               escape(level.status) + " after " + html::count(level.newton_iterations) +
+               " iterations at force residual " + figure(level.force_residual) +
+               (level.message.empty() ? "" : ": " + escape(level.message)) + "</li>\n";
+    }
+  }
+  return items.empty() ? "" : "<p>What did not converge:</p>\n<ul>\n" + items + "</ul>\n";
+}
 
 Figure final_energy(const RunData& run, const MethodRecord& method) {
   if (method.levels.empty()) return {};

@@ -1,5 +1,6 @@
 #include "core/report/pictures.h"
 
+#include <Eigen/Geometry>
 #include <cctype>
 #include <memory>
 #include <optional>
@@ -16,7 +17,7 @@ namespace drape {
 namespace {
 
 constexpr int picture_width = 900, picture_height = 700, map_size = 700;
-constexpr int most_vertices_with_edges = 2500;  // beyond, the lines would run into each other
+constexpr int most_vertices_with_edges = 4000;  // beyond, the lines would run into each other
 
 /// The fine state of a pair with the curvatures of both; a field that was not written is empty.
 struct PairFields {
@@ -38,6 +39,22 @@ TriangleMesh checked_mesh(const std::filesystem::path& path) {
                       (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows());
   if (!inside) throw std::runtime_error(path.string() + ": a triangle names a vertex that is not there");
   return mesh;
+}
+
+/// The points of an obstacle that a picture of the cloth should show too: not the far ends of a floor.
+Positions near_cloth(const Positions& obstacle, const std::vector<const Positions*>& states) {
+  Eigen::AlignedBox3d box;
+  for (const Positions* x : states)
+    for (Eigen::Index i = 0; i < x->rows(); ++i)
+      if (x->row(i).allFinite()) box.extend(x->row(i).transpose());
+  const double margin = box.isEmpty() ? 0 : box.diagonal().norm() / 4;
+  const Eigen::AlignedBox3d near(box.min().array() - margin, box.max().array() + margin);
+  Positions chosen(obstacle.rows(), 3);
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < obstacle.rows(); ++i)
+    if (near.contains(obstacle.row(i).transpose())) chosen.row(count++) = obstacle.row(i);
+  chosen.conservativeResize(count, 3);
+  return chosen;
 }
 
 class PictureMaker {
@@ -82,6 +99,8 @@ class PictureMaker {
     for (const std::string& name : run_.obstacles)
       if (auto mesh = try_mesh(name)) obstacles.push_back(std::move(*mesh));
     obstacle_ = merged(obstacles);
+    const Positions near = near_cloth(obstacle_.vertices, all);
+    if (near.rows() > 0) all.push_back(&near);
     // Three quarters from above: the top shows how it lies, the side how it folds.
     camera_ = Camera::around(all, {0.55, -1.0, 0.68}, double(picture_width) / picture_height);
   }

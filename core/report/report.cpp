@@ -108,6 +108,13 @@ std::string fold_grid(const RunData& run, const Gallery& gallery, const PictureS
   return text + "</div>\n";
 }
 
+std::string verdict_line(const RunData& run) {
+  const std::optional<Verdict> verdict = intersection_verdict(run);
+  if (!verdict) return "";
+  return "<p class=\"outcome " + std::string(verdict->sound ? "good" : "poor") + "\">" +
+         escape(verdict->text) + "</p>\n";
+}
+
 std::string machine_line(const RunData& run) {
   std::string text;
   if (!run.version.empty()) text += escape(run.version);
@@ -152,7 +159,9 @@ void write_report(const std::filesystem::path& run_directory) {
                   {"description", escape(run.description)},
                   {"machine", machine_line(run)},
                   {"outcome", outcome_sentence(run)},
+                  {"verdict", verdict_line(run)},
                   {"summary", summary_table(run)},
+                  {"troubles", troubles(run)},
                   {"levels", level_table(run)},
                   {"states", state_grid(run, gallery)},
                   {"notes", notes(set)},

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 
 namespace drape {
@@ -40,6 +41,7 @@ LevelRecord level_record(const Json& json, int position) {
   LevelRecord r;
   r.level = static_cast<int>(figure(at(json, "level")).value_or(position));
   r.status = text(at(json, "status"));
+  r.message = text(at(json, "message"));
   r.vertices = figure(at(json, "vertices"));
   r.triangles = figure(at(json, "triangles"));
   r.steps = figure(at(json, "steps"));
@@ -99,7 +101,7 @@ std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
 }
 
-Figure csv_figure(const std::string& cell) {
+Figure figure_of(const std::string& cell) {
   char* end = nullptr;
   const double value = std::strtod(cell.c_str(), &end);
   if (end == cell.c_str() || !std::isfinite(value)) return {};
@@ -122,7 +124,7 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
     }
     if (cells.size() < column.size() || !column.count("method") || !column.count("level")) continue;
     const auto cell = [&](const char* name) {
-      return column.count(name) ? csv_figure(cells[column.at(name)]) : Figure();
+      return column.count(name) ? figure_of(cells[column.at(name)]) : Figure();
     };
     const std::string& method = cells[column.at("method")];
     const int level = static_cast<int>(cell("level").value_or(0));
@@ -131,9 +133,28 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
     });
     if (series == all.end()) series = all.insert(all.end(), {method, level, {}});
     series->rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
-                            cell("step_length"), cell("proxy_energy")});
+                            cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
+                            cell("smallest_gap"), cell("intersections")});
   }
   return all;
+}
+
+void add_last_contacts(RunData& run) {
+  for (const IterationSeries& series : run.iterations)
+    for (MethodRecord& method : run.methods)
+      for (LevelRecord& level : method.levels)
+        if (method.name == series.method && level.level == series.level)
+          level.contacts = series.rows.back().contacts;
+}
+
+void add_step_sizes(RunData& run) {
+  ConfigErrors unread;
+  const ConfigNode config = parse_yaml(run.configuration, "config.yaml", unread);
+  for (MethodRecord& method : run.methods) {
+    const ConfigNode* node = config.find("methods");
+    for (const char* key : {method.name.c_str(), "newton", "step_size"}) node = node ? node->find(key) : node;
+    if (node) method.step_size = figure_of(node->scalar);
+  }
 }
 
 }  // namespace
@@ -150,6 +171,20 @@ const ConsistencyRecord* MethodRecord::pair(int coarse, int fine) const {
     if (r.coarse == coarse && r.fine == fine) return &r;
   }
   return nullptr;
+}
+
+bool RunData::has_contact() const {
+  for (const MethodRecord& m : methods) {
+    for (const LevelRecord& r : m.levels) {
+      if (r.intersections || r.smallest_gap) return true;
+    }
+  }
+  return false;
+}
+
+int RunData::coarsest_level() const {
+  const std::vector<int> all = level_indices();
+  return all.empty() ? -1 : all.front();
 }
 
 int RunData::finest_level() const {
@@ -211,6 +246,8 @@ RunData read_run(const std::filesystem::path& folder) {
   std::stable_sort(run.iterations.begin(), run.iterations.end(),
                    [&](const IterationSeries& a, const IterationSeries& b) { return place(a) < place(b); });
   run.configuration = file_if_there(folder / "config.yaml");
+  add_last_contacts(run);
+  add_step_sizes(run);
   return run;
 }
 

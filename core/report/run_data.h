@@ -18,11 +18,12 @@ using NamedFigures = std::vector<std::pair<std::string, Figure>>;
 /// One level of one method, as results.json has it (SI units).
 struct LevelRecord {
   int level = 0;
-  std::string status;
+  std::string status, message;
   Figure vertices, triangles, steps, newton_iterations, seconds;
   Figure energy, energy_on_finest;   ///< [J]
   Figure decrement, force_residual;  ///< [m/s], [1]
   Figure largest_stretch, intersections, smallest_gap;
+  Figure contacts;  ///< in the last iteration
   NamedFigures seconds_by_phase, energy_parts;
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
@@ -38,6 +39,7 @@ struct ConsistencyRecord {
 struct MethodRecord {
   std::string name, status;
   Figure seconds, peak_memory_bytes;
+  Figure step_size;                 ///< h of the first implicit step, and of the static form's decrement [s]
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
 
@@ -47,7 +49,8 @@ struct MethodRecord {
 
 /// One row of steps.csv.
 struct StepRow {
-  Figure seconds, energy, decrement, force_residual, step_length, proxy_energy;
+  Figure seconds, energy, decrement, force_residual, step_length, proxy_energy, step_size;
+  Figure contacts, smallest_gap, intersections;
 };
 
 /// All rows of one level of one method, in order.
@@ -67,6 +70,9 @@ struct RunData {
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
 
+  /// Whether anything was kept apart, so that gaps and intersections mean something.
+  bool has_contact() const;
+  int coarsest_level() const;              ///< over all methods; -1 without levels
   int finest_level() const;                ///< over all methods; -1 without levels
   std::vector<int> level_indices() const;  ///< of all methods, ascending
   /// (coarse, fine) of all methods, ascending.

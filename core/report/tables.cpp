@@ -21,6 +21,19 @@ std::string status_badge(const std::string& status) {
   return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
 }
 
+/// What contact has done to a state; nothing in a run without.
+void add_contact_head(Row& head, const RunData& run) {
+  if (!run.has_contact()) return;
+  for (const char* title : {"contacts", "smallest gap [m]", "intersections"}) head.push_back({title});
+}
+
+void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
+  if (!run.has_contact()) return;
+  row.push_back({html::count(r.contacts)});
+  row.push_back({figure(r.smallest_gap)});
+  row.push_back({html::count(r.intersections), true, r.intersections.value_or(0) > 0});
+}
+
 /// The sum over levels of those that are known.
 Figure sum_of_levels(const MethodRecord& method, Figure LevelRecord::*member) {
   Figure sum;
@@ -46,10 +59,11 @@ std::vector<std::string> part_names(const RunData& run) {
 }  // namespace
 
 std::string summary_table(const RunData& run) {
-  const Row head = {words("method"),    words("status"),       {"levels"},           {"time [s]"},
-                    {"steps"},          {"Newton iterations"}, {"final energy [J]"}, {"above lowest [J]"},
-                    {"force residual"}, {"decrement [m/s]"},   {"largest stretch"},  {"smallest gap [m]"},
-                    {"intersections"},  {"peak memory"}};
+  Row head = {words("method"),    words("status"),       {"levels"},           {"time [s]"},
+              {"steps"},          {"Newton iterations"}, {"final energy [J]"}, {"above lowest [J]"},
+              {"force residual"}, {"decrement [m/s]"},   {"largest stretch"}};
+  add_contact_head(head, run);
+  head.push_back({"peak memory"});
   Figure lowest;
   for (const MethodRecord& method : run.methods) {
     const Figure energy = final_energy(run, method);
@@ -60,33 +74,30 @@ std::string summary_table(const RunData& run) {
     const Figure energy = final_energy(run, method);
     const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
     const Figure seconds = method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
-    body.push_back({words(escape(method.name)),
-                    words(status_badge(method.status)),
-                    {std::to_string(method.levels.size())},
-                    {figure(seconds)},
-                    {html::count(sum_of_levels(method, &LevelRecord::steps))},
-                    {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
-                    {figure(energy)},
-                    {figure(energy ? Figure(*energy - *lowest) : energy)},
-                    {figure(last.force_residual)},
-                    {figure(last.decrement)},
-                    {figure(last.largest_stretch)},
-                    {figure(last.smallest_gap)},
-                    {html::count(last.intersections)},
-                    {html::bytes(method.peak_memory_bytes)}});
+    Row row = {words(escape(method.name)),
+               words(status_badge(method.status)),
+               {std::to_string(method.levels.size())},
+               {figure(seconds)},
+               {html::count(sum_of_levels(method, &LevelRecord::steps))},
+               {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
+               {figure(energy)},
+               {figure(energy ? Figure(*energy - *lowest) : energy)},
+               {figure(last.force_residual)},
+               {figure(last.decrement)},
+               {html::fixed(last.largest_stretch, 4)}};
+    add_contact_cells(row, run, last);
+    row.push_back({html::bytes(method.peak_memory_bytes)});
+    body.push_back(row);
   }
   return html::table({head}, body);
 }
 
 std::string level_table(const RunData& run) {
-  const Row head = {words("method"),       {"level"},
-                    {"vertices"},          {"triangles"},
-                    words("status"),       {"steps"},
-                    {"Newton iterations"}, {"time [s]"},
-                    {"energy [J]"},        {"on finest [J]"},
-                    {"force residual"},    {"decrement [m/s]"},
-                    {"largest stretch"},   {"smallest gap [m]"},
-                    {"intersections"}};
+  Row head = {words("method"),    {"level"},         {"vertices"},          {"triangles"},
+              words("status"),    {"steps"},         {"Newton iterations"}, {"time [s]"},
+              {"energy [J]"},     {"on finest [J]"}, {"force residual"},    {"decrement [m/s]"},
+              {"largest stretch"}};
+  add_contact_head(head, run);
   std::vector<Row> body;
   for (const MethodRecord& method : run.methods) {
     for (const LevelRecord& r : method.levels) {
@@ -95,14 +106,13 @@ std::string level_table(const RunData& run) {
         row.push_back(words(escape(method.name)));
         row.back().rows = static_cast<int>(method.levels.size());
       }
-      const Row rest = {{std::to_string(r.level)},    {html::count(r.vertices)},
-                        {html::count(r.triangles)},   words(status_badge(r.status)),
-                        {html::count(r.steps)},       {html::count(r.newton_iterations)},
-                        {figure(r.seconds)},          {figure(r.energy)},
-                        {figure(r.energy_on_finest)}, {figure(r.force_residual)},
-                        {figure(r.decrement)},        {figure(r.largest_stretch)},
-                        {figure(r.smallest_gap)},     {html::count(r.intersections)}};
+      const Row rest = {
+          {std::to_string(r.level)},     {html::count(r.vertices)}, {html::count(r.triangles)},
+          words(status_badge(r.status)), {html::count(r.steps)},    {html::count(r.newton_iterations)},
+          {figure(r.seconds)},           {figure(r.energy)},        {figure(r.energy_on_finest)},
+          {figure(r.force_residual)},    {figure(r.decrement)},     {html::fixed(r.largest_stretch, 4)}};
       row.insert(row.end(), rest.begin(), rest.end());
+      add_contact_cells(row, run, r);
       body.push_back(row);
     }
   }

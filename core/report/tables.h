@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/report/run_data.h"
@@ -9,6 +10,18 @@ namespace drape {
 
 /// How the run ended and who did best, as one sentence or two of HTML.
 std::string outcome_sentence(const RunData& run);
+
+/// Whether the states that were looked at keep apart, in one or two sentences of plain text.
+struct Verdict {
+  bool sound = true;
+  std::string text;
+};
+
+/// Of all recorded states together; nothing where a run has no contact.
+std::optional<Verdict> intersection_verdict(const RunData& run);
+
+/// What the levels say that did not converge, as a list of HTML; empty without any.
+std::string troubles(const RunData& run);
 
 /// The energy of the finest model in the last state of a method [J].
 Figure final_energy(const RunData& run, const MethodRecord& method);
@@ -22,6 +35,9 @@ std::string level_table(const RunData& run);
 /// One row a pair of levels and measure, one column a method, the lowest of a row in bold; the
 /// published columns beside if `published` is not null.
 std::string consistency_table(const RunData& run, const Table1Block* published);
+
+/// The same as plain text for a terminal, with the verdict on intersections below.
+std::string table1_text(const RunData& run);
 
 /// The published block alone, in the same layout.
 std::string published_table(const Table1Block& block);

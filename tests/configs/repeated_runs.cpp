@@ -3,21 +3,18 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
 
 namespace {
 
-/// The bytes of every level's mesh, by name.
-std::map<std::string, std::string> meshes_with(int threads) {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  // Some steps on many elements, so that loops are shared out.
-  const Ended ended = drape_with(
-      "run e.yaml --out out --quiet --no-report --set cloth.columns=24 --set cloth.rows=24 "
-      "--set newton.max_steps=5 --threads " +
-          std::to_string(threads),
-      folder.path);
+/// The bytes of every level's mesh, by name, after some steps.
+std::map<std::string, std::string> meshes_of(const Scratch& folder, const std::string& options, int threads) {
+  const Ended ended = drape_with("run e.yaml --out out --overwrite --quiet --no-report " + options +
+                                     " --threads " + std::to_string(threads),
+                                 folder.path);
+  INFO(ended.err);
   REQUIRE(ended.exit_code == 1);
   std::map<std::string, std::string> meshes;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "out/levels"))
@@ -28,9 +25,45 @@ std::map<std::string, std::string> meshes_with(int threads) {
 
 }  // namespace
 
+// Both on many elements, so that loops are shared out.
+
 TEST_CASE("runs are equal bit for bit, with one thread, with two, and with one and two") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const auto meshes_with = [&](int threads) {
+    return meshes_of(folder, "--set cloth.columns=24 --set cloth.rows=24 --set newton.max_steps=5", threads);
+  };
   const auto one = meshes_with(1), two = meshes_with(2);
   CHECK((meshes_with(1) == one));
   CHECK((meshes_with(2) == two));
   CHECK((one == two));
+}
+
+TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit") {
+  // Two sheets, one close above the other, fall on a ball.
+  drape::TriangleMesh sheets = drape::grid({0.4, 0.4}, 20, 20, drape::Diagonals::one_way);
+  const auto n = static_cast<int>(sheets.vertices.rows());
+  const drape::Positions lower = sheets.vertices;
+  const drape::Triangles triangles = sheets.triangles;
+  sheets.vertices.resize(2 * n, 3);
+  sheets.vertices << lower, lower.rowwise() + Eigen::RowVector3d(0.003, 0.002, 0.0012);
+  sheets.triangles.resize(2 * triangles.rows(), 3);
+  sheets.triangles << triangles, triangles.array() + n;
+  const Scratch folder;
+  drape::write_mesh(folder / "sheets.obj", sheets);
+  folder.write(
+      "e.yaml",
+      replaced(text_of(std::filesystem::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml"),
+               "{shape: square, side: 0.4, columns: 9, rows: 9}", "{shape: file, file: sheets.obj}"));
+  const std::string options =
+      "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=12 --set contact.0.self_contact=";
+  const auto meshes_with = [&](int threads) { return meshes_of(folder, options + "true", threads); };
+  const auto one = meshes_with(1), two = meshes_with(2);
+  CHECK((meshes_with(1) == one));
+  CHECK((meshes_with(2) == two));
+  CHECK((one == two));
+  for (const auto& [name, bytes] : meshes_of(folder, options + "false", 2)) {
+    INFO(name);
+    CHECK((bytes != one.at(name)));  // it does meet itself
+  }
 }

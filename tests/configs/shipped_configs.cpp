@@ -15,7 +15,7 @@ const fs::path source = DRAPE_SOURCE_DIR;
 bool needs_missing_data(const fs::path& config) {
   std::stringstream text;
   text << std::ifstream(config).rdbuf();
-  return text.str().find("../data/") != std::string::npos && !fs::exists(source / "data");
+  return text.str().find("../data/") != std::string::npos && !fs::exists(source / "data/bunny.ply");
 }
 
 std::vector<fs::path> shipped() {

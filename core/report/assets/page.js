@@ -14,8 +14,15 @@
       borderColor: colour('--method-' + (Math.max(k, 0) % 5)),
       borderWidth: finest ? 2.6 : 1.5,
       borderDash: finest ? [] : dashes[series.level % dashes.length],
-      pointRadius: 0, pointHitRadius: 6, tension: 0, fill: false, spanGaps: true,
+      pointRadius: series.iteration.length > 1 ? 0 : 3, pointHitRadius: 6, tension: 0, fill: false, spanGaps: true,
     };
+  }
+
+  /// Where only one level is shown: methods by name, told apart by dashes too, as lines may coincide.
+  function methodStyle(series) {
+    const k = data.methods.indexOf(series.method);
+    return Object.assign(lineStyle(series), {label: series.method, borderWidth: 2.2,
+      borderDash: [[], [9, 5], [2, 3], [12, 4, 2, 4]][Math.max(k, 0) % 4]});
   }
 
   const short = value => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3)
@@ -73,8 +80,8 @@
     charts.push(new Chart(canvas, config));
   }
 
-  function lines(id, x, y, titles, logarithmicX, withTolerance) {
-    const datasets = data.series.map(series => Object.assign(lineStyle(series), {
+  function lines(id, x, y, titles, logarithmicX, withTolerance, chosen = data.series, style = lineStyle) {
+    const datasets = chosen.map(series => Object.assign(style(series), {
       data: series[x].map((value, k) => ({x: value, y: series[y][k]}))
         .filter(p => p.x !== null && p.y !== null && p.y > 0 && (!logarithmicX || p.x > 0)),
     })).filter(set => set.data.length > 0);
@@ -124,6 +131,11 @@
     lines('residual-iteration', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true);
     lines('residual-seconds', 'seconds', 'residual', ['time [s]', 'force residual'], false, true);
     lines('gap-seconds', 'seconds', 'gap', ['time [s]', 'energy above the lowest [J]'], true, false);
+    const coarsest = data.series.filter(series => series.level === data.coarsest);
+    lines('coarsest-step', 'iteration', 'step', ['Newton iteration', 'Newton step, RMS [m]'], false, false,
+      coarsest, methodStyle);
+    lines('coarsest-residual', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true,
+      coarsest, methodStyle);
     bars('phases', data.phases, 's');
     bars('parts', data.parts, 'J');
   }

@@ -1,0 +1,224 @@
+#include "core/experiment/start_repair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/experiment/yaml_file.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double tiny_gap = 1e-6;  // [m]
+/// Distances that are tried, in parts of the cloth's diagonal: each so much longer than the last.
+constexpr double shortest_part = 1e-3, growth = 1.5;
+/// How often the way to the first place that is free is halved, not to go further than needed.
+constexpr int halvings = 5;
+
+/// What a start is like at one place.
+struct Standing {
+  std::vector<Touch> touches;  ///< of the first level that has any; nothing else is known then
+  int level = 0;               ///< that level
+  int contacts = 0;            ///< pairs within range, on all levels
+  double smallest_gap = std::numeric_limits<double>::infinity();
+};
+
+bool same_pair(const Touch& a, const Touch& b) { return a.first == b.first && a.second == b.second; }
+
+/// One vertex of every piece of the cloth.
+std::vector<int> pieces_of(const Level& level) {
+  std::vector<int> first, open;
+  std::vector<char> seen(level.vertex_count(), 0);
+  for (int v = 0; v < level.vertex_count(); ++v) {
+    if (seen[v]) continue;
+    first.push_back(v);
+    open.push_back(v);
+    seen[v] = 1;
+    while (!open.empty()) {
+      const int from = open.back();
+      open.pop_back();
+      const AdjacencyList& near = level.topology.vertex_vertices;
+      for (const int* to = near.begin(from); to != near.end(from); ++to)
+        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
+    }
+  }
+  return first;
+}
+
+/// The part of all directions from p in which the mesh shows its back, less those in which it shows its
+/// front: 1 inside a closed mesh that faces outwards, 0 outside (van Oosterom and Strackee 1983).
+double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
+  double angle = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    Vector3d c[3];
+    for (int k = 0; k < 3; ++k) c[k] = mesh.vertices.row(mesh.triangles(t, k)).transpose() - p;
+    const double l0 = c[0].norm(), l1 = c[1].norm(), l2 = c[2].norm();
+    angle += 2 * std::atan2(c[0].dot(c[1].cross(c[2])),
+                            l0 * l1 * l2 + c[0].dot(c[1]) * l2 + c[1].dot(c[2]) * l0 + c[2].dot(c[0]) * l1);
+  }
+  return angle / (4 * M_PI);
+}
+
+class Places {
+ public:
+  explicit Places(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
+    for (const auto& contact : scene.models[0]->contacts())
+      for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
+    const Positions& x = scene.starts[0];
+    diagonal_ = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  }
+
+  double diagonal() const { return diagonal_; }
+
+  Standing at(const Vector3d& way) const {
+    Standing standing;
+    for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
+      const Positions x = scene_.starts[l].rowwise() + way.transpose();
+      standing.level = static_cast<int>(l);
+      for (const auto& contact : scene_.models[l]->contacts()) {
+        standing.touches = contact->intersections(x);
+        if (!standing.touches.empty()) return standing;
+        const auto near = contact->sweep(x, x)->build(x);
+        standing.contacts += near->contact_count();
+        standing.smallest_gap = std::min(standing.smallest_gap, near->smallest_gap());
+      }
+    }
+    return standing;
+  }
+
+  /// Whether a piece of the cloth, which touches nothing, is within an obstacle: contact would keep it there.
+  bool enclosed(const Vector3d& way) const {
+    return std::any_of(pieces_.begin(), pieces_.end(), [&](int v) {
+      const Vector3d p = scene_.starts[0].row(v).transpose() + way;
+      return std::any_of(obstacles_.begin(), obstacles_.end(),
+                         [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
+    });
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<int> pieces_;
+  std::vector<TriangleMesh> obstacles_;
+  double diagonal_ = 0;
+};
+
+/// Looks for the place to go to; remembers what touches everywhere.
+class Search {
+ public:
+  Search(const Places& places, const Standing& start) : places_(places), lasting_(start) {
+    if (start.touches.empty()) best_contacts_ = start.contacts, found_ = true;
+  }
+
+  void run() {
+    for (const Vector3d& direction :
+         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
+      double before = 0;
+      for (double part = shortest_part; part < growth; part *= growth) {
+        const double distance = std::min(part, 1.0) * places_.diagonal();
+        if (is_better(distance * direction)) {
+          shorten(direction, before, distance);
+          // What is still within range then is the cloth itself, or there may be a better place.
+          if (best_contacts_ == 0) return;
+        }
+        before = distance;
+      }
+    }
+  }
+
+  bool found() const { return found_; }
+  const Vector3d& way() const { return way_; }
+  /// Of the pairs that touch at the start, those that did at every place.
+  const std::vector<Touch>& lasting() const { return lasting_.touches; }
+
+ private:
+  /// Takes note of the place if it is free, with fewer contacts than any before.
+  bool is_better(const Vector3d& way, bool or_as_good = false) {
+    const Standing standing = places_.at(way);
+    if (!standing.touches.empty()) {
+      keep_lasting(standing);
+      return false;
+    }
+    if (found_ && standing.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
+    if (places_.enclosed(way)) return false;
+    found_ = true;
+    best_contacts_ = standing.contacts;
+    way_ = way;
+    return true;
+  }
+
+  void shorten(const Vector3d& direction, double low, double high) {
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      (is_better(middle * direction, true) ? high : low) = middle;
+    }
+  }
+
+  void keep_lasting(const Standing& other) {
+    if (other.level != lasting_.level) return;  // triangles of another level
+    std::erase_if(lasting_.touches, [&](const Touch& touch) {
+      return std::none_of(other.touches.begin(), other.touches.end(),
+                          [&](const Touch& now) { return same_pair(touch, now); });
+    });
+  }
+
+  const Places& places_;
+  Standing lasting_;
+  bool found_ = false;
+  int best_contacts_ = 0;
+  Vector3d way_ = Vector3d::Zero();
+};
+
+std::string pinned_text(const Standing& start) {
+  return "the start of level " + std::to_string(start.level) + " touches: " + to_string(start.touches[0]) +
+         "; a cloth with pins is not moved, for they say where it is: move the pins or the obstacle";
+}
+
+std::string hopeless_text(const Standing& start, const Search& search, double diagonal) {
+  char reach[32];
+  std::snprintf(reach, sizeof reach, "%.3g m", diagonal);
+  const std::string ways = std::string("moving the start by up to ") + reach + " up or to a side";
+  const std::string level = " on level " + std::to_string(start.level);
+  if (!search.lasting().empty())
+    return ways + " does not part " + to_string(search.lasting()[0]) + level +
+           "; change the start's shape or the obstacle";
+  return ways +
+         " finds no place where it touches nothing; where it is, these do: " + to_string(start.touches[0]) +
+         level;
+}
+
+void move(Experiment& experiment, const Vector3d& way) {
+  Vector3d& translate = experiment.parameters.start.translate;
+  translate += way;
+  std::string text;
+  for (int c = 0; c < 3; ++c) text += (c ? ", " : "[") + ConfigNode::of(translate[c]).scalar;
+  ConfigErrors none;
+  set_path(experiment.resolved, "start.translate", text + "]", none);
+}
+
+}  // namespace
+
+Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
+  const Places places(scene);
+  const Standing start = places.at(Vector3d::Zero());
+  const bool touches = !start.touches.empty();
+  if (!touches && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
+  if (!experiment.parameters.pins.empty()) {
+    if (touches) errors.push_back({experiment.place_of("start"), pinned_text(start)});
+    return Vector3d::Zero();
+  }
+  Search search(places, start);
+  search.run();
+  if (!search.found()) {
+    errors.push_back({experiment.place_of("start"), hopeless_text(start, search, places.diagonal())});
+    return Vector3d::Zero();
+  }
+  if (!search.way().isZero(0)) move(experiment, search.way());
+  return search.way();
+}
+
+}  // namespace drape

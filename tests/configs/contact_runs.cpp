@@ -1,0 +1,203 @@
+// What runs with contact refuse, and what they write down.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+std::string contact_experiment() {
+  return text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml");
+}
+
+/// Standard error of a run that is refused, as a check is.
+std::string said_of(const std::string& experiment, const std::string& arguments = "") {
+  const Scratch folder;
+  folder.write("e.yaml", experiment);
+  const Ended run = drape_with("run e.yaml --out out " + arguments, folder.path);
+  const Ended check = drape_with("check e.yaml " + arguments, folder.path);
+  CHECK(run.exit_code == 2);
+  CHECK(run.out == "");
+  CHECK(!fs::exists(folder / "out"));
+  CHECK(check.exit_code == 2);
+  CHECK(check.err == run.err);
+  return run.err;
+}
+
+std::vector<std::vector<std::string>> rows_of(const fs::path& csv) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(text_of(csv));
+  for (std::string line; std::getline(lines, line);) {
+    auto& cells = rows.emplace_back();
+    std::istringstream rest(line + ",");
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+  }
+  rows.erase(rows.begin());
+  return rows;
+}
+
+const std::string quiet = " --quiet --no-report --threads 1 ";
+
+}  // namespace
+
+TEST_CASE("a start that touches an obstacle is refused, with what touches, and where") {
+  const std::string text = contact_experiment(), place = "error: e.yaml:4:8: the start of level 0 touches: ";
+  CHECK(said_of(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
+        place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
+            "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
+            "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
+            "error: e.yaml:4:8: … and 3 more pairs; move the start or the obstacle so that they are apart\n");
+  const std::string table =
+      "{type: ipc, obstacles: [{name: table, shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, "
+      "0.02]}]}";
+  CHECK_THAT(said_of(text, "--set start.perturbation=0 --set 'contact=" + table + "'"),
+             Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
+}
+
+TEST_CASE("a start is looked at on every level") {
+  // Noise whose valleys only the finer level is fine enough for.
+  const std::string said =
+      said_of(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
+              "--set 'contact={type: shapes, shapes: [{name: floor, shape: half_space}]}' --set "
+              "start.perturbation=5e-3 "
+              "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
+  CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
+                       Contains(" and floor: half_space at ("));
+}
+
+TEST_CASE("a cloth that crosses itself is refused") {
+  const Scratch folder;
+  folder.write("cloth.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 -0.5\nv 0.25 0.25 0.5\n"
+               "f 1 2 3\nf 4 5 6\n");
+  folder.write("e.yaml",
+               "name: crossed\ncloth: {shape: file, file: cloth.obj}\nlevels: 1\n"
+               "energies: [neo_hookean, gravity]\ncontact: ipc\nmethods: {newton: {}}\n");
+  const Ended ended = drape_with("check e.yaml", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK_THAT(ended.err,
+             Catch::StartsWith("error: e.yaml:1:1: the start of level 0 touches: cloth triangle 0 and cloth "
+                               "triangle 1 at (0.2"));
+  const Ended repair = drape_with("check e.yaml --allow-start-repair", folder.path);
+  CHECK(repair.exit_code == 2);
+  CHECK_THAT(repair.err, Catch::StartsWith("error: e.yaml:1:1: moving the start by up to ") &&
+                             Contains(" does not part cloth triangle 0 and cloth triangle 1 at (0.2") &&
+                             Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
+}
+
+TEST_CASE("a run with contact has contacts, gaps and intersections in its results") {
+  const Scratch folder;
+  folder.write("e.yaml", contact_experiment());
+  const Ended ended = drape_with(
+      "run e.yaml --out out --set verify=every_step --set start.translate=[-0.2,-0.2,0.12] "
+      "--set newton.step_size=0.02" +
+          quiet,
+      folder.path);
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["obstacles"] == Json::array({"obstacles/0.ply"}));
+  CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.rowwise().norm().maxCoeff() ==
+        Approx(0.1).epsilon(0.01));
+  for (const auto& [name, method] : all["methods"].items()) {
+    INFO(name);
+    CHECK(method["status"] == "converged");
+    REQUIRE(method["levels"].size() == 2);
+    for (const Json& level : method["levels"]) {
+      CHECK(level["intersections"] == 0);
+      CHECK(level["smallest_gap"].get<double>() > 0);
+      CHECK(level["smallest_gap"].get<double>() < 1e-3);
+      CHECK(level["largest_stretch"].get<double>() < 1.06);
+    }
+    CHECK((method["levels"][1]["seconds_by_phase"].contains("refinement")) == (name != "newton"));
+  }
+  int near = 0, far = 0;
+  for (const auto& row : rows_of(folder / "out/steps.csv")) {
+    REQUIRE(row.size() == 14);
+    CHECK(row[13] == "0");
+    REQUIRE(!row[11].empty());
+    const bool any = std::stoi(row[11]) > 0;
+    (any ? near : far) += 1;
+    CHECK(row[12].empty() == !any);
+    if (any) CHECK(std::stod(row[12]) < 1e-3);
+  }
+  CHECK(near > 10);
+  CHECK(far > 0);  // the first steps, in the air
+}
+
+TEST_CASE("intersections are counted at the end of each level unless every step is asked for") {
+  const Scratch folder;
+  folder.write("e.yaml", contact_experiment());
+  const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
+  REQUIRE(drape_with(run, folder.path).exit_code == 0);
+  for (const auto& row : rows_of(folder / "out/steps.csv")) CHECK(row[13] == "");
+  CHECK(Json::parse(
+            text_of(folder / "out/results.json"))["methods"]["newton"]["levels"][0]["intersections"] == 0);
+}
+
+TEST_CASE("obstacle files are found beside the config, and results run again from their own config") {
+  const Scratch folder;
+  fs::create_directories(folder / "in/meshes");
+  fs::create_directory(folder / "elsewhere");
+  drape::TriangleMesh slab = drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross);
+  slab.vertices.rowwise() -= Eigen::RowVector3d(0.53, 0.52, 0);
+  drape::write_mesh(folder / "in/meshes/slab.obj", slab);
+  folder.write("in/e.yaml", replaced(contact_experiment(), "  - {type: ipc, friction: 0.1}\n",
+                                     "  - {type: ipc, friction: 0.1, obstacles: [{name: slab, file: "
+                                     "meshes/slab.obj, translate: [0, 0, -0.03]}]}\n"));
+  const std::string options = quiet + "--method pcs --out ";
+  const Ended first = drape_with("run ../in/e.yaml" + options + "first", folder / "elsewhere");
+  INFO(first.err);
+  REQUIRE(first.exit_code == 0);
+  const Ended second = drape_with("run elsewhere/first/config.yaml" + options + "second", folder.path);
+  INFO(second.err);
+  REQUIRE(second.exit_code == 0);
+  for (const std::string file :
+       {"config.yaml", "levels/pcs_l0.ply", "levels/pcs_l1.ply", "obstacles/0.ply", "obstacles/1.ply"}) {
+    INFO(file);
+    CHECK((text_of(folder / ("elsewhere/first/" + file)) == text_of(folder / ("second/" + file))));
+  }
+  // It was in the way.
+  const double lowest = drape::read_mesh(folder / "second/levels/pcs_l1.ply").vertices.col(2).minCoeff();
+  CHECK(lowest > -0.03);
+  CHECK(lowest < -0.028);
+  fs::remove(folder / "in/meshes/slab.obj");
+  const Ended gone = drape_with("check ../in/e.yaml", folder / "elsewhere");
+  CHECK(gone.exit_code == 2);
+  CHECK_THAT(gone.err, Contains("\"slab\"") && Contains("meshes/slab.obj"));
+}
+
+TEST_CASE("a result with intersections is infeasible, and the run did not succeed") {
+  const Scratch folder;
+  folder.write("e.yaml", replaced(small_experiment(), "levels: 2",
+                                  "levels: 2\ncontact: {type: blind, height: -0.05}\nverify: every_step"));
+  const Ended ended = drape_with("run e.yaml --out out --set newton.step_size=0.02" + quiet, folder.path,
+                                 std::string("DRAPE_PLUGIN_PATH=") + DRAPE_TEST_PLUGIN_DIR + "/blind");
+  CHECK(ended.exit_code == 1);
+  CHECK(ended.err == "");
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["complete"] == true);
+  REQUIRE(all["methods"].size() == 3);
+  for (const auto& [name, method] : all["methods"].items()) {
+    INFO(name);
+    CHECK(method["status"] == "infeasible");
+    for (const Json& level : method["levels"]) {
+      CHECK(level["intersections"] == 1);
+      CHECK(level["status"] == "infeasible");
+      CHECK(level["message"] == "the state has intersections; log.jsonl names them");
+      CHECK(level["force_residual"].get<double>() <= 1e-2);  // it converged all the same
+    }
+  }
+  std::string counts;
+  for (const auto& row : rows_of(folder / "out/steps.csv")) counts += row[13];
+  CHECK_THAT(counts, Catch::StartsWith("0") && Contains("01"));
+  CHECK_THAT(text_of(folder / "out/log.jsonl"),
+             Contains("\"event\":\"intersection\"") && Contains(" and floor: plane at ("));
+}

@@ -1,0 +1,365 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "core/mesh/check.h"
+#include "core/mesh/generate.h"
+#include "core/model/contact_model.h"
+#include "core/numerics/parallel.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+/// Something below the cloth of these tests for every contact model that needs to be told, ranges that are
+/// not small against its triangles, and friction.
+const std::map<std::string, std::string> settings = {
+    {"ipc", R"({type: ipc, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3, obstacles: [
+       {name: ball, shape: sphere, radius: 0.15, subdivisions: 2, translate: [0.12, 0.2, -0.165]},
+       {name: table, shape: box, size: [0.2, 0.3, 0.1], rotate: [5, 0, 10],
+        translate: [0.38, 0.2, -0.075]}]})"},
+    {"shapes", R"({type: shapes, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3, shapes: [
+       {shape: sphere, radius: 0.05, centre: [0.05, 0.1, -0.062]},
+       {shape: box, size: [0.1, 0.1, 0.1], rotate: [0, 5, 20], centre: [0.2, 0.1, -0.07]},
+       {shape: capsule, radius: 0.04, height: 0.1, rotate: [90, 0, 0], centre: [0.37, 0.12, -0.052]},
+       {shape: cylinder, radius: 0.06, height: 0.05, rotate: [5, 0, 0], centre: [0.1, 0.3, -0.04]},
+       {shape: half_space, centre: [0, 0, -0.12], normal: [0.05, 0.02, 1]}]})"}};
+
+/// The same without obstacles, for models that keep the cloth apart from itself.
+const std::map<std::string, std::string> self_contact = {
+    {"ipc", "{type: ipc, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3}"}};
+
+Positions noise(Eigen::Index vertices, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  Positions p(vertices, 3);
+  for (Eigen::Index i = 0; i < p.size(); ++i) p.data()[i] = size * (random() / 2147483648.0 - 1);
+  return p;
+}
+
+/// Two sheets, side by side at rest.
+Level two_sheets(int vertices) {
+  const TriangleMesh one = random_triangulation({0.5, 0.4}, vertices, 1),
+                     other = random_triangulation({0.5, 0.4}, vertices, 2);
+  const Eigen::Index n = one.vertices.rows(), m = one.triangles.rows();
+  TriangleMesh both;
+  both.vertices.resize(n + other.vertices.rows(), 3);
+  both.vertices.topRows(n) = one.vertices;
+  both.vertices.bottomRows(other.vertices.rows()) = other.vertices.rowwise() + Eigen::RowVector3d(1, 0, 0);
+  both.triangles.resize(m + other.triangles.rows(), 3);
+  both.triangles.topRows(m) = one.triangles;
+  both.triangles.bottomRows(other.triangles.rows()) = other.triangles.array() + static_cast<int>(n);
+  return Level::of(0, both);
+}
+
+/// One sheet above the other, the lower one at z = 0; neither is quite flat.
+Positions stacked(const Level& level, double gap, unsigned seed) {
+  const Eigen::Index n = level.vertex_count(), lower = n / 2;
+  Positions x = level.rest.vertices + noise(n, 0.1 * gap, seed);
+  x.bottomRows(n - lower).col(0).array() -= 1;
+  x.bottomRows(n - lower).col(2).array() += gap;
+  return x;
+}
+
+std::unique_ptr<ContactSet> contacts_at(const BoundContact& contact, const Positions& x) {
+  return contact.sweep(x, x)->build(x);
+}
+
+/// Pushes the cloth down with noise, as far as it goes without coming nearer than 3 mm to anything.
+Positions pressed(const BoundContact& contact, Positions x, unsigned seed) {
+  for (unsigned step = 0; step < 12; ++step) {
+    Positions to = x + noise(x.rows(), 0.01, 100 * seed + step);
+    to.col(2).array() -= 0.01;
+    const auto sweep = contact.sweep(x, to);
+    double part = sweep->max_step().fraction;
+    while (part > 1e-3 && sweep->build(x + part * (to - x))->smallest_gap() < 3e-3) part *= 0.7;
+    if (part > 1e-3) x += part * (to - x);
+  }
+  return x;
+}
+
+struct Candidate {
+  std::string name;
+  std::shared_ptr<ContactModel> model;
+};
+
+/// Every registered contact model that keeps anything apart.
+std::vector<Candidate> all_models() {
+  std::vector<Candidate> all;
+  for (const RegistryEntry* entry : test_registry().of_kind("contact")) {
+    const auto own = settings.find(entry->name);
+    auto model = make_plugin_from<ContactModel>(own == settings.end() ? entry->name : own->second);
+    if (model->bind(two_sheets(20), Material())) all.push_back({entry->name, model});
+  }
+  REQUIRE(all.size() >= 2);
+  return all;
+}
+
+std::vector<Candidate> self_contact_models() {
+  std::vector<Candidate> all;
+  for (const auto& [name, yaml] : self_contact) all.push_back({name, make_plugin_from<ContactModel>(yaml)});
+  return all;
+}
+
+/// Runs the body at random states of every model with many contacts.
+template <class Body>
+void for_each_state(const std::vector<Candidate>& models, const Body& body) {
+  const Level level = two_sheets(40);
+  for (const Candidate& candidate : models) {
+    const auto contact = candidate.model->bind(level, Material());
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      INFO(candidate.name << ", state " << seed);
+      const Positions x = pressed(*contact, stacked(level, 0.015, seed), seed);
+      REQUIRE(contact->intersections(x).empty());
+      REQUIRE(contacts_at(*contact, x)->contact_count() >= 20);
+      body(*contact, x);
+    }
+  }
+}
+
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& a) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// Clamped and absolute Hessians are positive semidefinite, the clamped one above the exact one. Returns
+/// whether the exact one is not.
+bool check_projections(const BoundEnergy& energy, const Positions& x) {
+  const Eigen::MatrixXd exact = dense(hessian_of(energy, x, Projection::none));
+  const Eigen::MatrixXd clamped = dense(hessian_of(energy, x, Projection::clamp));
+  const Eigen::MatrixXd absolute = dense(hessian_of(energy, x, Projection::absolute));
+  const double rounding = 1e-12 * absolute.norm();
+  CHECK(eigenvalues(clamped).minCoeff() >= -rounding);
+  CHECK(eigenvalues(absolute).minCoeff() >= -rounding);
+  CHECK(eigenvalues(clamped - exact).minCoeff() >= -rounding);
+  return eigenvalues(exact).minCoeff() < -1e-6 * exact.norm();
+}
+
+/// Ways that contact has to stop, from x.
+std::vector<Positions> adversarial(const Positions& x, unsigned seed) {
+  const Eigen::RowVector3d middle = x.colwise().mean();
+  const Eigen::Index n = x.rows(), lower = n / 2;
+  std::vector<Positions> ways;
+  for (const double size : {1e-4, 1e-2, 1.0, 100.0}) ways.push_back(x + noise(n, size, seed));
+  for (const double down : {0.02, 0.2, 50.0}) ways.push_back(x.rowwise() - Eigen::RowVector3d(0, 0, down));
+  ways.push_back(middle.replicate(n, 1));          // all to one point
+  ways.push_back(2 * middle.replicate(n, 1) - x);  // and out on the other side
+  Positions swapped = x;                           // each sheet to beyond the other
+  swapped.topRows(lower).col(2).array() += 0.1;
+  swapped.bottomRows(n - lower).col(2).array() -= 0.1;
+  ways.push_back(swapped);
+  Positions flipped = x;  // a half turn, all of it through the axis
+  flipped.col(1) = 2 * middle.y() - x.col(1).array();
+  flipped.col(2) = 2 * middle.z() - x.col(2).array();
+  ways.push_back(flipped);
+  Positions spike = x;  // a single vertex, far and through everything
+  spike.row(seed % n) << 0.2, 0.2, -3;
+  ways.push_back(spike);
+  return ways;
+}
+
+}  // namespace
+
+TEST_CASE("A contact energy's gradient is that of its value, its Hessian that of its gradient",
+          "[conformance]") {
+  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+    const auto set = contacts_at(contact, x);
+    const Positions g = gradient_of(*set, x);
+    const Eigen::MatrixXd h = dense(hessian_of(*set, x, Projection::none));
+    REQUIRE(set->value(x) > 0);
+    REQUIRE(g.norm() > 0);
+    REQUIRE(h.norm() > 0);
+    Positions sum = noise(x.rows(), 1, 9);
+    const Positions before = sum;
+    CHECK(set->add_gradient(x, sum) == Approx(set->value(x)).epsilon(1e-13));
+    CHECK((sum - before - g).norm() <= 1e-13 * (g.norm() + before.norm()));
+    const auto value = [&](const Positions& y) { return contacts_at(contact, y)->value(y); };
+    const auto gradient = [&](const Positions& y) { return gradient_of(*contacts_at(contact, y), y); };
+    CHECK((differences(value, x, 1e-6) - flat(g).transpose()).norm() <= 1e-7 * g.norm());
+    // The Hessian jumps where a pair's nearest features change: so small a step meets no such place.
+    CHECK((differences(gradient, x, 3e-8) - h).norm() <= 1e-8 * h.norm());
+    CHECK((h - h.transpose()).norm() <= 1e-13 * h.norm());
+  });
+}
+
+TEST_CASE("Projected Hessians of contacts are positive semidefinite", "[conformance]") {
+  int indefinite = 0;
+  for_each_state(all_models(), [&](const BoundContact& contact, const Positions& x) {
+    indefinite += check_projections(*contacts_at(contact, x), x);
+  });
+  REQUIRE(indefinite > 0);  // else nothing was projected
+}
+
+TEST_CASE("Contacts are those within range, and there is nothing beyond it", "[conformance]") {
+  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+    const Eigen::Index n = x.rows();
+    int with = 0, without = 0;
+    for (double lift = 0; lift < 0.05; lift += 1e-3) {
+      Positions y = x;
+      y.col(2).array() += lift;
+      y.bottomRows(n - n / 2).col(2).array() += lift;
+      const auto set = contacts_at(contact, y);
+      const bool any = set->contact_count() > 0;
+      (any ? with : without) += 1;
+      CHECK(std::isfinite(set->smallest_gap()) == any);
+      CHECK((set->value(y) > 0) == any);
+      CHECK((gradient_of(*set, y).norm() > 0) == any);
+      if (!any) CHECK(hessian_of(*set, y, Projection::clamp).values == std::vector<double>(9 * n, 0.0));
+    }
+    CHECK(with > 0);
+    CHECK(without > 0);
+    Positions far = x;
+    far.col(2).array() += 10;
+    far.bottomRows(n - n / 2).col(2).array() += 10;
+    CHECK(contacts_at(contact, far)->contact_count() == 0);
+    CHECK(contact.sweep(far, far)->max_step().fraction == 1);
+  });
+}
+
+TEST_CASE("The cloth's contact with itself does not see rigid motions", "[conformance]") {
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  for_each_state(self_contact_models(), [&](const BoundContact& contact, const Positions& x) {
+    const Positions moved = (x * turn.transpose()).rowwise() + Eigen::RowVector3d(0.3, -0.2, 0.7);
+    const auto set = contacts_at(contact, x), turned = contacts_at(contact, moved);
+    CHECK(turned->contact_count() == set->contact_count());
+    CHECK(turned->smallest_gap() == Approx(set->smallest_gap()).epsilon(1e-10));
+    CHECK(turned->value(moved) == Approx(set->value(x)).epsilon(1e-9));
+    const Positions g = gradient_of(*set, x);
+    CHECK((gradient_of(*turned, moved) - g * turn.transpose()).norm() <= 1e-9 * g.norm());
+    CHECK(g.colwise().sum().norm() <= 1e-12 * g.norm());
+  });
+}
+
+TEST_CASE("Contacts give the same bits with any number of threads", "[conformance]") {
+  const Level level = two_sheets(2000);
+  for (const Candidate& candidate : all_models()) {
+    INFO(candidate.name);
+    Positions down = stacked(level, 0.012, 4);
+    down.col(2).array() -= 0.004;
+    std::vector<double> reference;
+    for (const int threads : {1, 2, 3}) {
+      set_thread_count(threads);
+      const auto contact = candidate.model->bind(level, Material());
+      const Positions above = down.rowwise() + Eigen::RowVector3d(0, 0, 0.02);
+      const auto sweep = contact->sweep(above, down);
+      const double part = sweep->max_step().fraction;
+      const Positions x = above + 0.9 * part * (down - above);
+      const auto set = sweep->build(x);
+      const auto friction = set->friction(above);
+      REQUIRE(friction);
+      const Positions g = gradient_of(*set, x), f = gradient_of(*friction, x);
+      REQUIRE(g.norm() > 0);
+      REQUIRE(f.norm() > 0);
+      std::vector<double> all = {part,
+                                 set->smallest_gap(),
+                                 set->value(x),
+                                 static_cast<double>(set->contact_count()),
+                                 friction->value(x),
+                                 static_cast<double>(contact->intersections(down).size())};
+      all.insert(all.end(), g.data(), g.data() + g.size());
+      all.insert(all.end(), f.data(), f.data() + f.size());
+      for (const BoundEnergy* energy :
+           {static_cast<BoundEnergy*>(set.get()), static_cast<BoundEnergy*>(friction.get())}) {
+        const std::vector<double> h = hessian_of(*energy, x, Projection::clamp).values;
+        all.insert(all.end(), h.begin(), h.end());
+      }
+      if (threads == 1) reference = all;
+      CHECK((all == reference));
+    }
+    set_thread_count(0);
+  }
+}
+
+TEST_CASE("No step of any motion lets an intersection through", "[conformance]") {
+  int shortened = 0, full = 0;
+  const Level level = two_sheets(40);
+  for (const auto& models : {all_models(), self_contact_models()})
+    for (const Candidate& candidate : models) {
+      const auto contact = candidate.model->bind(level, Material());
+      Positions x = stacked(level, 0.015, 1);
+      int crossing = 0;
+      for (unsigned round = 1; round <= 12; ++round) {
+        if (round % 4 == 0) x = stacked(level, 0.015, round);
+        for (const Positions& to : adversarial(x, round)) {
+          INFO(candidate.name << ", round " << round);
+          const StepLimit limit = contact->sweep(x, to)->max_step();
+          REQUIRE(limit.fraction >= 0);
+          REQUIRE(limit.fraction <= 1);
+          CHECK(limit.by.empty() == (limit.fraction == 1));
+          (limit.fraction < 1 ? shortened : full) += 1;
+          crossing += !contact->intersections(to).empty();
+          for (const double part : {0.25, 0.5, 0.75, 1.0})
+            REQUIRE(contact->intersections(x + part * limit.fraction * (to - x)).empty());
+        }
+        // On from there, where gaps are smaller.
+        const Positions to = x + noise(x.rows(), 0.02, 1000 + round);
+        x += contact->sweep(x, to)->max_step().fraction * (to - x);
+      }
+      CHECK(crossing > 12);
+    }
+  CHECK(shortened > 100);
+  CHECK(full > 10);
+}
+
+TEST_CASE("What touches is named, and lies where it is said to", "[conformance]") {
+  const Level level = two_sheets(40);
+  for (const auto& models : {all_models(), self_contact_models()})
+    for (const Candidate& candidate : models) {
+      INFO(candidate.name);
+      const auto contact = candidate.model->bind(level, Material());
+      Positions x = stacked(level, 0.015, 1);
+      CHECK(contact->intersections(x).empty());
+      x.col(2) *= 20;  // noise of 3 cm, more than what is between
+      x.col(2).array() -= 0.02;
+      x.bottomRows(x.rows() - x.rows() / 2).col(2).array() -= 0.3;
+      const std::vector<Touch> touches = contact->intersections(x);
+      REQUIRE(!touches.empty());
+      for (const Touch& touch : touches) {
+        CHECK_THAT(touch.first, Catch::StartsWith("cloth "));
+        CHECK(!touch.second.empty());
+        CHECK((touch.where.transpose().array() >= x.colwise().minCoeff().array() - 1e-9).all());
+        CHECK((touch.where.transpose().array() <= x.colwise().maxCoeff().array() + 1e-9).all());
+      }
+      for (const TriangleMesh& mesh : contact->obstacles()) CHECK(check_mesh(mesh).empty());
+    }
+}
+
+TEST_CASE("Friction opposes motion, and is nothing without it", "[conformance]") {
+  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+    const auto set = contacts_at(contact, x);
+    const auto friction = set->friction(x);
+    REQUIRE(friction);
+    CHECK(friction->value(x) == 0);
+    CHECK(gradient_of(*friction, x).norm() == 0);
+    const double normal_force = gradient_of(*set, x).norm();
+    for (const double size : {1e-5, 1e-3, 1e-1}) {  // sticking, in between, sliding
+      const Positions moved = noise(x.rows(), size, 7), y = x + moved, g = gradient_of(*friction, y);
+      INFO("moved by " << size);
+      CHECK(g.cwiseProduct(moved).sum() > 0);
+      CHECK(friction->value(y) > 0);
+      CHECK(g.norm() > (size > 1e-4 ? 0.01 : 1e-6) * normal_force);
+      CHECK_FALSE(check_projections(*friction, y));
+      const auto value = [&](const Positions& z) { return friction->value(z); };
+      CHECK((differences(value, y, 1e-8) - flat(g).transpose()).norm() <= 1e-4 * g.norm());
+    }
+    // The whole cloth slides over what does not move; its parts do not slide over each other.
+    const Positions slid = x.rowwise() + Eigen::RowVector3d(0.05, 0, 0);
+    const Eigen::RowVector3d force = -gradient_of(*friction, slid).colwise().sum();
+    CHECK(force.x() < 0);
+  });
+  for_each_state(self_contact_models(), [](const BoundContact& contact, const Positions& x) {
+    const auto friction = contacts_at(contact, x)->friction(x);
+    REQUIRE(friction);
+    const Positions slid = x.rowwise() + Eigen::RowVector3d(0.05, 0, 0);
+    Positions apart = x;
+    apart.topRows(x.rows() / 2).col(0).array() += 0.05;
+    const Positions g = gradient_of(*friction, apart);
+    CHECK(gradient_of(*friction, slid).norm() <= 1e-9 * g.norm());
+    CHECK(g.topRows(x.rows() / 2).col(0).sum() > 0);
+    CHECK(g.colwise().sum().norm() <= 1e-10 * g.norm());
+  });
+}

@@ -1,0 +1,69 @@
+// A contact model that sees a floor and does nothing about it.
+
+#include <limits>
+
+#include "core/model/contact_model.h"
+#include "core/plugin/plugin.h"
+
+namespace {
+
+using drape::Positions;
+
+class NoContacts final : public drape::ContactSet {
+ public:
+  int contact_count() const override { return 0; }
+  double smallest_gap() const override { return std::numeric_limits<double>::infinity(); }
+  std::unique_ptr<drape::FrictionEnergy> friction(const Positions&) const override { return nullptr; }
+  double value(const Positions&) const override { return 0; }
+  double add_gradient(const Positions&, Positions&) const override { return 0; }
+  drape::Stencils stencils() const override { return drape::Stencils(0, 1); }
+  void add_hessian(const Positions&, drape::Projection, drape::BlockSink&) const override {}
+};
+
+class Anywhere final : public drape::ContactSweep {
+ public:
+  drape::StepLimit max_step() const override { return {}; }
+  std::unique_ptr<drape::ContactSet> build(const Positions&) const override {
+    return std::make_unique<NoContacts>();
+  }
+};
+
+class BoundBlind final : public drape::BoundContact {
+ public:
+  explicit BoundBlind(double height) : height_(height) {}
+  std::unique_ptr<drape::ContactSweep> sweep(const Positions&, const Positions&) const override {
+    return std::make_unique<Anywhere>();
+  }
+  std::vector<drape::Touch> intersections(const Positions& x) const override {
+    Eigen::Index lowest = 0;
+    if (x.col(2).minCoeff(&lowest) > height_) return {};
+    return {{"cloth vertex " + std::to_string(lowest), "floor: plane", x.row(lowest).transpose()}};
+  }
+  std::vector<drape::TriangleMesh> obstacles() const override { return {}; }
+
+ private:
+  double height_;
+};
+
+class Blind final : public drape::ContactModel {
+ public:
+  struct Parameters {
+    double height = 0;
+    static void declare(drape::Declaration<Parameters>& d) {
+      d.add("height", &Parameters::height).unit("m").meaning("of the floor").source("test");
+    }
+  };
+  explicit Blind(const Parameters& p) : height_(p.height) {}
+  std::unique_ptr<drape::BoundContact> bind(const drape::Level&, const drape::Material&) const override {
+    return std::make_unique<BoundBlind>(height_);
+  }
+
+ private:
+  double height_;
+};
+
+}  // namespace
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::ContactModel, Blind>("blind", "A floor that holds nothing up.");
+}

@@ -1,0 +1,378 @@
+#include "core/model/active_contacts.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "core/contact/barrier.h"
+#include "core/mesh/generate.h"
+#include "core/numerics/newton.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double range = 1e-3, stiffness = 100, mu = 0.3, slip = 1e-4;
+
+/// The half-space below z = 0.
+std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double height = 0) {
+  return make_plugin_from<ContactModel>(
+      "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: " + name +
+      ", shape: half_space, centre: [0, 0, " + std::to_string(height) + "]}]}");
+}
+
+Level sheet() { return Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way)); }
+
+std::vector<std::unique_ptr<BoundContact>> bound(const Level& level,
+                                                 const std::vector<std::shared_ptr<ContactModel>>& models) {
+  std::vector<std::unique_ptr<BoundContact>> all;
+  for (const auto& model : models) all.push_back(model->bind(level, Material()));
+  return all;
+}
+
+Positions at(const Level& level, double x, double height) {
+  return level.rest.vertices.rowwise() + Eigen::RowVector3d(x, 0, height);
+}
+
+/// Normal force of the sheet of 0.1 m × 0.1 m at this height [N].
+double normal_force(double height) { return -stiffness * barrier(height / range).first * 0.01; }
+
+/// Friction's potential after a slide, over the normal force [m].
+double potential(double slid) {
+  const double q = slid / slip;
+  return mu * (q < 1 ? slid * q * (1 - q / 3) : slid - slip / 3);
+}
+
+/// Passes everything on to a real model; how often it was asked.
+struct Counted : BoundContact {
+  std::unique_ptr<BoundContact> real;
+  mutable int sweeps = 0;
+
+  explicit Counted(std::unique_ptr<BoundContact> contact) : real(std::move(contact)) {}
+  std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override {
+    ++sweeps;
+    return real->sweep(x0, x1);
+  }
+  std::vector<Touch> intersections(const Positions& x) const override { return real->intersections(x); }
+  std::vector<TriangleMesh> obstacles() const override { return real->obstacles(); }
+};
+
+/// Contact that lets nothing move.
+class Frozen : public ContactModel {
+  struct Set : ContactSet {
+    int contact_count() const override { return 1; }
+    double smallest_gap() const override { return 1e-5; }
+    std::unique_ptr<FrictionEnergy> friction(const Positions&) const override { return nullptr; }
+    double value(const Positions&) const override { return 0; }
+    double add_gradient(const Positions&, Positions&) const override { return 0; }
+    Stencils stencils() const override { return Stencils(0, 1); }
+    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+  };
+  struct Sweep : ContactSweep {
+    StepLimit max_step() const override { return {0, "cloth triangle 3 and ice"}; }
+    std::unique_ptr<ContactSet> build(const Positions&) const override { return std::make_unique<Set>(); }
+  };
+  struct Bound : BoundContact {
+    std::unique_ptr<ContactSweep> sweep(const Positions&, const Positions&) const override {
+      return std::make_unique<Sweep>();
+    }
+    std::vector<Touch> intersections(const Positions&) const override { return {}; }
+    std::vector<TriangleMesh> obstacles() const override { return {}; }
+  };
+
+ public:
+  std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override {
+    return std::make_unique<Bound>();
+  }
+};
+
+struct Rows : Observer {
+  std::vector<IterationRow> rows;
+  std::vector<Positions> states;
+  void iteration(const IterationRow& row, const Positions& x) override {
+    rows.push_back(row);
+    states.push_back(x);
+  }
+};
+
+/// A sheet that falls on the floor, under gravity that leans by 0.1.
+struct Falling {
+  Level level = sheet();
+  LevelModel model;
+  Rows rows;
+
+  explicit Falling(const std::vector<std::shared_ptr<ContactModel>>& contacts)
+      : model(level, Material(),
+              {{"neo_hookean", make_plugin_from<Energy>("neo_hookean")},
+               {"hinge", make_plugin_from<Energy>("hinge")},
+               {"gravity", make_plugin_from<Energy>("{type: gravity, acceleration: [0.98, 0, -9.81]}")}},
+              std::vector<char>(level.vertex_count(), 0), contacts) {}
+
+  LevelResult solve(const NewtonParameters& p, double height) {
+    PlainObjective objective(model);
+    return minimise(objective, at(level, 0, height), p, Stopwatch(), rows);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Without a contact model there is nothing") {
+  const std::vector<std::unique_ptr<BoundContact>> none;
+  ActiveContacts contacts(none);
+  const Positions x = sheet().rest.vertices;
+  contacts.begin_step(x);
+  contacts.renew_lag(x);
+  Positions g = Positions::Zero(x.rows(), 3);
+  CHECK_FALSE(contacts.any());
+  CHECK_FALSE(contacts.has_friction());
+  CHECK(contacts.barrier(x) + contacts.friction(x) + contacts.add_gradient(x, g) == 0);
+  CHECK(g.norm() == 0);
+  CHECK(contacts.energies(x).empty());
+  CHECK(contacts.max_step(x, 2 * x).fraction == 1);
+  CHECK(contacts.count() == 0);
+  CHECK(contacts.smallest_gap() == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("Friction has the normal forces of where the step began until they are renewed") {
+  const Level level = sheet();
+  const auto models = bound(level, {a_floor()});
+  ActiveContacts contacts(models);
+  const Positions x0 = at(level, 0, 0.5 * range), x1 = at(level, 20 * slip, 0.3 * range);
+  REQUIRE(normal_force(0.3 * range) > 1.5 * normal_force(0.5 * range));
+  contacts.begin_step(x0);
+  CHECK(contacts.has_friction());
+  CHECK(contacts.friction(x0) == 0);
+  REQUIRE(contacts.max_step(x0, x1).fraction == 1);
+  CHECK(contacts.friction(x1) == Approx(normal_force(0.5 * range) * potential(20 * slip)));
+  contacts.renew_lag(x1);  // the displacement is that from x0 still
+  CHECK(contacts.friction(x1) == Approx(normal_force(0.3 * range) * potential(20 * slip)));
+  Positions g = Positions::Zero(x1.rows(), 3);
+  const double sum = contacts.add_gradient(x1, g);
+  CHECK(sum == Approx(contacts.barrier(x1) + contacts.friction(x1)));
+  CHECK(g.col(0).sum() == Approx(mu * normal_force(0.3 * range)));
+  CHECK(-g.col(2).sum() == Approx(normal_force(0.3 * range)));
+}
+
+TEST_CASE("Friction's anchors stay while it sticks and follow when it slides") {
+  const Level level = sheet();
+  const auto models = bound(level, {a_floor()});
+  ActiveContacts contacts(models);
+  const double height = 0.4 * range, force = normal_force(height);
+  const auto step_to = [&](double from, double to) {
+    REQUIRE(contacts.max_step(at(level, from, height), at(level, to, height)).fraction == 1);
+    contacts.begin_step(at(level, to, height));
+    return contacts.friction(at(level, to, height)) / force;
+  };
+  contacts.begin_step(at(level, 0, height));
+  // Creeping: three steps of 0.3 slip distances add up, for the anchor is where it was.
+  CHECK(step_to(0, 0.3 * slip) == Approx(potential(0.3 * slip)));
+  CHECK(step_to(0.3 * slip, 0.6 * slip) == Approx(potential(0.6 * slip)));
+  CHECK(step_to(0.6 * slip, 0.9 * slip) == Approx(potential(0.9 * slip)));
+  // Sliding drags it along, a slip distance behind, where friction is at its largest.
+  CHECK(step_to(0.9 * slip, 7 * slip) == Approx(potential(slip)));
+  Positions g = Positions::Zero(level.vertex_count(), 3);
+  contacts.add_gradient(at(level, 7 * slip, height), g);
+  CHECK(g.col(0).sum() == Approx(mu * force));
+  // Back by half of that: what is left of the displacement.
+  CHECK(step_to(7 * slip, 6.5 * slip) == Approx(potential(0.5 * slip)));
+  // Up and away, and down elsewhere: nothing is remembered.
+  const Positions up = at(level, 6.5 * slip, 5 * range), elsewhere = at(level, 50 * slip, 5 * range);
+  contacts.max_step(at(level, 6.5 * slip, height), up);
+  contacts.begin_step(up);
+  contacts.max_step(up, elsewhere);
+  contacts.begin_step(elsewhere);
+  CHECK_FALSE(contacts.has_friction());
+  contacts.max_step(elsewhere, at(level, 50 * slip, height));
+  contacts.begin_step(at(level, 50 * slip, height));
+  CHECK(contacts.has_friction());
+  CHECK(contacts.friction(at(level, 50 * slip, height)) == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("Friction can be left out") {
+  const Level level = sheet();
+  const auto models = bound(level, {a_floor()});
+  ActiveContacts contacts(models);
+  contacts.leave_out_friction();
+  contacts.begin_step(at(level, 0, 0.4 * range));
+  CHECK_FALSE(contacts.has_friction());
+  CHECK(contacts.count() > 0);
+  CHECK(contacts.friction(at(level, 1, 0.4 * range)) == 0);
+}
+
+TEST_CASE("Of several models the nearest ends a step, and their contacts add up") {
+  const Level level = sheet();
+  const auto low = a_floor("low", -0.0002), high = a_floor("high", 0);
+  for (const auto& order : {std::vector{low, high}, std::vector{high, low}}) {
+    const auto models = bound(level, order);
+    ActiveContacts contacts(models);
+    const Positions x0 = at(level, 0, 0.01), x1 = at(level, 0, -0.01);
+    const StepLimit limit = contacts.max_step(x0, x1);
+    CHECK(limit.fraction == Approx(0.5 * 0.9));
+    CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(" and high: half_space"));
+    const Positions x = at(level, 0, 0.3 * range);
+    contacts.max_step(x0, x);
+    double expected = 0;
+    int count = 0;
+    for (const auto& model : models) {
+      const auto set = model->sweep(x, x)->build(x);
+      expected += set->value(x);
+      count += set->contact_count();
+    }
+    CHECK(contacts.barrier(x) == Approx(expected).epsilon(1e-12));
+    CHECK(contacts.count() == count);
+    CHECK(contacts.smallest_gap() == Approx(0.3 * range));
+    CHECK(contacts.energies(x).size() == 2);
+  }
+}
+
+TEST_CASE("All states of one way are evaluated from one search") {
+  const Level level = sheet();
+  std::vector<std::unique_ptr<BoundContact>> models;
+  models.push_back(std::make_unique<Counted>(a_floor()->bind(level, Material())));
+  const auto& counted = dynamic_cast<const Counted&>(*models[0]);
+  ActiveContacts contacts(models);
+  const Positions x0 = at(level, 0, 0.9 * range), x1 = at(level, 0, 0.2 * range);
+  contacts.begin_step(x0);
+  CHECK(counted.sweeps == 1);
+  contacts.max_step(x0, x1);
+  CHECK(counted.sweeps == 2);
+  double last = contacts.barrier(x0);
+  for (const double part : {0.25, 0.5, 1.0}) {
+    const Positions x = x0 + part * (x1 - x0);
+    Positions g = Positions::Zero(x.rows(), 3);
+    CHECK(contacts.barrier(x) > last);
+    last = contacts.barrier(x);
+    contacts.add_gradient(x, g);
+    contacts.energies(x);
+    contacts.renew_lag(x);
+  }
+  CHECK(counted.sweeps == 2);
+}
+
+TEST_CASE("Newton says what holds a step that it cannot take") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+    Falling falling({std::make_shared<Frozen>()});
+    NewtonParameters p;
+    p.form = form;
+    const LevelResult r = falling.solve(p, 0.1);
+    CHECK(r.outcome == Outcome::stalled);
+    CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
+                              Catch::EndsWith("; the step is held by cloth triangle 3 and ice"));
+  }
+}
+
+TEST_CASE(
+    "Newton with contact and friction: what is recorded, and an equilibrium with the forces of its end") {
+  Falling falling({a_floor()});
+  NewtonParameters p;
+  p.force_tolerance = 1e-5;
+  const LevelResult r = falling.solve(p, 5 * range);
+  CAPTURE(r.message);
+  REQUIRE(r.outcome == Outcome::converged);
+  REQUIRE(r.smallest_gap);
+  CHECK(*r.smallest_gap == Approx(r.x.col(2).minCoeff()));
+  REQUIRE(falling.rows.rows.size() == static_cast<std::size_t>(r.iterations));
+  PlainObjective plain(falling.model);
+  for (std::size_t i = 0; i < falling.rows.rows.size(); ++i) {
+    const IterationRow& row = falling.rows.rows[i];
+    const Positions& x = falling.rows.states[i];
+    REQUIRE(row.contacts);
+    REQUIRE(row.smallest_gap);
+    CHECK((*row.contacts > 0) == (x.col(2).minCoeff() < range));
+    plain.max_step(x, x);
+    CHECK(row.energy == Approx(plain.plain_energy(x)).epsilon(1e-9));  // friction is no part of it
+  }
+  CHECK(falling.rows.rows.back().contacts == 16);
+  // The floor bears the weight and friction the rest: the plain model, which has no friction, is out of
+  // balance by just that.
+  const double weight = Material().area_density() * 0.01;
+  Positions g;
+  falling.model.gradient(r.x, g);
+  CHECK(-g.colwise().sum().x() == Approx(0.98 * weight));
+  const auto set = falling.model.contacts()[0]->sweep(r.x, r.x)->build(r.x);
+  CHECK(-gradient_of(*set, r.x).col(2).sum() == Approx(9.81 * weight).epsilon(1e-4));
+  CHECK(falling.model.force_residual(r.x) == Approx(0.98 / std::hypot(0.98, 9.81)).epsilon(1e-3));
+
+  Falling free({});
+  p.max_steps = 3;
+  const LevelResult none = free.solve(p, 5 * range);
+  CHECK_FALSE(none.smallest_gap);
+  REQUIRE(!free.rows.rows.empty());
+  for (const IterationRow& row : free.rows.rows) {
+    CHECK_FALSE(row.contacts);
+    CHECK_FALSE(row.smallest_gap);
+  }
+}
+
+TEST_CASE("A level is converged with the friction of where it ends, however long its last step was") {
+  // It starts so low that the floor's forces, and friction with them, are far larger than at the end.
+  Falling falling({a_floor()});
+  NewtonParameters p;
+  p.force_tolerance = 1e-6;
+  p.form = NewtonForm::statics;
+  p.iterations_per_step = 20;
+  PlainObjective objective(falling.model);
+  const LevelResult r = minimise(objective, at(falling.level, 0, 0.9 * range), p, Stopwatch(), falling.rows);
+  CAPTURE(r.message);
+  REQUIRE(r.outcome == Outcome::converged);
+  Positions g;
+  objective.contacts().renew_lag(r.x);
+  objective.gradient(r.x, g);
+  CHECK(free_norm(g, falling.model.fixed()) / falling.model.residual_scale(r.x, g) <= 1e-6);
+}
+
+TEST_CASE("The objective's derivatives with limits, contact and friction") {
+  // A sheet rolled over a ball until its ends are within range of each other's layer below.
+  const Solved s = scene_from(R"(
+name: all
+cloth: {shape: rectangle, size: [0.3, 0.2], triangulation: random, vertices: 30}
+levels: 1
+material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e6}
+start: {translate: [-0.15, -0.1, 0.109], perturbation: 3e-3}
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3, stiffness: 100}, gravity]
+contact:
+  - {type: ipc, range: 0.02, stiffness: 20, friction: 0.4, slip_distance: 1e-3,
+     obstacles: [{name: shelf, shape: box, size: [0.05, 0.3, 0.1], translate: [0.12, 0, 0.05]}]}
+  - {type: shapes, range: 0.02, stiffness: 20, friction: 0.4, slip_distance: 1e-3,
+     shapes: [{name: ball, shape: sphere, radius: 0.1}]}
+methods: {newton: {}}
+)");
+  const LevelModel& model = s.model();
+  REQUIRE(model.contacts().size() == 2);
+  REQUIRE(model.limits().size() == 1);
+  PlainObjective objective(model);
+  const Positions& start = s.scene->starts[0];
+  Positions x = start;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    x.row(i) += Eigen::RowVector3d(0.04 * x(i, 0) + 2e-3, 0.1 * x(i, 1), -1e-3 * std::sin(40.0 * i));
+  }
+  objective.contacts().begin_step(start);
+  REQUIRE(objective.max_step(start, x).fraction == 1);
+  REQUIRE(objective.contacts().friction(x) > 0);
+  REQUIRE(objective.contacts().barrier(x) > 0);
+  for (const auto& contact : model.contacts()) REQUIRE(contact->sweep(x, x)->build(x)->contact_count() > 3);
+  REQUIRE(model.limits()[0]->value(x) > 0);
+
+  const auto value = [&](const Positions& y) {
+    REQUIRE(objective.max_step(x, y).fraction == 1);
+    return objective.value(y);
+  };
+  const auto gradient = [&](const Positions& y) {
+    REQUIRE(objective.max_step(x, y).fraction == 1);
+    Positions g;
+    CHECK(objective.gradient(y, g) == Approx(objective.value(y)).epsilon(1e-12));
+    return g;
+  };
+  const Positions g = gradient(x);
+  const Eigen::MatrixXd h = dense(objective.matrix(x, Projection::none));
+  REQUIRE(g.norm() > 0);
+  CHECK((differences(value, x, 1e-6) - flat(g).transpose()).norm() <= 1e-6 * g.norm());
+  CHECK((differences(gradient, x, 1e-6) - h).norm() <= 1e-5 * h.norm());
+  // All parts are in it: leaving one out is noticed.
+  CHECK(objective.plain_energy(x) == Approx(objective.value(x) - objective.contacts().friction(x)));
+  BlockMatrix smooth(model.pattern());
+  model.hessian(x, Projection::none, smooth);
+  CHECK((dense(smooth) - h).norm() > 1e-2 * h.norm());
+}

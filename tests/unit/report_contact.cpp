@@ -1,0 +1,131 @@
+// What a report says of contact: verdict, troubles, Table 1 as text, the Newton steps of the coarsest level.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/report/chart_data.h"
+#include "core/report/tables.h"
+
+using namespace drape;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+LevelRecord level_of(int index, Figure intersections, Figure gap) {
+  LevelRecord level;
+  level.level = index;
+  level.status = "converged";
+  level.intersections = intersections;
+  level.smallest_gap = gap;
+  return level;
+}
+
+MethodRecord method_of(const std::string& name, double d_H_fit) {
+  MethodRecord method;
+  method.name = name;
+  method.status = "converged";
+  method.levels = {level_of(0, 0, 2e-4), level_of(1, 0, 3e-4)};
+  ConsistencyRecord pair;
+  pair.coarse = 0;
+  pair.fine = 1;
+  pair.d_H_fit = d_H_fit;
+  method.consistency = {pair};
+  return method;
+}
+
+RunData contact_run() {
+  RunData run;
+  run.experiment = "sample";
+  run.table1_scene = "Drape over Sphere in Figure 6";
+  run.methods = {method_of("pcs", 12), method_of("a<b", 345)};
+  StepRow row;
+  row.smallest_gap = 1.5e-5;
+  run.iterations = {{"pcs", 0, {row, row}}};
+  return run;
+}
+
+std::string verdict_of(const RunData& run, bool sound) {
+  const auto verdict = intersection_verdict(run);
+  REQUIRE(verdict);
+  CHECK(verdict->sound == sound);
+  return verdict->text;
+}
+
+}  // namespace
+
+TEST_CASE("a run's verdict on intersections counts what was looked at") {
+  RunData run = contact_run();
+  CHECK(verdict_of(run, true) ==
+        "No intersection at any recorded state (4 levels looked at, smallest gap on the way 1.50e-5 m).");
+  run.iterations[0].rows[1].intersections = 0;
+  CHECK(verdict_of(run, true) ==
+        "No intersection at any recorded state (4 levels and 1 iteration looked at, smallest gap on the way "
+        "1.50e-5 m).");
+}
+
+TEST_CASE("one intersection anywhere is in the verdict") {
+  RunData run = contact_run();
+  SECTION("in a level's state") {
+    run.methods[1].levels[1].intersections = 3;
+    CHECK(verdict_of(run, false) ==
+          "Intersections: a<b, level 1: 3 intersecting pairs. log.jsonl names the first ones.");
+  }
+  SECTION("on the way") {
+    run.iterations[0].rows[0].intersections = 2;
+    CHECK(verdict_of(run, false) ==
+          "Intersections: pcs, level 0: intersections in 1 iteration. log.jsonl names the first ones.");
+  }
+}
+
+TEST_CASE("a run without contact has no verdict and no columns for it") {
+  RunData run = contact_run();
+  CHECK(summary_table(run).find("intersections") != std::string::npos);
+  CHECK(level_table(run).find("smallest gap") != std::string::npos);
+  for (MethodRecord& method : run.methods)
+    for (LevelRecord& level : method.levels) level.intersections = level.smallest_gap = Figure();
+  CHECK_FALSE(intersection_verdict(run));
+  CHECK(summary_table(run).find("intersections") == std::string::npos);
+  CHECK(level_table(run).find("smallest gap") == std::string::npos);
+}
+
+TEST_CASE("what did not converge is told with its message") {
+  RunData run = contact_run();
+  CHECK(troubles(run).empty());
+  LevelRecord& level = run.methods[1].levels[0];
+  level.status = "stalled";
+  level.message = "held by cloth triangle 3 & ball";
+  level.newton_iterations = 1;
+  level.force_residual = 1.01;
+  const std::string text = troubles(run);
+  CHECK(text.find("<b>a&lt;b</b>, level 0: stalled after 1 iterations at force residual 1.01: held by cloth "
+                  "triangle 3 &amp; ball") != std::string::npos);
+}
+
+TEST_CASE("Table 1 as text sets the paper's columns beside the run's") {
+  RunData run = contact_run();
+  const std::string text = table1_text(run);
+  CHECK(text.find("levels  measure  unit  pcs   a<b  paper: PCS  paper: SC\n"
+                  "0 → 1   d_H_fit  1     12.0  345  105         1400\n"
+                  "0 → 1   d_H_ddg  1     –     –    139         423\n") != std::string::npos);
+  CHECK(text.find("No intersection at any recorded state") != std::string::npos);
+
+  run.table1_scene.clear();
+  CHECK(table1_text(run).find("levels  measure  unit  pcs   a<b\n") == 0);
+  for (MethodRecord& method : run.methods) method.consistency.clear();
+  CHECK(table1_text(run) == "sample: no pair of levels has been compared\n");
+}
+
+TEST_CASE("Newton steps are the decrement times h, which a static method has from its settings") {
+  RunData run = contact_run();
+  run.methods[1].step_size = 0.5;
+  StepRow row;
+  row.decrement = 4;
+  run.iterations = {{"pcs", 0, {row}}, {"a<b", 0, {row}}};
+  run.iterations[0].rows[0].step_size = 0.25;
+  Json data = Json::parse(chart_data(run));
+  CHECK(data["coarsest"] == 0);
+  CHECK(data["series"][0]["step"] == Json::array({1}));
+  CHECK(data["series"][1]["step"] == Json::array({2}));
+  run.methods[1].step_size.reset();
+  CHECK(Json::parse(chart_data(run))["series"][1]["step"] == Json::array({nullptr}));
+}

@@ -1,0 +1,217 @@
+#include "core/numerics/safe_refinement.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/mesh/generate.h"
+#include "core/model/stretch_limit.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+/// A cloth on two levels, refined by Loop's weights, with what is to hold on both.
+struct TwoLevels {
+  Hierarchy hierarchy;
+  std::vector<std::unique_ptr<LevelModel>> models;
+  std::vector<Positions> starts;
+
+  TwoLevels(const TriangleMesh& coarse, const std::vector<std::string>& contacts,
+            const std::vector<std::string>& energies = {}, const std::vector<int>& pins = {})
+      : hierarchy(Hierarchy::of(coarse, *make_plugin_from<Refiner>("loop"), 2)) {
+    std::vector<NamedEnergy> own;
+    for (const std::string& energy : energies) own.push_back({energy, make_plugin_from<Energy>(energy)});
+    std::vector<std::shared_ptr<ContactModel>> models_of_contact;
+    for (const std::string& contact : contacts)
+      models_of_contact.push_back(make_plugin_from<ContactModel>(contact));
+    for (const Level& level : hierarchy.levels) {
+      std::vector<char> fixed(level.vertex_count(), 0);
+      for (const int v : pins) fixed[v] = 1;
+      models.push_back(std::make_unique<LevelModel>(level, Material(), own, fixed, models_of_contact));
+      starts.push_back(level.rest.vertices);
+    }
+  }
+
+  Problem problem() const { return {hierarchy, {models[0].get(), models[1].get()}, starts}; }
+  Positions target(const Positions& x) const { return hierarchy.prolongations[0] * x; }
+  Positions midpoint(const Positions& x) const { return hierarchy.midpoints[0] * x; }
+
+  Refined refine(const Positions& x) const {
+    Observer silent;
+    return refine_safely(problem(), 0, x, hierarchy.prolongations[0], Stopwatch(), silent);
+  }
+  std::size_t intersections(int level, const Positions& x) const {
+    std::size_t count = 0;
+    for (const auto& contact : models[level]->contacts()) count += contact->intersections(x).size();
+    return count;
+  }
+  std::size_t beyond_limit(int level, const Positions& x) const {
+    std::size_t count = 0;
+    for (const BoundEnergy* limit : models[level]->limits())
+      count += dynamic_cast<const StretchLimited&>(*limit).beyond(x).size();
+    return count;
+  }
+};
+
+double largest_distance(const Positions& x, const Positions& y) {
+  return (x - y).rowwise().norm().maxCoeff();
+}
+
+const std::string ball = "{type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.3}]}";
+
+/// A square that lies on a dome around the ball, as low as its triangles can without touching it.
+Positions over_the_ball(const TwoLevels& cloth) {
+  const Positions& rest = cloth.hierarchy.levels[0].rest.vertices;
+  const Eigen::RowVector3d middle = rest.colwise().mean();
+  const auto dome = [&](double radius) {
+    Positions x(rest.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Eigen::RowVector3d from_middle = rest.row(i) - middle;
+      const double along = from_middle.norm() / 0.32;  // an angle: the sheet is wrapped, not pressed flat
+      x.row(i) = radius * (along > 0 ? std::sin(along) / from_middle.norm() : 0) * from_middle;
+      x(i, 2) = radius * std::cos(along);
+    }
+    return x;
+  };
+  double low = 0.3, high = 0.4;
+  for (int k = 0; k < 40; ++k) {
+    const double radius = 0.5 * (low + high);
+    (cloth.intersections(0, dome(radius)) > 0 ? low : high) = radius;
+  }
+  return dome(high + 1e-4);
+}
+
+/// A sheet along y whose x–z profile is a tent, then goes back below it and up to just under its ridge.
+Positions tent_over_its_own_end(const Positions& rest, double gap) {
+  const double profile[13][2] = {{-.3, 0},  {-.2, .1}, {-.1, .2}, {0, .3}, {.1, .2}, {.2, .1},     {.3, 0},
+                                 {.2, -.1}, {.1, -.1}, {0, 0},    {0, .1}, {0, .2},  {0, .3 - gap}};
+  Positions x = rest;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const auto column = static_cast<int>(std::lround(rest(i, 0) / 0.1));
+    x(i, 0) = profile[column][0];
+    x(i, 2) = profile[column][1];
+  }
+  return x;
+}
+
+TriangleMesh thirteen_columns() { return grid({1.2, 0.4}, 13, 5, Diagonals::one_way); }
+
+}  // namespace
+
+TEST_CASE("Where nothing is to be kept, the refined state is the prolonged one, pins in place") {
+  TwoLevels cloth(grid({1, 1}, 5, 5, Diagonals::one_way), {}, {"neo_hookean"}, {7});
+  cloth.starts[1].row(7).z() = 0.25;
+  Positions x = cloth.starts[0];
+  for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = std::sin(3.0 * i);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(refined.iterations == 0);
+  Positions expected = cloth.target(x);
+  REQUIRE(expected(7, 2) != 0.25);
+  expected(7, 2) = 0.25;
+  CHECK(refined.x == expected);
+}
+
+TEST_CASE("A sheet around a ball is refined without touching it") {
+  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {ball});
+  const Positions x = over_the_ball(cloth), target = cloth.target(x);
+  REQUIRE(cloth.intersections(0, x) == 0);
+  REQUIRE(cloth.intersections(1, target) > 20);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(refined.iterations > 0);
+  CHECK(cloth.intersections(1, refined.x) == 0);
+  // No vertex is further from where it should be than the ball and the barrier's range make it.
+  double deepest = 0;
+  for (const auto& t : cloth.hierarchy.levels[1].rest.triangles.rowwise())
+    deepest = std::max(deepest, 0.3 - (target.row(t[0]) + target.row(t[1]) + target.row(t[2])).norm() / 3);
+  REQUIRE(deepest > 5e-4);
+  CHECK(largest_distance(refined.x, target) < deepest + 2e-3);
+  CHECK(largest_distance(refined.x, target) < largest_distance(cloth.midpoint(x), target));
+}
+
+TEST_CASE("A fold that would be smoothed through another layer is refined beside it") {
+  const TwoLevels cloth(thirteen_columns(), {"ipc"});
+  const Positions x = tent_over_its_own_end(cloth.starts[0], 2e-3), target = cloth.target(x);
+  REQUIRE(cloth.intersections(0, x) == 0);
+  REQUIRE(cloth.intersections(1, target) > 5);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(cloth.intersections(1, refined.x) == 0);
+  // Away from the ridge and the end below it, nothing keeps the sheet from its target.
+  const Positions& rest = cloth.hierarchy.levels[1].rest.vertices;
+  double near = 0, far = 0;
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const double away = (refined.x.row(i) - target.row(i)).norm();
+    const bool at_ridge = std::abs(rest(i, 0) - 0.3) < 0.06 || rest(i, 0) > 1.14;
+    (at_ridge ? near : far) = std::max(at_ridge ? near : far, away);
+  }
+  CHECK(far < 2e-4);
+  CHECK(near > 2e-3);  // what it had to give way
+  CHECK(near < 0.03);
+}
+
+TEST_CASE("Friction does not hold what is refined") {
+  const TwoLevels slippery(thirteen_columns(), {"ipc"}),
+      rough(thirteen_columns(), {"{type: ipc, friction: 1}"});
+  const Positions x = tent_over_its_own_end(slippery.starts[0], 0.9e-3);
+  const ContactModel& model = *make_plugin_from<ContactModel>("{type: ipc, friction: 1}");
+  const auto contact = model.bind(rough.hierarchy.levels[0], Material());
+  REQUIRE(contact->sweep(x, x)->build(x)->friction(x));
+  CHECK(slippery.refine(x).x == rough.refine(x).x);
+}
+
+TEST_CASE("A stretched disc comes to be within its strain limit, though its border is rounder when finer") {
+  const TwoLevels cloth(disc(0.3, 60), {}, {"{type: strain_limit, limit: 1.06}"});
+  Positions x = 1.04 * cloth.starts[0];
+  for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.01 * std::sin(8 * x(i, 0)) * std::cos(7 * x(i, 1));
+  REQUIRE(cloth.beyond_limit(0, x) == 0);
+  REQUIRE(cloth.beyond_limit(1, cloth.midpoint(x)) > 5);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(cloth.beyond_limit(1, refined.x) == 0);
+  CHECK(largest_distance(refined.x, cloth.target(x)) < 2e-3);
+  CHECK(largest_distance(refined.x, cloth.target(x)) <
+        0.5 * largest_distance(cloth.midpoint(x), cloth.target(x)));
+}
+
+TEST_CASE("Strain limit, obstacle and self-contact at once") {
+  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {"{type: ipc, friction: 0.2}", ball},
+                        {"{type: strain_limit, limit: 1.2}"});
+  const Positions x = over_the_ball(cloth);
+  REQUIRE(cloth.beyond_limit(0, x) == 0);
+  REQUIRE(cloth.intersections(1, cloth.target(x)) > 0);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(cloth.intersections(1, refined.x) == 0);
+  CHECK(cloth.beyond_limit(1, refined.x) == 0);
+}
+
+TEST_CASE("Triangles that cannot be within the strain limit are named") {
+  TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {}, {"{type: strain_limit, limit: 1.1}"},
+                  {0, 1});
+  // Fine vertices 0 and 1 are two fine edges apart: pins that are held 1.5 times that.
+  cloth.starts[1].row(1).x() = 0.15;
+  REQUIRE(cloth.beyond_limit(1, cloth.starts[1]) > 0);
+  const Refined refined = cloth.refine(cloth.starts[0]);
+  CHECK(refined.x.row(1) == cloth.starts[1].row(1));
+  REQUIRE(cloth.beyond_limit(1, refined.x) > 0);
+  CHECK_THAT(refined.fault,
+             Catch::Matches("the refined state is beyond the strain limit: triangle [0-9]+, stretched to "
+                            "[12]\\.[0-9]+ \\(limit 1\\.1\\).*"));
+  const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
+  const std::string first = to_string(limit.beyond(refined.x)[0], 1.1);
+  CHECK_THAT(refined.fault, Catch::Contains(": " + first));
+}
+
+TEST_CASE("A pin that cannot reach its place is told, with what is in its way") {
+  TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {ball}, {}, {12});
+  for (Positions& start : cloth.starts) start.rowwise() += Eigen::RowVector3d(-0.2, -0.2, 0.31);
+  cloth.starts[1].row(12).z() = 0.2;
+  const Positions x = cloth.starts[0];
+  const Refined refined = cloth.refine(x);
+  CHECK_THAT(refined.fault, Catch::StartsWith("a pin cannot reach its place: cloth triangle ") &&
+                                Catch::EndsWith(" and ball: sphere"));
+  CHECK(cloth.intersections(1, refined.x) == 0);
+}
