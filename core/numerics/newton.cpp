@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/model/stretch_limit.h"
 #include "core/numerics/block_cholesky.h"
 
 namespace drape {
@@ -63,6 +64,8 @@ constexpr double sufficient_decrease = 1e-4;
 constexpr double shortest_step = 1e-6;
 /// A line search that leaves less than this of a step says that h was too long.
 constexpr double shortened = 0.25;
+/// An implicit step is solved to this part of the force tolerance.
+constexpr double solved_part = 0.1;
 /// In place of a step length, where a step had none along the direction of a new matrix.
 constexpr double no_fresh_direction = 2;
 /// Differences of energies below this part of them are rounding, not descent.
@@ -99,8 +102,7 @@ class Newton {
     evaluate();
     if (std::isfinite(energy_)) update_residual();
     if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual))
-      return finish(Outcome::infeasible,
-                    "energy or forces at the start are not finite: a triangle is degenerate there");
+      return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
     while (true) {
       if (converged()) return finish(Outcome::converged, "");
       if (result_.steps == p_.max_steps)
@@ -129,6 +131,16 @@ class Newton {
     return result_.force_residual <= p_.force_tolerance;
   }
 
+  std::string fault_at_start() const {
+    for (const BoundEnergy* energy : model_.limits())
+      if (const auto* limit = dynamic_cast<const StretchLimited*>(energy))
+        if (const auto beyond = limit->beyond(result_.x); !beyond.empty())
+          return to_string(beyond.front(), limit->limit()) +
+                 (beyond.size() > 1 ? " and " + std::to_string(beyond.size() - 1) + " more" : "") +
+                 "; start nearer to the rest shape, or raise the limit";
+    return "a triangle is degenerate there";
+  }
+
   void evaluate() {
     PhaseTimer t(result_.seconds_by_phase, "gradient");
     energy_ = f_.gradient(result_.x, g_);
@@ -137,17 +149,24 @@ class Newton {
   /// One implicit step. False when no descent was found.
   bool step() {
     origin_ = result_.x;
+    const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
-    if (f_.contacts().has_friction()) evaluate();
+    if (had_friction || f_.contacts().has_friction()) evaluate();
     fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
-      if (converged()) break;
+      if (converged() || (k + 1 < p_.iterations_per_step && step_is_solved())) break;
     }
     ++result_.steps;
     if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
     if (fresh_alpha_ < shortened) h_ /= p_.step_growth;
     return true;
+  }
+
+  /// Whether more iterations of the implicit step would be about less than its end is asked for.
+  bool step_is_solved() {
+    shifted_gradient();
+    return free_norm(r_, model_.fixed()) <= solved_part * p_.force_tolerance * scale_;
   }
 
   bool iterate(int iteration) {

@@ -56,7 +56,7 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
       replaced(text_of(std::filesystem::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml"),
                "{shape: square, side: 0.4, columns: 9, rows: 9}", "{shape: file, file: sheets.obj}"));
   const std::string options =
-      "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=12 --set contact.0.self_contact=";
+      "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=6 --set contact.0.self_contact=";
   const auto meshes_with = [&](int threads) { return meshes_of(folder, options + "true", threads); };
   const auto one = meshes_with(1), two = meshes_with(2);
   CHECK((meshes_with(1) == one));

@@ -376,3 +376,18 @@ methods: {newton: {}}
   model.hessian(x, Projection::none, smooth);
   CHECK((dense(smooth) - h).norm() > 1e-2 * h.norm());
 }
+
+TEST_CASE("A start beyond the strain limit is named, and what to do about it") {
+  const Solved s = solve_yaml(R"(
+name: stretched
+cloth: {shape: square, side: 0.1, columns: 3, rows: 3}
+levels: 1
+start: {scale: [1.2, 1, 1]}
+energies: [neo_hookean, {type: strain_limit, limit: 1.1}, gravity]
+methods: {newton: {}}
+)");
+  CHECK(s.levels.back().outcome == Outcome::infeasible);
+  CHECK(s.levels.back().message ==
+        "energy or forces at the start are not finite: triangle 0, stretched to 1.2 (limit 1.1) and 7 more; "
+        "start nearer to the rest shape, or raise the limit");
+}

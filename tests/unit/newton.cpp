@@ -206,3 +206,18 @@ TEST_CASE("A matrix kept over several iterations reaches the same minimum with f
   REQUIRE(b.factorisations < b.iterations);
   REQUIRE(a.factorisations >= a.iterations);
 }
+
+TEST_CASE("An implicit step ends when it is solved, however many iterations it may take", "[newton]") {
+  Case patient;
+  NewtonParameters p = tight();
+  p.iterations_per_step = 50;
+  p.step_size = 0.01;
+  p.step_growth = 1;
+  p.max_steps = 20;
+  const LevelResult r = patient.solve(p, 0.4);
+  REQUIRE(r.outcome == Outcome::out_of_steps);  // so damped, it is under way
+  for (const IterationRow& row : patient.observer.rows) {
+    REQUIRE(row.step_size == 0.01);
+    REQUIRE(row.iteration < 10);
+  }
+}
