@@ -11,8 +11,8 @@
 
 namespace drape {
 
-/// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5), and how much of it:
-/// λ becomes (1 - share) λ + share max(λ, 0) for clamp, or |λ| in place of max(λ, 0) for absolute.
+/// What to do with negative eigenvalues of an element's Hessian (docs/method.md, section 5), and how much of
+/// it: λ becomes (1 - share) λ + share max(λ, 0) for clamp, or |λ| in place of max(λ, 0) for absolute.
 struct Projection {
   enum Kind { clamp, absolute, none };
   Kind kind = clamp;

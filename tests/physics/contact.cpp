@@ -171,8 +171,8 @@ TEST_CASE("On a slope cloth sticks below the angle of friction and slides above 
 }
 
 TEST_CASE("Drape coefficient of cotton in the Cusick test") {
-  // Woven cottons of this weight lie between 60 and 76 %. The supplement's stiffest, 8.21e5 Pa, is limper than
-  // they are, half as stiff again is among them.
+  // Woven cottons of this weight lie between 60 and 76 %. The supplement's stiffest, 8.21e5 Pa, is limper
+  // than they are, half as stiff again is among them.
   const double cotton = drape_coefficient(1.2e6);
   CAPTURE(cotton);
   CHECK(cotton > 0.60);
