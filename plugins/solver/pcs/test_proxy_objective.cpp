@@ -87,3 +87,46 @@ TEST_CASE("With depth 0 the matrix is the plain model's", "[proxy_objective]") {
   ProxyObjective galerkin(f.problem, 0, 1);
   REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - dense(plain)).norm() > 1e-3 * dense(plain).norm());
 }
+
+TEST_CASE("The proxy has the contact and the limits of its own level", "[proxy_objective]") {
+  Solved s = scene_from(R"(
+name: proxy
+cloth: {shape: rectangle, size: [0.3, 0.25], triangulation: random, vertices: 14}
+levels: 3
+material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e5}
+start: {translate: [0, 0, 0.01]}
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]
+contact: {type: shapes, shapes: [{name: floor, shape: half_space}]}
+methods: {pcs: {}}
+)");
+  const Problem problem = s.scene->problem();
+  ProxyObjective proxy(problem, 0, 8);
+  Positions x = s.scene->hierarchy.levels[0].rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    x(i, 0) *= 1.1;
+    x(i, 2) = 0.5e-3 + 2e-4 * std::sin(30 * x(i, 0) + 20 * x(i, 1));
+  }
+  const double shell = s.model().value(s.scene->hierarchy.prolong(x, 0, 2));
+  const double barrier = problem.models[0]->contacts()[0]->sweep(x, x)->build(x)->value(x);
+  const double limit = problem.models[0]->limits()[0]->value(x);
+  REQUIRE(barrier > 0);
+  REQUIRE(limit > 0);
+  // Every state of the differences is evaluated as the start of a way of its own.
+  const auto prepared = [&](const Positions& y) -> ProxyObjective& {
+    proxy.max_step(y, y);
+    return proxy;
+  };
+  CHECK(prepared(x).value(x) == Approx(shell + barrier + limit).epsilon(1e-12));
+  Positions g;
+  prepared(x).gradient(x, g);
+  const Eigen::VectorXd expected =
+      differences([&](const Positions& y) { return prepared(y).value(y); }, x, 1e-6).transpose();
+  CHECK((flat(g) - expected).norm() <= 1e-6 * g.norm());
+  const Eigen::MatrixXd h = dense(prepared(x).matrix(x, Projection::none));
+  const auto gradient = [&](const Positions& y) {
+    Positions at;
+    prepared(y).gradient(y, at);
+    return at;
+  };
+  CHECK((h - differences(gradient, x, 1e-6)).norm() <= 1e-6 * h.norm());
+}
