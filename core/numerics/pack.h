@@ -148,6 +148,17 @@ Pack<W> sqrt(Pack<W> a) {  // masked, since g++ 12 takes the plain intrinsic's o
   return a;
 }
 
+/// 1/√a to 14 bits or better; +∞ at 0.
+inline double reciprocal_sqrt(double a) { return 1 / std::sqrt(a); }
+template <int W>
+Pack<W> reciprocal_sqrt(Pack<W> a) {
+#ifdef __AVX512F__
+  if constexpr (W == 8)
+    return Pack<W>::of((typename Pack<W>::Lanes)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)a.v));
+#endif
+  return 1.0 / sqrt(a);
+}
+
 /// base[index[0]], base[index[1]], …
 template <int W>
 Pack<W> gather_lanes(const double* base, const int* index) {

@@ -57,20 +57,31 @@ inline void turn(Rotation<T> r, T& p, T& q) {
   q = r.s * old + r.c * q;
 }
 
-/// Makes the 2×2 block (app, apq; apq, aqq) diagonal by a rotation of at most π/4.
+/// The rotation of at most π/4 that makes the 2×2 block (app, apq; apq, aqq) diagonal but for some 1e-8 of
+/// apq, which the next sweep finishes: square roots and divisions to full precision would be most of the
+/// work. The rotation itself is orthonormal to rounding.
 template <class T>
-inline Rotation<T> diagonalise(T& app, T& apq, T& aqq) {
-  using std::abs, std::sqrt;
-  const T d = aqq - app, b = 2.0 * apq, middle = 0.5 * (app + aqq);
-  const T distance = sqrt(d * d + b * b), h = abs(d) + distance;  // tan = ± b / h
-  const T length = sqrt(h * h + b * b);
-  const auto nothing = length == 0.0, down = d < 0.0;
-  const T half = 0.5 * select(down, -distance, distance);
-  app = middle - half;
-  apq = 0.0;
-  aqq = middle + half;
-  const T inverse = 1.0 / select(nothing, T(1.0), length);
-  return {select(nothing, T(1.0), h * inverse), select(down, -b, b) * inverse};
+inline Rotation<T> diagonalising(const T& app, const T& apq, const T& aqq) {
+  using std::abs, std::max;
+  constexpr double tiny = 1e-300;
+  const T d = aqq - app, b = 2.0 * apq, square = d * d + b * b;
+  T root = reciprocal_sqrt(max(square, T(tiny)));
+  root = root * (1.5 - 0.5 * square * root * root);
+  const T h = abs(d) + square * root;  // tan = ± b / h
+  root = reciprocal_sqrt(max(h * h + b * b, T(tiny)));
+  const T c = select(square > tiny, h * root, T(1.0)), s = select(d < 0.0, -b, b) * root;
+  const T short_of = 1.0 - (c * c + s * s);
+  const T scale = 1.0 + short_of * (0.5 + short_of * (0.375 + short_of * 0.3125));
+  return {c * scale, s * scale};
+}
+
+/// Jᵀ A J of a pair's own 2×2 block.
+template <class T>
+inline void turn_block(Rotation<T> r, T& app, T& apq, T& aqq) {
+  const T difference = app - aqq, change = r.s * (r.s * difference + 2.0 * r.c * apq);  // c² = 1 - s²
+  apq = r.c * (r.s * difference + r.c * apq) - r.s * r.s * apq;
+  app -= change;
+  aqq += change;
 }
 
 /// The part of Jᵀ A J, J the round's rotations, that is not the pairs' own 2×2 blocks. Unrolled, so that
@@ -103,7 +114,8 @@ inline void find_and_rotate(SymmetricMatrix<N, T>& a, Rotation<T>* rotations) {
 #pragma GCC unroll 8
   for (int i = 0; i < all.pairs; ++i) {
     const int p = all.pair[Round][i][0], q = all.pair[Round][i][1];
-    rotations[i] = diagonalise(a(p, p), a(p, q), a(q, q));
+    rotations[i] = diagonalising(a(p, p), a(p, q), a(q, q));
+    turn_block(rotations[i], a(p, p), a(p, q), a(q, q));
   }
   rotate_others<Round>(a, rotations);
 }
@@ -114,14 +126,9 @@ inline void rotate_back(SymmetricMatrix<N, T>& a, const Rotation<T>* rotations) 
   Rotation<T> inverse[all.pairs];
 #pragma GCC unroll 8
   for (int i = 0; i < all.pairs; ++i) {
-    const T c = rotations[i].c, s = -rotations[i].s;
-    inverse[i] = {c, s};
+    inverse[i] = {rotations[i].c, -rotations[i].s};
     const int p = all.pair[Round][i][0], q = all.pair[Round][i][1];
-    T &app = a(p, p), &apq = a(p, q), &aqq = a(q, q);
-    const T difference = app - aqq, change = s * (s * difference + 2.0 * c * apq);  // c² = 1 - s²
-    apq = c * (s * difference + c * apq) - s * s * apq;
-    app -= change;
-    aqq += change;
+    turn_block(inverse[i], a(p, p), a(p, q), a(q, q));
   }
   rotate_others<Round>(a, inverse);
 }
