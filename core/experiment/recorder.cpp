@@ -180,7 +180,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
                                  const std::string& fields_file) {
-  Json row;
+  Json row = Json::object();  // stays one without a metric of pairs
   VertexFields fields;
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
@@ -216,11 +216,11 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
   write_pvd(folder_.file("levels/" + method_ + ".pvd"), frames);
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
-      const Positions carried = scene_.hierarchy.prolong(results[c].x, results[c].level, results[f].level);
-      const std::string tag = method_ + "_l" + std::to_string(c) + "_l" + std::to_string(f);
-      Json row = {{"coarse", c}, {"fine", f}};
-      row.update(compare(results[f].level, results[f].x, carried,
-                         results[f].level == finest ? "fields/" + tag + ".ply" : ""));
+      const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
+      const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine);
+      const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
+      Json row = {{"coarse", coarse}, {"fine", fine}};
+      row.update(compare(fine, results[f].x, carried, fine == finest ? "fields/" + tag + ".ply" : ""));
       entry["consistency"].push_back(row);
     }
   if (!sound_of_method_) worst = Outcome::infeasible;

@@ -1,0 +1,29 @@
+#include "core/model/metric.h"
+#include "core/plugin/plugin.h"
+
+namespace {
+
+/// How high and how low a state reaches, and the height at each vertex for a picture.
+class Height : public drape::Metric {
+ public:
+  struct Parameters {
+    static void declare(drape::Declaration<Parameters>&) {}
+  };
+
+  explicit Height(const Parameters&) {}
+
+  drape::MetricScope scope() const override { return drape::MetricScope::state; }
+
+  drape::MetricResult evaluate(const drape::MetricInput& input) const override {
+    const auto z = input.x.col(2);
+    return {{{"lowest", z.minCoeff(), "m", drape::Better::neither},
+             {"highest", z.maxCoeff(), "m", drape::Better::neither}},
+            {{"height", z, "m"}}};
+  }
+};
+
+}  // namespace
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Metric, Height>("height", "Lowest and highest point of a state.");
+}
