@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
+#include <fstream>
 #include <iostream>
 
 #include "core/experiment/experiment.h"
@@ -162,6 +163,26 @@ int describe_plugin(const std::string& name, const Registry& registry) {
   return exit_bad_input;
 }
 
+/// Writes the parameters of every plugin that has one into FOLDER/KIND/NAME/README.md.
+int reference_into(const std::filesystem::path& folder, const Registry& registry) {
+  int pages = 0;
+  for (const auto& entry : registry.entries()) {
+    const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
+    std::ifstream in(file, std::ios::binary);
+    if (!in) continue;
+    const std::string page(std::istreambuf_iterator<char>(in), {});
+    in.close();
+    if (!(std::ofstream(file, std::ios::binary) << with_parameters(page, *entry)).flush())
+      throw std::runtime_error(file.string() + ": cannot be written");
+    ++pages;
+  }
+  if (pages == 0)
+    throw std::runtime_error("--readmes " + folder.string() +
+                             ": no KIND/NAME/README.md of a plugin there; give the folder `plugins`");
+  std::cout << pages << " pages written\n";
+  return 0;
+}
+
 int reference(const Registry& registry) {
   std::cout << "# Configuration reference\n\nMade by `drape reference`; do not edit.\n\n## Experiment\n\n"
             << describe_markdown(schema_of<ExperimentParameters>("experiment"));
@@ -227,6 +248,8 @@ int main_checked(int argc, char** argv) {
       app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
   CLI::App* reference_command =
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
+  reference_command->add_option("--readmes", run_folder,
+                                "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
 
   if (argc < 2) {
     std::cerr << app.help();
@@ -260,7 +283,8 @@ int main_checked(int argc, char** argv) {
     std::cout << json_schema(schema_of<ExperimentParameters>("experiment"), &registry).dump(2) << "\n";
     return 0;
   }
-  if (*reference_command) return reference(registry);
+  if (*reference_command)
+    return run_folder.empty() ? reference(registry) : reference_into(run_folder, registry);
   return exit_bad_input;
 }
 

@@ -123,4 +123,13 @@ std::string describe_markdown(const RegistryEntry& entry) {
          describe_markdown(entry.schema);
 }
 
+std::string with_parameters(const std::string& page, const RegistryEntry& entry) {
+  static const std::string heading = "## Parameters\n";
+  const std::size_t at = page.find("\n" + heading);
+  const std::size_t next = at == std::string::npos ? at : page.find("\n## ", at + heading.size());
+  const std::string before = at == std::string::npos ? page + "\n" : page.substr(0, at + 1);
+  return before + heading + "\nMade by `drape reference --readmes`; do not edit.\n\n" +
+         describe_markdown(entry.schema) + (next == std::string::npos ? "" : page.substr(next));
+}
+
 }  // namespace drape

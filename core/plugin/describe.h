@@ -16,6 +16,10 @@ std::string describe(const RegistryEntry& entry);  ///< the same after the entry
 std::string describe_markdown(const Schema& schema);
 std::string describe_markdown(const RegistryEntry& entry);  ///< the same under a heading and the summary
 
+/// A plugin's own page with what follows its heading "## Parameters", up to the next one, made anew; the
+/// heading comes last where there was none.
+std::string with_parameters(const std::string& page, const RegistryEntry& entry);
+
 /// For editors: the JSON Schema of configs with this schema. With a registry, nodes that choose a plugin
 /// allow the names and parameters of those in it; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);

@@ -10,6 +10,7 @@
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 using Catch::Matchers::Matches;
 using Catch::Matchers::StartsWith;
 
@@ -113,6 +114,30 @@ TEST_CASE("reference is docs/reference.md, which is up to date") {
   const fs::path stored = fs::path(DRAPE_SOURCE_DIR) / "docs/reference.md";
   INFO("after a change, run: build/bin/drape reference > docs/reference.md");
   CHECK((text_of(stored) == page));
+}
+
+TEST_CASE("every plugin has a page of its own, with its parameters up to date") {
+  const Scratch folder;
+  const fs::path plugins = fs::path(DRAPE_SOURCE_DIR) / "plugins";
+  for (const auto& entry : test_registry().entries()) {
+    const fs::path name = fs::path(entry->kind) / entry->name / "README.md";
+    INFO(name.string());
+    REQUIRE(fs::exists(plugins / name));
+    fs::create_directories((folder / "pages" / name).parent_path());
+    fs::copy_file(plugins / name, folder / "pages" / name);
+  }
+  folder.write("pages/energy/gravity/README.md", "# gravity\n\n## Parameters\n\nold\n\n## Source\n\nours\n");
+  REQUIRE(drape_with("reference --readmes pages", folder.path).exit_code == 0);
+  const std::string gravity = text_of(folder / "pages/energy/gravity/README.md");
+  CHECK_THAT(gravity, Contains("`acceleration`") && EndsWith("|\n\n## Source\n\nours\n") && !Contains("old"));
+  INFO("after a change, run: build/bin/drape reference --readmes plugins");
+  for (const auto& entry : test_registry().entries()) {
+    const fs::path name = fs::path(entry->kind) / entry->name / "README.md";
+    INFO(name.string());
+    if (entry->name != "gravity") CHECK((text_of(plugins / name) == text_of(folder / "pages" / name)));
+  }
+  CHECK(refused_by("reference --readmes nowhere") ==
+        "error: --readmes nowhere: no KIND/NAME/README.md of a plugin there; give the folder `plugins`\n");
 }
 
 TEST_CASE("report makes a run's page again, and says what it needs") {
