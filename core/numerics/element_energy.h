@@ -14,15 +14,27 @@
 
 namespace drape {
 
-/// project_hessian of a kernel's Hessian at the differences d.
+/// A kernel's Hessian at the differences d, projected: as a whole, or in the parts that the kernel has it in.
 template <class Kernel, int Size, class T>
-void project(const Eigen::Matrix<T, 3, 1>* d, SymmetricMatrix<Size, T>& h, Projection projection) {
-  if constexpr (requires(Eigen::Matrix<T, 3, 1> * n) { Kernel::null_direction(d, n); }) {
-    Eigen::Matrix<T, 3, 1> n[Size / 3];
-    Kernel::null_direction(d, n);
-    project_hessian(h, projection, n[0].data());
+void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projection projection,
+                       SymmetricMatrix<Size, T>& h) {
+  Eigen::Matrix<T, Size, Size> full;
+  const auto project_part = [&](auto& part) {
+    constexpr int n = std::decay_t<decltype(part)>::RowsAtCompileTime;
+    if (projection.is_exact()) return;
+    SymmetricMatrix<n, T> m(part);
+    if (positive_semidefinite(m)) return;
+    projection_detail::project_eigenvalues(m, projection);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i <= j; ++i) part(i, j) = m(i, j);
+  };
+  if constexpr (requires { Kernel::hessian(d, rest, full, project_part); }) {
+    Kernel::hessian(d, rest, full, project_part);
+    h = SymmetricMatrix<Size, T>(full);
   } else {
-    project_hessian(h, projection);
+    Kernel::hessian(d, rest, full);
+    h = SymmetricMatrix<Size, T>(full);
+    if constexpr (!Kernel::convex) project_hessian(h, projection);
   }
 }
 
@@ -34,8 +46,13 @@ void project(const Eigen::Matrix<T, 3, 1>* d, SymmetricMatrix<Size, T>& h, Proje
 ///     T value(const Vector3<T>* d, const T* rest);
 ///     T gradient(const Vector3<T>* d, const T* rest, Vector3<T>* g);      // by d_i; returns the value
 ///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h);     // upper 3×3 blocks
-///     void null_direction(const Vector3<T>* d, Vector3<T>* n);            // optional: what the Hessian
-///     takes to 0
+///
+/// A kernel whose Hessian falls into independent parts in coordinates of its own may also have
+///
+///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h, const Map& map);
+///
+/// which calls map(part) on each, a small symmetric matrix whose upper triangle counts, and puts together
+/// what map leaves: the projection is then made in those coordinates, and is much cheaper.
 ///
 /// A value that is not a number counts as +∞.
 template <class Kernel, int W = native_pack_width>
@@ -97,8 +114,7 @@ class ElementEnergy final : public BoundEnergy {
         Vector d[k - 1];
         Hessian h;
         gather(packs_[p], x, d);
-        hessian(d, packs_[p].rest, h);
-        if constexpr (!Kernel::convex) project<Kernel>(d, h, projection);
+        projected_hessian<Kernel>(d, packs_[p].rest, projection, h);
         scatter(packs_[p], h, sink);
       }
     });
@@ -167,13 +183,6 @@ class ElementEnergy final : public BoundEnergy {
         double* to = g.data() + pack.vertices[v][lane];
         for (int c = 0; c < 3; ++c) to[c] += all[v][c].v[lane];
       }
-  }
-
-  static void hessian(const Vector* d, const T* rest, Hessian& h) {
-    Eigen::Matrix<T, 3 * (k - 1), 3 * (k - 1)> full;
-    Kernel::hessian(d, rest, full);
-    for (int j = 0; j < 3 * (k - 1); ++j)
-      for (int i = 0; i <= j; ++i) h(i, j) = full(i, j);
   }
 
   // Vertex 0's blocks follow from translation invariance: every block row sums to zero.

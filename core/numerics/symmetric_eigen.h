@@ -12,6 +12,14 @@ template <int N, class T>
 struct SymmetricMatrix {
   T upper[N * (N + 1) / 2];  ///< column by column
 
+  SymmetricMatrix() = default;
+  /// Of the upper triangle of anything that has entries (i, j).
+  template <class Matrix>
+  explicit SymmetricMatrix(const Matrix& m) {
+    for (int j = 0; j < N; ++j)
+      for (int i = 0; i <= j; ++i) (*this)(i, j) = m(i, j);
+  }
+
   static constexpr int place(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
   T& operator()(int i, int j) { return upper[place(i, j)]; }
   const T& operator()(int i, int j) const { return upper[place(i, j)]; }

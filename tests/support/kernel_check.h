@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
+#include <functional>
 #include <random>
 
 #include "core/numerics/element_energy.h"
@@ -105,23 +106,24 @@ struct KernelCheck {
     return e.transpose() * h * e;
   }
 
-  /// Projections against Eigen's eigenvalues of the full matrix, to 1e-10 of its norm; returns the smallest
-  /// eigenvalue over the norm before.
+  /// Projections against Eigen's eigenvalues of the full matrix, or of what else `matrix_of` makes of the
+  /// Hessian by the differences, to 1e-10 of its norm; returns the smallest eigenvalue over the norm before.
   template <class T>
-  static double projections(const State& x, const Rest& rest) {
+  static double projections(const State& x, const Rest& rest,
+                            const std::function<Eigen::MatrixXd(const Hessian&)>& matrix_of = by_vertices) {
     const Hessian h = evaluate(x, rest).hessian;
-    const Eigen::MatrixXd full = by_vertices(h);
+    const Eigen::MatrixXd full = matrix_of(h);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
     using drape::Projection;
     for (const Projection projection :
          {Projection(Projection::clamp), Projection(Projection::absolute), Projection(Projection::none),
           Projection(Projection::clamp, 0.3), Projection(Projection::absolute, 0.2)}) {
       drape::SymmetricMatrix<n, T> a;
-      for (int j = 0; j < n; ++j)
-        for (int i = 0; i <= j; ++i) a(i, j) = h(i, j);
       Eigen::Matrix<T, 3, 1> d[n / 3];
       for (int i = 0; i < n; ++i) d[i / 3][i % 3] = x[i];
-      project(d, a, projection);
+      T rests[Rest::SizeAtCompileTime];
+      for (int i = 0; i < Rest::SizeAtCompileTime; ++i) rests[i] = rest[i];
+      project(d, rests, projection, a);
       Hessian projected;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
@@ -131,10 +133,10 @@ struct KernelCheck {
       if (projection.kind == Projection::absolute) values = (1 - share) * values + share * values.cwiseAbs();
       const Eigen::MatrixXd expected =
           eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-      CHECK((by_vertices(projected) - expected).norm() <= 1e-10 * full.norm());
+      CHECK((matrix_of(projected) - expected).norm() <= 1e-10 * full.norm());
       if (projection.kind == Projection::none || share < 1) continue;
       const double smallest =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(by_vertices(projected)).eigenvalues()[0];
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix_of(projected)).eigenvalues()[0];
       CHECK(smallest >= -1e-12 * full.norm());
     }
     return eigen.eigenvalues()[0] / full.norm();
@@ -142,9 +144,9 @@ struct KernelCheck {
 
  private:
   template <class T>
-  [[gnu::noinline]] static void project(const Eigen::Matrix<T, 3, 1>* d, drape::SymmetricMatrix<n, T>& a,
-                                        drape::Projection projection) {
-    drape::project<Kernel>(d, a, projection);
+  [[gnu::noinline]] static void project(const Eigen::Matrix<T, 3, 1>* d, const T* rest,
+                                        drape::Projection projection, drape::SymmetricMatrix<n, T>& a) {
+    drape::projected_hessian<Kernel>(d, rest, projection, a);
   }
   static double first_lane(double v) { return v; }
   template <int W>

@@ -84,7 +84,7 @@ TEST_CASE("map_eigenvalues gives V f(Λ) Vᵀ, one matrix or one a lane") {
 }
 
 TEST_CASE("map_eigenvalues ends, whatever it is given") {
-  SymmetricMatrix<3, double> a = {{1, NAN, 2, 0, 0, 1}};
+  SymmetricMatrix<3, double> a(Eigen::Matrix3d{{1, NAN, 0}, {NAN, 2, 0}, {0, 0, 1}});
   map_eigenvalues(a, [](double e) { return e; });
   SUCCEED();
 }

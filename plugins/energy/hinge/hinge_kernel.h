@@ -55,23 +55,56 @@ struct HingeKernel {
   /// The upper blocks of the 9×9 Hessian by (e, u, v): 2 c (∇θ ∇θᵀ + (θ - θ̄) ∇²θ).
   template <class T>
   static void hessian(const Vector<T>* x, const T* rest, Eigen::Matrix<T, 9, 9>& h) {
+    hessian(x, rest, h, [](Eigen::Matrix<T, 4, 4>&) {});
+  }
+
+  /// The same of its two symmetric 4×4 parts, upper triangles, after `map` has changed them.
+  ///
+  /// By e, q = u - s_u e and r = v - s_v e (the points' distances from their feet) the second derivatives of
+  /// φ are those of n·q m·q / h² + n·e t·q / (h ‖e‖) + n·e m·e / (2 ‖e‖²), so that (n_u·q, m_u·q, n_v·r,
+  /// m_v·r) and (n_u·e, m_u·e, t·q, t·r) do not meet. Stretching along e changes nothing.
+  template <class T, class Map>
+  static void hessian(const Vector<T>* x, const T* rest, Eigen::Matrix<T, 9, 9>& h, const Map& map) {
     const Axis<T> axis(x[0]);
     const Azimuth<T> u(axis, x[1]), v(axis, x[2]);
     const T scale = 2.0 * rest[0], bend = scale * (angle(x) - rest[1]);
-    const Vector<T> ge = u.by_axis() - v.by_axis(), gu = u.by_point(), gv = -v.by_point();
-    h.template block<3, 3>(0, 0) = (ge * scale) * ge.transpose() + (u.axis_axis() - v.axis_axis()) * bend;
-    h.template block<3, 3>(0, 3) = (ge * scale) * gu.transpose() + u.axis_point() * bend;
-    h.template block<3, 3>(0, 6) = (ge * scale) * gv.transpose() - v.axis_point() * bend;
-    h.template block<3, 3>(3, 3) = (gu * scale) * gu.transpose() + u.point_point() * bend;
-    h.template block<3, 3>(3, 6) = (gu * scale) * gv.transpose();
-    h.template block<3, 3>(6, 6) = (gv * scale) * gv.transpose() - v.point_point() * bend;
-  }
+    const T l = axis.inverse_length, wu = u.inverse_height, wv = v.inverse_height;
+    const T c = u.n.dot(v.n), k = u.m.dot(v.n), zero = 0.0;
 
-  /// Stretching everything along the axis changes neither the energy nor its gradient.
-  template <class T>
-  static void null_direction(const Vector<T>* x, Vector<T>* n) {
-    const Axis<T> axis(x[0]);
-    for (int i = 0; i < 3; ++i) n[i] = axis.unit * (axis.unit.dot(x[i]) * axis.inverse_length);
+    Eigen::Matrix<T, 4, 4> across, along;
+    across(0, 0) = scale * wu * wu, across(0, 1) = bend * wu * wu, across(1, 1) = zero;
+    across(2, 2) = scale * wv * wv, across(2, 3) = -bend * wv * wv, across(3, 3) = zero;
+    across(0, 2) = -scale * wu * wv, across(0, 3) = across(1, 2) = across(1, 3) = zero;
+    const T ll = bend * l * l;
+    along(0, 0) = ll * c * k, along(0, 1) = ll * k * k, along(1, 1) = -along(0, 0);
+    along(0, 2) = bend * l * wu, along(0, 3) = -bend * l * wv * c;
+    along(1, 2) = zero, along(1, 3) = -bend * l * wv * k;
+    along(2, 2) = along(2, 3) = along(3, 3) = zero;
+    map(across);
+    map(along);
+
+    const Vector<T>& t = axis.unit;
+    const Vector<T> qn = u.n * across(0, 0) + u.m * across(0, 1),
+                    qm = u.n * across(0, 1) + u.m * across(1, 1);
+    const Vector<T> rn = v.n * across(2, 2) + v.m * across(2, 3),
+                    rm = v.n * across(2, 3) + v.m * across(3, 3);
+    const Vector<T> sn = u.n * across(0, 2) + u.m * across(1, 2),
+                    sm = u.n * across(0, 3) + u.m * across(1, 3);
+    const Block<T> qq = qn * u.n.transpose() + qm * u.m.transpose() + (t * along(2, 2)) * t.transpose();
+    const Block<T> rr = rn * v.n.transpose() + rm * v.m.transpose() + (t * along(3, 3)) * t.transpose();
+    const Block<T> qr = sn * v.n.transpose() + sm * v.m.transpose() + (t * along(2, 3)) * t.transpose();
+    const Block<T> eq = (u.n * along(0, 2) + u.m * along(1, 2)) * t.transpose();
+    const Block<T> er = (u.n * along(0, 3) + u.m * along(1, 3)) * t.transpose();
+    const Vector<T> en = u.n * along(0, 0) + u.m * along(0, 1), em = u.n * along(0, 1) + u.m * along(1, 1);
+
+    const Block<T> eu = eq - qq * u.s - qr.transpose() * v.s, ev = er - qr * u.s - rr * v.s;
+    h.template block<3, 3>(0, 0) = en * u.n.transpose() + em * u.m.transpose() - (eq.transpose() + eu) * u.s -
+                                   (er.transpose() + ev) * v.s;
+    h.template block<3, 3>(0, 3) = eu;
+    h.template block<3, 3>(0, 6) = ev;
+    h.template block<3, 3>(3, 3) = qq;
+    h.template block<3, 3>(3, 6) = qr;
+    h.template block<3, 3>(6, 6) = rr;
   }
 
  private:
@@ -88,7 +121,7 @@ struct HingeKernel {
     }
   };
 
-  /// Derivatives of the azimuth φ(e, p) of a point about an axis, in the frame t, n, m: n normal to both,
+  /// The azimuth φ(e, p) of a point about an axis, in the frame t, n, m: n normal to both,
   /// m = n × t towards the point, h the distance, s the foot's place along e (0 … 1 on the edge).
   template <class T>
   struct Azimuth {
@@ -106,21 +139,6 @@ struct HingeKernel {
     }
     Vector<T> by_point() const { return n * -inverse_height; }
     Vector<T> by_axis() const { return n * (s * inverse_height); }
-    Block<T> point_point() const { return symmetric(m * (inverse_height * inverse_height)); }
-    Block<T> axis_point() const {
-      const T w = inverse_height * inverse_height;
-      return symmetric(m * (-s * w)) + (n * (axis.inverse_length * inverse_height)) * axis.unit.transpose();
-    }
-    /// Without its antisymmetric part [t]×/2‖e‖², which is the same for every point.
-    Block<T> axis_axis() const {
-      const T l = axis.inverse_length, w = s * inverse_height;
-      return symmetric(m * (w * w + 0.5 * l * l) - axis.unit * (w * l));
-    }
-    /// n aᵀ + a nᵀ.
-    Block<T> symmetric(const Vector<T>& a) const {
-      const Block<T> product = n * a.transpose();
-      return product + product.transpose();
-    }
   };
 };
 

@@ -69,11 +69,18 @@ TEST_CASE("hinge: lanes compute what double does") {
     for (const auto& x : states()) Check::all_lanes(x, rest, rest[0]);
 }
 
-TEST_CASE("hinge: projection is that of the full element matrix") {
+TEST_CASE("hinge: projection is that of the matrix by the axis and the points' distances from it") {
   double smallest = 0;
   for (const auto& x : states()) {
-    smallest = std::min(smallest, Check::projections<double>(x, bent_rest));
-    Check::projections<Pack<8>>(x, bent_rest);
+    const auto matrix_of = [&](const Check::Hessian& h) {
+      Check::Hessian back = Check::Hessian::Identity();  // e, u, v from e, u - s_u e, v - s_v e
+      const Eigen::Vector3d e = x.head<3>();
+      for (const int i : {3, 6})
+        back.block<3, 3>(i, 0) = x.segment<3>(i).dot(e) / e.squaredNorm() * Eigen::Matrix3d::Identity();
+      return Eigen::MatrixXd(back.transpose() * h * back);
+    };
+    smallest = std::min(smallest, Check::projections<double>(x, bent_rest, matrix_of));
+    Check::projections<Pack<8>>(x, bent_rest, matrix_of);
   }
   REQUIRE(smallest < -1e-3);                                          // else nothing was projected
   CHECK(Check::projections<Pack<8>>(folded(0), flat_rest) > -1e-12);  // rank one: nothing to project
