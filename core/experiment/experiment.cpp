@@ -269,10 +269,15 @@ class Maker {
 
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors) {
-  Experiment e;
-  e.source = read_yaml(file, errors);
+  ConfigNode source = read_yaml(file, errors);
   if (!errors.empty()) return std::nullopt;
-  for (const auto& [key, value] : overrides) set_path(e.source, key, value, errors);
+  for (const auto& [key, value] : overrides) set_path(source, key, value, errors);
+  return read_experiment(std::move(source), registry, errors);
+}
+
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors) {
+  Experiment e;
+  e.source = std::move(source);
   const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&e.parameters, e.source, errors);
   e.resolved = schema.write(&e.parameters);

@@ -107,6 +107,9 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors);
 
+/// The same from a file's map that has been read already, overrides and all.
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
+
 /// The levels, models and starts of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;

@@ -16,6 +16,9 @@ std::string describe(const RegistryEntry& entry);  ///< the same after the entry
 std::string describe_markdown(const Schema& schema);
 std::string describe_markdown(const RegistryEntry& entry);  ///< the same under a heading and the summary
 
+/// The node as JSON: a plain scalar that spells a number or a boolean is one.
+nlohmann::ordered_json json_value(const ConfigNode& node);
+
 /// For editors: the JSON Schema of configs with this schema. With a registry, nodes that choose a plugin
 /// allow the names and parameters of those in it; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
