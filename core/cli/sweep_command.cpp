@@ -65,9 +65,8 @@ void SweepCommand::check_options(int threads) const {
     if (given) throw std::runtime_error(std::string(given) + " is of --engine slurm; give that too");
     const int workers = std::max(1, workers_), cores = core_count();
     if (workers * threads > cores)
-      throw std::runtime_error(std::to_string(workers) + " worker" + (workers == 1 ? "" : "s") + " with " +
-                               std::to_string(threads) + " thread" + (threads == 1 ? "" : "s") +
-                               " each are more than the " + std::to_string(cores) +
+      throw std::runtime_error(std::to_string(workers) + " × " + std::to_string(threads) +
+                               " threads (workers × threads) are more than the " + std::to_string(cores) +
                                " cores of this machine; lower --workers or --threads");
   }
 }

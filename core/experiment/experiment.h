@@ -100,6 +100,11 @@ struct Experiment {
   Location place_of(const std::string& key) const;
 };
 
+/// An error unless the name, of an experiment, a method or a sweep, can be one of files and a cell of a
+/// table.
+void check_name(const std::string& what, const std::string& name, const Location& where,
+                ConfigErrors& errors);
+
 /// Values given beside the file, `key.path=value`, in order.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/io.h"
@@ -51,13 +52,16 @@ class Reader {
     if (!errors_.empty()) return sweep_;
     SweepParameters& p = sweep_.parameters;
     schema_of<SweepParameters>().read(&p, source_, errors_);
+    if (source_.find("name")) check_name("name", p.name, place_of("name"), errors_);
     check_seeds();
     const std::vector<Setting> common = settings_of(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
-    if (!errors_.empty()) return sweep_;
+    const std::size_t before = errors_.size();
+    if (p.base.empty()) return sweep_;
     const ConfigNode base = read_yaml(p.base, errors_);
-    if (!errors_.empty()) {
-      errors_[0].message += " (the sweep's \"base\", named at " + source_.find("base")->where.text() + ")";
+    if (errors_.size() > before) {
+      errors_[before].message +=
+          " (the sweep's \"base\", named at " + source_.find("base")->where.text() + ")";
       return sweep_;
     }
     for (const Variation& variation : variations) add_variation(base, common, variation);
@@ -73,8 +77,10 @@ class Reader {
 
   void check_seeds() {
     SweepParameters& p = sweep_.parameters;
-    if (p.repeats && !p.seeds.empty())
+    if (p.repeats && !p.seeds.empty()) {
       errors_.push_back({place_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
+      p.seeds.clear();
+    }
     for (int k = 1; p.repeats && k <= *p.repeats; ++k) p.seeds.push_back(k);
     if (std::set<int>(p.seeds.begin(), p.seeds.end()).size() != p.seeds.size())
       errors_.push_back({place_of("seeds"), "\"seeds\" names one of them twice"});
@@ -135,9 +141,8 @@ class Reader {
       run.config = to_yaml(resolved);
       const auto [other, first] = configs_.emplace(run.config, run.name);
       if (!first)
-        note({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
-                                   "\" come to the same experiment; take one of them out"},
-             "");
+        same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
+                                              "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
     }
   }
@@ -148,22 +153,29 @@ class Reader {
     names.push_back(variation);
   }
 
-  /// Each fault once, with the variations that have it.
+  /// Each fault once, with the variations that have it, in the order of the file.
   void list_faults(std::size_t variations) {
     for (ConfigError& fault : faults_) {
       const auto& names = faulty_[fault.text()];
-      if (!names[0].empty() && (names.size() < variations || variations == 1))
+      if (names.size() < variations)
         fault.message += " (variation \"" + names[0] + "\"" +
                          (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "") + ")";
       errors_.push_back(fault);
     }
+    if (errors_.empty()) errors_ = same_;
+    std::stable_sort(errors_.begin(), errors_.end(), [&](const ConfigError& a, const ConfigError& b) {
+      const auto order = [&](const Location& l) {
+        return std::tuple(l.file != source_.where.file, l.line, l.column);
+      };
+      return order(a.where) < order(b.where);
+    });
   }
 
   const Registry& registry_;
   ConfigErrors& errors_;
   Sweep sweep_;
   ConfigNode source_;
-  ConfigErrors faults_;
+  ConfigErrors faults_, same_;
   std::map<std::string, std::vector<std::string>> faulty_;
   std::map<std::string, std::string> configs_;
 };

@@ -28,7 +28,10 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .at_least(0)
       .meaning(
           "every variation is run with each of these as start.seed; the experiment's alone if not given");
-  d.add("repeats", &SweepParameters::repeats).at_least(1).meaning("short for the seeds 1, 2, … up to this");
+  d.add("repeats", &SweepParameters::repeats)
+      .at_least(1)
+      .at_most(10000)
+      .meaning("short for the seeds 1, 2, … up to this");
   d.add("methods", &SweepParameters::methods)
       .meaning("which of the experiment's methods to run; all if not given");
   d.add("threads", &SweepParameters::threads).at_least(1).meaning("of each run");

@@ -89,7 +89,12 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
   schema_of<VariationParameters>("a variation").read(&p, node, errors);
   Variation v{p.name, "", node.where, {}, p.methods, node.where};
   if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
-  for (Setting& setting : settings_of(p.set, errors)) v.settings.push_back(std::move(setting));
+  for (Setting& setting : settings_of(p.set, errors)) {
+    if (p.levels && setting.path == "levels")
+      errors.push_back(
+          {setting.where, "\"levels\" is given twice in variation \"" + p.name + "\"; take one of them out"});
+    v.settings.push_back(std::move(setting));
+  }
   if (const ConfigNode* methods = node.find("methods")) v.methods_where = methods->where;
   if (const ConfigNode* name = node.find("name")) v.where = name->where;
   if (p.name.empty() && node.find("name"))
