@@ -30,17 +30,12 @@ std::string last_lines(const std::filesystem::path& file) {
   return from == std::string::npos || from == 0 ? text : text.substr(from + 1);
 }
 
-/// Marks the run as begun. What it leaves in its folder is removed, which none but the sweep has made: the
-/// status beside it says so.
+/// Marks the run as begun, and removes what an earlier start of it has left.
 RunStatus begin(const RunFiles& files, int threads) {
-  RunStatus status = read_status(files);
-  if (status.starts == 0 && std::filesystem::exists(files.folder))
-    throw std::runtime_error(files.folder.string() +
-                             ": is there already, and not from this sweep; move it away, or name another "
-                             "folder with --out");
-  status = {RunState::running, "", 0, 0, status.starts + 1, threads};
+  const int starts = read_status(files).starts;
+  const RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
   write_status(files, status);
-  std::filesystem::remove_all(files.folder);
+  if (starts > 0) std::filesystem::remove_all(files.folder);
   std::filesystem::remove(files.log());
   return status;
 }
@@ -113,21 +108,20 @@ bool RunProcess::ended() {
   if (status_.state != RunState::running) return true;
   const std::optional<Exit> exit = process_.poll();
   if (!exit) return false;
-  status_.seconds = now() - began_;
+  const double seconds = now() - began_;
+  status_ = settled(files_, status_);
+  status_.seconds = seconds;
   status_.exit_code = exit->code;
-  if (exit->code == 0)
-    status_.state = RunState::converged;
-  else if (exit->code == 1)
-    status_.state = RunState::ended;
-  else if (stopped_ || exit->code == 128 + SIGINT || exit->code == 128 + SIGTERM)
-    status_.state = RunState::cancelled;
-  else
+  const bool stopped = stopped_ || exit->code == 128 + SIGINT || exit->code == 128 + SIGTERM;
+  if (status_.state == RunState::cancelled && !stopped) {
     status_.state = RunState::failed;
-  if (status_.state == RunState::failed) {
-    status_.error = last_lines(files_.log());
+    const std::string said = last_lines(files_.log());
     if (exit->signal)
-      status_.error = "ended by signal " + std::to_string(exit->signal) + " (" + strsignal(exit->signal) +
-                      ")" + (status_.error.empty() ? "" : "\n" + status_.error);
+      status_.error =
+          "ended by signal " + std::to_string(exit->signal) + " (" + strsignal(exit->signal) + ")";
+    else if (said.empty())
+      status_.error = "ended with exit code " + std::to_string(exit->code);
+    status_.error += (status_.error.empty() || said.empty() ? "" : "\n") + said;
   }
   write_status(files_, status_);
   return true;

@@ -135,9 +135,26 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
   return jobs;
 }
 
+namespace {
+
+/// As `in_queue`, through the minutes in which Slurm's controller does not answer.
+bool still_in_queue(const SlurmJobs& jobs, int& silent) {
+  try {
+    const bool queued = in_queue(jobs);
+    silent = 0;
+    return queued;
+  } catch (const std::runtime_error& error) {
+    if (++silent > 600) throw;
+    if (silent == 1) std::fprintf(stderr, "warning: %s; asking again\n", error.what());
+    return true;
+  }
+}
+
+}  // namespace
+
 bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop) {
   std::size_t told = 0;
-  while (in_queue(jobs)) {
+  for (int silent = 0; still_in_queue(jobs, silent);) {
     std::size_t done = 0, failed = 0;
     const Json sweep = folder.read();
     for (const Json& run : sweep["runs"]) {
@@ -165,7 +182,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
   if (!jobs->collector.empty()) words.push_back(jobs->collector);
   const Said said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
-  if (wait_for(folder, *jobs, stop)) folder.settle();
+  if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
 }
 
 int run_task(const SweepFolder& folder, int index, int threads, bool report,

@@ -58,6 +58,10 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
     const RunStatus status = read_status(files);
+    if (status.starts == 0 && fs::exists(files.folder))
+      throw std::runtime_error(files.folder.string() +
+                               ": is there already, and not from this sweep; move it away, or name another "
+                               "folder with --out");
     if (!settled(files, status).has_results()) continue;
     if (text_of_file(files.config()) != run.config)
       throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
@@ -75,7 +79,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
   refuse_other_runs(sweep, threads);
   Json json = {{"sweep", sweep.parameters.name},
                {"description", sweep.parameters.description},
-               {"config", fs::absolute(sweep.file).lexically_normal().string()},
+               {"config", sweep.file.string()},
                {"complete", false},
                {"threads", threads},
                {"runs", Json::array()}};

@@ -294,3 +294,51 @@ TEST_CASE("runs that do not fit into the memory together run one after another, 
     last_end = Json::parse(last)["time"];
   }
 }
+
+TEST_CASE("a run whose end was not noted down has its results, and is not run again") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n"
+               "  - {name: b, set: {newton.max_steps: 2}}\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 1);
+  for (const std::string name : {"a", "b"}) {
+    const std::string status = "out/runs/" + name + "/seed_1.status.json";
+    const std::string word = name == "a" ? "converged" : "ended";
+    folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
+  }
+  const Ended again = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(again.exit_code == 1);
+  CHECK(again.err == "");
+  const Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "converged");
+  CHECK(runs[1]["status"] == "ended");
+  for (const Json& run : runs) CHECK(run["starts"] == 1);
+
+  folder.write("out/runs/a/seed_1.status.json", "{");
+  const Ended broken = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(broken.exit_code == 2);
+  CHECK_THAT(broken.err,
+             Catch::Matchers::StartsWith("error: out/runs/a/seed_1.status.json: is not a run's status (") &&
+                 Catch::Matchers::EndsWith("); remove it and the run's folder\n"));
+}
+
+TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nmethods: [newton]\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  fs::remove_all(folder / "out/runs/base/seed_1");
+  fs::remove(folder / "out/runs/base/seed_1.status.json");
+  const std::string task = "exec " + drape_command + " sweep-job out --task 0";
+  Command first(task, folder.path), second(task, folder.path);
+  CHECK(first.wait().exit_code == 0);
+  CHECK(second.wait().exit_code == 0);
+  CHECK(drape_with("sweep-job out", folder.path).exit_code == 0);  // collects
+  const Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "converged");
+  CHECK(runs[0]["starts"] == 1);
+  const Ended none = drape_with("sweep-job out --task 1", folder.path);
+  CHECK(none.exit_code == 2);
+  CHECK(none.err == "error: out: sweep.json has no run 1\n");
+}
