@@ -33,7 +33,7 @@ std::string last_lines(const std::filesystem::path& file) {
 /// Marks the run as begun, and removes what an earlier start of it has left.
 RunStatus begin(const RunFiles& files, int threads) {
   const int starts = read_status(files).starts;
-  const RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
+  RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
   write_status(files, status);
   if (starts > 0) std::filesystem::remove_all(files.folder);
   std::filesystem::remove(files.log());
