@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
 #include "core/experiment/runner.h"
@@ -16,6 +17,7 @@
 #include "core/plugin/words.h"
 #include "core/report/report.h"
 #include "core/report/tables.h"
+#include "core/sweep/sweep.h"
 #include "core/version.h"
 
 namespace {
@@ -32,9 +34,9 @@ void on_signal(int number) {
   stop_signal = number;
 }
 
-std::string positive_integer(const std::string& text) {
-  const std::optional<int> number = parse_integer(text);
-  return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+void stop_on_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
 }
 
 struct ConfigArguments {
@@ -105,8 +107,7 @@ int run(const ConfigArguments& arguments, RunOptions options, const Registry& re
   if (loaded.exit_code) return loaded.exit_code;
   if (options.out.empty())
     options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   options.stop = [] { return stop_signal != 0; };
   const bool converged = run_experiment(*loaded.experiment, *loaded.scene, options);
   if (options.report)
@@ -148,7 +149,11 @@ int describe_plugin(const std::string& name, const Registry& registry) {
     std::cout << describe(schema_of<ExperimentParameters>("experiment"));
     return 0;
   }
-  std::vector<std::string> names = {"experiment"};
+  if (name == "sweep") {
+    std::cout << describe_sweep();
+    return 0;
+  }
+  std::vector<std::string> names = {"experiment", "sweep"};
   bool found = false;
   for (const auto& entry : registry.entries()) {
     names.push_back(entry->name);
@@ -190,13 +195,16 @@ int reference(const Registry& registry) {
     std::cout << "\n## Kind: " << kind << "\n";
     for (const RegistryEntry* entry : registry.of_kind(kind)) std::cout << "\n" << describe_markdown(*entry);
   }
+  std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
   return 0;
 }
 
 void require_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  if (std::find(commands.begin(), commands.end(), word) != commands.end()) return;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    if (!command->get_group().empty()) commands.push_back(command->get_name());
+  }
   const std::string near = nearest_word(word, commands);
   throw std::runtime_error(
       "there is no command \"" + word + "\"; " +
@@ -233,11 +241,13 @@ int main_checked(int argc, char** argv) {
   CLI::App* check_command = app.add_subcommand("check", "check an experiment without running it");
   check_arguments.add_to(*check_command);
 
-  std::string kind, plugin, run_folder;
+  const SweepCommand sweep(app);
+
+  std::string kind, plugin, run_folder, schema_kind = "experiment";
   CLI::App* list_command = app.add_subcommand("list", "list what experiments can choose by name");
   list_command->add_option("kind", kind, "only this kind");
   CLI::App* describe_command =
-      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s)");
+      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
   describe_command->add_option("plugin", plugin, "name of the plugin")->required();
   CLI::App* report_command = app.add_subcommand("report", "write the report of a results folder again");
   report_command->add_option("folder", run_folder, "results folder")->required();
@@ -245,7 +255,9 @@ int main_checked(int argc, char** argv) {
       app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
   table1_command->add_option("folder", run_folder, "results folder")->required();
   CLI::App* schema_command =
-      app.add_subcommand("schema", "print the JSON Schema of experiments, for editors");
+      app.add_subcommand("schema", "print the JSON Schema of experiments (or sweeps), for editors");
+  schema_command->add_option("kind", schema_kind, "experiment or sweep")
+      ->check(CLI::IsMember({"experiment", "sweep"}));
   CLI::App* reference_command =
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
   reference_command->add_option("--readmes", run_folder,
@@ -272,15 +284,23 @@ int main_checked(int argc, char** argv) {
     std::cout << table1_text(read_run(run_folder));
     return 0;
   }
+  if (sweep.job_chosen() || sweep.chosen()) stop_on_signals();
+  const auto stop = [] { return int(stop_signal); };
+  if (sweep.job_chosen()) return sweep.run_job(stop);
   Registry registry;
   load_plugins(registry, plugin_directories());
   options.out = out;
   if (*run_command) return run(arguments, options, registry);
+  if (sweep.chosen()) return sweep.run(registry, stop);
   if (*check_command) return check(check_arguments, registry);
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);
   if (*schema_command) {
-    std::cout << json_schema(schema_of<ExperimentParameters>("experiment"), &registry).dump(2) << "\n";
+    std::cout << (schema_kind == "sweep"
+                      ? sweep_json_schema()
+                      : json_schema(schema_of<ExperimentParameters>("experiment"), &registry))
+                     .dump(2)
+              << "\n";
     return 0;
   }
   if (*reference_command)
@@ -289,6 +309,15 @@ int main_checked(int argc, char** argv) {
 }
 
 }  // namespace
+
+namespace drape {
+
+std::string positive_integer(const std::string& text) {
+  const std::optional<int> number = parse_integer(text);
+  return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+}
+
+}  // namespace drape
 
 int main(int argc, char** argv) {
   try {

@@ -109,11 +109,6 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .meaning("when intersections are counted, by exact predicates where the shapes are meshes");
 }
 
-namespace {
-
-ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
-
-/// Names of experiments and methods become names of files, and cells of steps.csv.
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors) {
   const bool usable =
@@ -125,6 +120,10 @@ void check_name(const std::string& what, const std::string& name, const Location
                                  "\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
                                  "not beginning with \".\""});
 }
+
+namespace {
+
+ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
 
 /// Entries of `base` that `over` lacks are added to it, maps within maps likewise.
 void fill_in(ConfigNode& over, const ConfigNode& base) {
@@ -269,10 +268,15 @@ class Maker {
 
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors) {
-  Experiment e;
-  e.source = read_yaml(file, errors);
+  ConfigNode source = read_yaml(file, errors);
   if (!errors.empty()) return std::nullopt;
-  for (const auto& [key, value] : overrides) set_path(e.source, key, value, errors);
+  for (const auto& [key, value] : overrides) set_path(source, key, value, errors);
+  return read_experiment(std::move(source), registry, errors);
+}
+
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors) {
+  Experiment e;
+  e.source = std::move(source);
   const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&e.parameters, e.source, errors);
   e.resolved = schema.write(&e.parameters);

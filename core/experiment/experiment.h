@@ -100,12 +100,20 @@ struct Experiment {
   Location place_of(const std::string& key) const;
 };
 
+/// An error unless the name, of an experiment, a method or a sweep, can be one of files and a cell of a
+/// table.
+void check_name(const std::string& what, const std::string& name, const Location& where,
+                ConfigErrors& errors);
+
 /// Values given beside the file, `key.path=value`, in order.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 
 /// Reads an experiment, collecting everything that is wrong with it; empty if anything is.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors);
+
+/// The same from a file's map that has been read already, overrides and all.
+std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
 
 /// The levels, models and starts of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {

@@ -43,14 +43,18 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
 }
 
-void RunFolder::write_text(const std::string& name, const std::string& text) const {
-  const std::filesystem::path part = file(name + ".part");
+void write_atomically(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path part = file.string() + ".part";
   {
     std::ofstream out(part, std::ios::binary);
     out << text;
     if (!out.flush()) throw std::runtime_error(part.string() + ": cannot write (is the disk full?)");
   }
-  std::filesystem::rename(part, file(name));
+  std::filesystem::rename(part, file);
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) const {
+  write_atomically(file(name), text);
 }
 
 }  // namespace drape

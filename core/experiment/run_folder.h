@@ -5,6 +5,9 @@
 
 namespace drape {
 
+/// Writes a whole file under another name and renames it. Throws std::runtime_error where that cannot be.
+void write_atomically(const std::filesystem::path& file, const std::string& text);
+
 /// A run's results folder. Whole files are written under another name and renamed, so that nothing
 /// half-written stands under a final name.
 class RunFolder {

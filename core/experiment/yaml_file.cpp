@@ -152,9 +152,15 @@ ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
 bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
   const Location where{"--set " + path, 0, 0};
   const size_t before = errors.size();
-  ConfigNode* node = &root;
   ConfigNode parsed = parse_value(value, where.file, errors);
   if (errors.size() != before) return false;
+  set_places(parsed, where);
+  return set_path(root, path, std::move(parsed), where, errors);
+}
+
+bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
+              ConfigErrors& errors) {
+  ConfigNode* node = &root;
   if (path.empty() || path.front() == '.' || path.back() == '.' || path.find("..") != std::string::npos) {
     errors.push_back({where, "the path has an empty name"});
     return false;
@@ -169,8 +175,7 @@ bool set_path(ConfigNode& root, const std::string& path, const std::string& valu
       return false;
     }
   }
-  set_places(parsed, where);
-  *node = parsed;
+  *node = std::move(value);
   return true;
 }
 

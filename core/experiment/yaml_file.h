@@ -23,4 +23,8 @@ std::string to_yaml(const ConfigNode& node);
 /// Returns false, with an error appended, where that cannot be.
 bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors);
 
+/// The same with a value that has been read, and keeps its places; `where` is the path's own.
+bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
+              ConfigErrors& errors);
+
 }  // namespace drape

@@ -20,6 +20,9 @@ std::string describe_markdown(const RegistryEntry& entry);  ///< the same under 
 /// heading comes last where there was none.
 std::string with_parameters(const std::string& page, const RegistryEntry& entry);
 
+/// The node as JSON: a plain scalar that spells a number or a boolean is one.
+nlohmann::ordered_json json_value(const ConfigNode& node);
+
 /// For editors: the JSON Schema of configs with this schema. With a registry, nodes that choose a plugin
 /// allow the names and parameters of those in it; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);

@@ -7,29 +7,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json value_of(const ConfigNode& node) {
-  Json json;
-  switch (node.kind) {
-    case ConfigNode::Kind::null:
-      break;
-    case ConfigNode::Kind::list:
-      json = Json::array();
-      for (const ConfigNode& item : node.items) json.push_back(value_of(item));
-      break;
-    case ConfigNode::Kind::map:
-      json = Json::object();
-      for (const auto& [key, value] : node.entries) json[key] = value_of(value);
-      break;
-    case ConfigNode::Kind::scalar:
-      if (node.quoted) return node.scalar;
-      if (const auto integer = parse_integer(node.scalar)) return *integer;
-      if (const auto number = parse_number(node.scalar)) return *number;
-      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
-      return node.scalar;
-  }
-  return json;
-}
-
 Json scalar_schema(const std::string& type, const Parameter& p) {
   static const std::map<std::string, std::string> words = {
       {"number", "number"}, {"integer", "integer"}, {"boolean", "boolean"}, {"text", "string"}};
@@ -84,6 +61,29 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
 
 }  // namespace
 
+Json json_value(const ConfigNode& node) {
+  Json json;
+  switch (node.kind) {
+    case ConfigNode::Kind::null:
+      break;
+    case ConfigNode::Kind::list:
+      json = Json::array();
+      for (const ConfigNode& item : node.items) json.push_back(json_value(item));
+      break;
+    case ConfigNode::Kind::map:
+      json = Json::object();
+      for (const auto& [key, value] : node.entries) json[key] = json_value(value);
+      break;
+    case ConfigNode::Kind::scalar:
+      if (node.quoted) return node.scalar;
+      if (const auto integer = parse_integer(node.scalar)) return *integer;
+      if (const auto number = parse_number(node.scalar)) return *number;
+      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
+      return node.scalar;
+  }
+  return json;
+}
+
 Json json_schema(const Schema& schema, const Registry* registry) {
   Json properties = Json::object();
   Json required = Json::array();
@@ -93,7 +93,7 @@ Json json_schema(const Schema& schema, const Registry* registry) {
     if (p.required)
       required.push_back(p.name);
     else if (p.type != "section")
-      property["default"] = value_of(*defaults.find(p.name));
+      property["default"] = json_value(*defaults.find(p.name));
   }
   Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) json["required"] = required;

@@ -42,10 +42,10 @@ TEST_CASE("the command alone shows how it is used; a misspelt one names the near
              StartsWith("drape: progressive cloth quasistatics\nUsage: drape [OPTIONS] SUBCOMMAND\n"));
   CHECK_THAT(shown_by("run --help"), Contains("--overwrite"));
   CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
-  CHECK(
-      refused_by("simulate") ==
-      "error: there is no command \"simulate\"; the commands are run, check, list, describe, report, table1, "
-      "schema, reference\n");
+  CHECK(refused_by("simulate") ==
+        "error: there is no command \"simulate\"; the commands are run, check, sweep, list, describe, "
+        "report, table1, "
+        "schema, reference\n");
   CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
   CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));
@@ -105,6 +105,20 @@ TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and 
   std::set<std::string> registered;
   for (const drape::RegistryEntry* entry : test_registry().of_kind("energy")) registered.insert(entry->name);
   CHECK((energies == registered));
+}
+
+TEST_CASE("schema sweep and describe sweep say what a sweep file takes, variations and grids included") {
+  const auto schema = nlohmann::json::parse(shown_by("schema sweep"));
+  CHECK(schema["additionalProperties"] == false);
+  CHECK((schema["required"] == nlohmann::json{"name", "base"}));
+  const auto& ablation = schema["properties"]["ablation"]["anyOf"];
+  REQUIRE(ablation.size() == 2);
+  CHECK((ablation[0]["items"]["required"] == nlohmann::json{"name"}));
+  CHECK(ablation[0]["items"]["properties"]["levels"]["anyOf"][0]["maximum"] == 10);
+  CHECK(ablation[1]["properties"]["grid"]["additionalProperties"]["minItems"] == 1);
+  CHECK_THAT(shown_by("describe sweep"), Contains("seeds") && Contains("a variation in ablation:"));
+  CHECK(refused_by("schema nonsense") ==
+        "error: kind: nonsense not in {experiment,sweep}; see `drape schema --help`\n");
 }
 
 TEST_CASE("reference is docs/reference.md, which is up to date") {

@@ -18,13 +18,23 @@ bool needs_missing_data(const fs::path& config) {
   return text.str().find("../data/") != std::string::npos && !fs::exists(source / "data/bunny.ply");
 }
 
-std::vector<fs::path> shipped() {
+bool is_sweep(const fs::path& config) { return config.parent_path().filename() == "sweeps"; }
+
+/// Experiments and sweeps.
+std::vector<fs::path> all_shipped() {
   std::vector<fs::path> files;
   for (const char* folder : {"configs", "benchmarks"})
     for (const auto& entry : fs::recursive_directory_iterator(source / folder))
       if (entry.path().extension() == ".yaml" || entry.path().extension() == ".yml")
         if (!needs_missing_data(entry.path())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// Experiments alone.
+std::vector<fs::path> shipped() {
+  std::vector<fs::path> files = all_shipped();
+  std::erase_if(files, is_sweep);
   return files;
 }
 
@@ -69,4 +79,17 @@ TEST_CASE("every shipped experiment converges, made small") {
     ++converged;
   }
   CHECK(converged >= 2);
+}
+
+TEST_CASE("every shipped sweep passes drape sweep --dry-run") {
+  int checked = 0;
+  for (const fs::path& config : all_shipped()) {
+    if (!is_sweep(config)) continue;
+    INFO(config);
+    const Scratch folder;
+    const Ended ended = drape_with("sweep " + config.string() + " --dry-run", folder.path);
+    if (ended.err.find("../data/") == std::string::npos) CHECK(ended.err == "");
+    ++checked;
+  }
+  CHECK(checked >= 3);
 }

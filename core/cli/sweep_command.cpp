@@ -1,0 +1,157 @@
+#include "core/cli/sweep_command.h"
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include "core/experiment/machine.h"
+#include "core/sweep/local_engine.h"
+#include "core/sweep/memory.h"
+#include "core/sweep/slurm_engine.h"
+
+namespace drape {
+
+namespace {
+
+constexpr int exit_bad_input = 2;
+
+/// What would be run, without a trace of it on disk.
+void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
+  std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
+              sweep.runs.size(), folder.path().c_str(), threads, threads == 1 ? "" : "s");
+  MemoryEstimate memory;
+  for (const SweepRun& run : sweep.runs)
+    if (read_status(folder.files(run.folder)).has_results()) memory.learn(run, folder.files(run.folder));
+  for (const SweepRun& run : sweep.runs)
+    std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n",
+                to_string(read_status(folder.files(run.folder)).state), run.folder.c_str(), run.levels,
+                run.vertices, memory.bytes(run) / 1e9, run.settings.dump().c_str());
+}
+
+}  // namespace
+
+SweepCommand::SweepCommand(CLI::App& app)
+    : sweep_(app.add_subcommand("sweep", "run every variation of an experiment, and go on where it was cut")),
+      job_(app.add_subcommand("sweep-job", "what a sweep's jobs on a cluster run")->group("")) {
+  sweep_->add_option("config", config_, "sweep file (YAML)")->required();
+  sweep_->add_option("--out", out_, "the sweep's folder (default: results/NAME)");
+  sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  sweep_->add_option("--workers", workers_, "runs at a time (default: as many as there are cores)")
+      ->check(positive_integer);
+  sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
+      ->check(positive_integer);
+  sweep_->add_option("--memory-limit", memory_limit_, "GB: of all runs together; with slurm, of each")
+      ->check(CLI::PositiveNumber);
+  sweep_->add_flag("--dry-run", dry_run_, "check everything and list the runs, without running any");
+  sweep_->add_flag("--retry-failed", retry_failed_, "run those again that failed");
+  sweep_->add_flag("--report", report_, "write every run's report.html and its pictures");
+  sweep_->add_flag("--wait", wait_, "with slurm: wait for the jobs and list the runs");
+  sweep_->add_flag("--cancel", cancel_, "with slurm: take the sweep's jobs off the queue");
+  sweep_
+      ->add_option("--sbatch", sbatch_,
+                   "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
+      ->allow_extra_args(false);
+
+  job_->add_option("folder", out_, "the sweep's folder")->required();
+  job_->add_option("--task", task_, "index of the run; without it, the runs' statuses are collected");
+  job_->add_option("--threads", threads_, "threads of the run")->check(positive_integer);
+  job_->add_flag("--report", report_, "write the run's report");
+}
+
+void SweepCommand::check_options(int threads) const {
+  if (engine_ != "slurm") {
+    const char* given = wait_ ? "--wait" : cancel_ ? "--cancel" : !sbatch_.empty() ? "--sbatch" : nullptr;
+    if (given) throw std::runtime_error(std::string(given) + " is of --engine slurm; give that too");
+    const int workers = std::max(1, workers_), cores = core_count();
+    if (workers * threads > cores)
+      throw std::runtime_error(std::to_string(workers) + " × " + std::to_string(threads) +
+                               " threads (workers × threads) are more than the " + std::to_string(cores) +
+                               " cores of this machine; lower --workers or --threads");
+  }
+}
+
+int SweepCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
+  ConfigErrors errors;
+  const std::optional<Sweep> sweep = read_sweep(config_, registry, errors);
+  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  if (!sweep) return exit_bad_input;
+  const int threads = threads_ ? threads_ : sweep->parameters.threads;
+  check_options(threads);
+  const SweepFolder folder(out_.empty() ? std::filesystem::path("results") / sweep->parameters.name
+                                        : std::filesystem::path(out_));
+  if (dry_run_) {
+    show_plan(*sweep, folder, threads);
+    return 0;
+  }
+  return engine_ == "slurm" ? run_slurm(*sweep, folder, stop_signal) : run_local(*sweep, folder, stop_signal);
+}
+
+int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
+                            const std::function<int()>& stop_signal) const {
+  const FolderLock lock(folder.path());
+  refuse_while_queued(folder);
+  LocalOptions options;
+  options.threads = threads_ ? threads_ : sweep.parameters.threads;
+  options.workers = workers_ ? workers_ : core_count() / options.threads;
+  options.memory_limit = memory_limit_ * 1e9;
+  options.report = report_;
+  options.stop = [&] { return stop_signal() != 0; };
+  folder.prepare(sweep, options.threads);
+  run_locally(sweep, folder, folder.missing(sweep, retry_failed_), options);
+  const auto json = folder.refresh();
+  std::cout << list_of_runs(json);
+  if (stop_signal()) {
+    std::cerr << "stopped on request; the same command goes on with what is missing\n";
+    return 128 + stop_signal();
+  }
+  return exit_code_of(json);
+}
+
+int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
+                            const std::function<int()>& stop_signal) const {
+  const auto stop = [&] { return stop_signal() != 0; };
+  if (cancel_) {
+    cancel_jobs(folder, stop);
+    std::cout << list_of_runs(folder.refresh());
+    return 0;
+  }
+  std::optional<SlurmJobs> jobs;
+  {
+    const FolderLock lock(folder.path());
+    refuse_while_queued(folder);
+    SlurmOptions options;
+    options.threads = threads_ ? threads_ : sweep.parameters.threads;
+    options.workers = workers_;
+    options.memory = memory_limit_ * 1e9;
+    options.report = report_;
+    options.sbatch = sbatch_;
+    folder.prepare(sweep, options.threads);
+    const std::vector<std::size_t> missing = folder.missing(sweep, retry_failed_);
+    if (!missing.empty()) {
+      jobs = submit(sweep, folder, missing, options);
+      std::cout << "submitted: " << missing.size() << " runs as job array " << jobs->array
+                << ", collected by job " << jobs->collector << "; their output is in "
+                << (folder.slurm() / "logs").string() << std::endl;
+    }
+  }
+  if (jobs && !wait_) return 0;
+  if (jobs && !wait_for(folder, *jobs, stop)) {
+    std::cerr << "no longer waiting; the jobs go on\n";
+    return 128 + stop_signal();
+  }
+  const auto json = folder.settle();
+  std::cout << list_of_runs(json);
+  return exit_code_of(json);
+}
+
+int SweepCommand::run_job(const std::function<int()>& stop_signal) const {
+  const SweepFolder folder(out_);
+  if (task_ < 0) {
+    collect_tasks(folder);
+    return 0;
+  }
+  return run_task(folder, task_, std::max(1, threads_), report_, [&] { return stop_signal() != 0; });
+}
+
+}  // namespace drape

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/plugin/registry.h"
+
+namespace drape {
+
+/// `drape sweep`, and `drape sweep-job`, which is what its jobs on a cluster run.
+class SweepCommand {
+ public:
+  explicit SweepCommand(CLI::App& app);
+
+  bool chosen() const { return sweep_->parsed(); }
+  bool job_chosen() const { return job_->parsed(); }
+  /// `stop_signal` gives the signal that asks to stop, 0 before there is one. Both return the exit code.
+  int run(const Registry& registry, const std::function<int()>& stop_signal) const;
+  int run_job(const std::function<int()>& stop_signal) const;
+
+ private:
+  int run_local(const struct Sweep& sweep, const class SweepFolder& folder,
+                const std::function<int()>& stop_signal) const;
+  int run_slurm(const struct Sweep& sweep, const class SweepFolder& folder,
+                const std::function<int()>& stop_signal) const;
+  void check_options(int threads) const;
+
+  CLI::App *sweep_, *job_;
+  std::string config_, out_, engine_ = "local";
+  std::vector<std::string> sbatch_;
+  int workers_ = 0, threads_ = 0, task_ = -1;
+  double memory_limit_ = 0;
+  bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false;
+};
+
+/// What an option that counts things must be, or "".
+std::string positive_integer(const std::string& text);
+
+}  // namespace drape

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/sweep/process.h"
+
+namespace drape {
+
+/// `ended` has complete results that did not all converge; `failed` has none; `cancelled` was stopped, or
+/// its machine was.
+enum class RunState { waiting, running, converged, ended, failed, cancelled };
+const char* to_string(RunState state);
+
+/// What is known of one run. Each has a file of its own, so that no two machines write one.
+struct RunStatus {
+  RunState state = RunState::waiting;
+  std::string error;
+  int exit_code = 0;
+  double seconds = 0;
+  int starts = 0;
+  int threads = 0;
+
+  bool has_results() const { return state == RunState::converged || state == RunState::ended; }
+  nlohmann::ordered_json json() const;
+};
+
+/// One run's files in a sweep's folder: results in the folder, the rest beside it.
+struct RunFiles {
+  std::filesystem::path folder;
+  std::filesystem::path config() const { return folder.string() + ".yaml"; }
+  std::filesystem::path status() const { return folder.string() + ".status.json"; }
+  std::filesystem::path lock() const { return folder.string() + ".lock"; }
+  std::filesystem::path log() const { return folder.string() + ".log"; }  ///< what it printed
+};
+
+/// Waiting if there is none. Throws std::runtime_error for a file that is no status.
+RunStatus read_status(const RunFiles& files);
+void write_status(const RunFiles& files, const RunStatus& status);
+
+/// What became of a run that was marked as running and is not: its results if they are complete, else
+/// cancelled.
+RunStatus settled(const RunFiles& files, RunStatus status);
+
+/// A `drape run` of the files' config, marked in the status when it begins and when it ends.
+class RunProcess {
+ public:
+  /// Marks the run as running, removes what an earlier start of it left, and starts.
+  RunProcess(RunFiles files, int threads, bool report);
+
+  bool ended();  ///< marks how, the first time that it is true
+  void stop() { stopped_ = true, process_.signal(SIGINT); }
+  const RunStatus& status() const { return status_; }
+  std::int64_t resident_bytes() const { return process_.resident_bytes(); }
+
+ private:
+  RunFiles files_;
+  RunStatus status_;
+  double began_;
+  Process process_;
+  bool stopped_ = false;
+};
+
+}  // namespace drape

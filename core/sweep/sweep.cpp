@@ -1,0 +1,192 @@
+#include "core/sweep/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/experiment/yaml_file.h"
+#include "core/mesh/io.h"
+#include "core/plugin/describe.h"
+#include "core/plugin/words.h"
+#include "core/sweep/variations.h"
+
+namespace drape {
+
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+/// About how many vertices the coarsest level has; what a mesh file holds is known only by reading it.
+double coarse_vertices(const ClothParameters& cloth) {
+  try {
+    if (cloth.shape == "file") return double(read_mesh(cloth.file).vertices.rows());
+  } catch (const std::exception&) {  // the run itself will say so
+  }
+  return cloth.columns > 0 && cloth.rows > 0 ? double(cloth.columns) * cloth.rows : cloth.vertices;
+}
+
+/// Takes the methods that are not chosen out of a resolved experiment.
+void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
+  const auto kept = [&](const std::string& name) {
+    return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+  };
+  for (auto& [key, value] : resolved.entries) {
+    if (key == "reference" && !kept(value.scalar)) value = ConfigNode::of("");
+    if (key != "methods") continue;
+    ConfigNode methods;
+    for (const auto& [name, method] : value.entries)
+      if (kept(name)) methods.add(name, method);
+    value = methods;
+  }
+}
+
+class Reader {
+ public:
+  Reader(const Registry& registry, ConfigErrors& errors) : registry_(registry), errors_(errors) {}
+
+  Sweep read(const std::filesystem::path& file) {
+    sweep_.file = file;
+    source_ = read_yaml(file, errors_);
+    if (!errors_.empty()) return sweep_;
+    SweepParameters& p = sweep_.parameters;
+    schema_of<SweepParameters>().read(&p, source_, errors_);
+    if (source_.find("name")) check_name("name", p.name, place_of("name"), errors_);
+    check_seeds();
+    const std::vector<Setting> common = settings_of(p.set, errors_);
+    const std::vector<Variation> variations = variations_of(p.ablation, errors_);
+    const std::size_t before = errors_.size();
+    if (p.base.empty()) return sweep_;
+    const ConfigNode base = read_yaml(p.base, errors_);
+    if (errors_.size() > before) {
+      errors_[before].message +=
+          " (the sweep's \"base\", named at " + source_.find("base")->where.text() + ")";
+      return sweep_;
+    }
+    for (const Variation& variation : variations) add_variation(base, common, variation);
+    list_faults(variations.size());
+    return sweep_;
+  }
+
+ private:
+  Location place_of(const std::string& key) const {
+    const ConfigNode* node = source_.find(key);
+    return node ? node->where : source_.where;
+  }
+
+  void check_seeds() {
+    SweepParameters& p = sweep_.parameters;
+    if (p.repeats && !p.seeds.empty()) {
+      errors_.push_back({place_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
+      p.seeds.clear();
+    }
+    for (int k = 1; p.repeats && k <= *p.repeats; ++k) p.seeds.push_back(k);
+    if (std::set<int>(p.seeds.begin(), p.seeds.end()).size() != p.seeds.size())
+      errors_.push_back({place_of("seeds"), "\"seeds\" names one of them twice"});
+  }
+
+  void add_variation(ConfigNode source, const std::vector<Setting>& common, const Variation& variation) {
+    const SweepParameters& p = sweep_.parameters;
+    ConfigErrors faults;
+    SweepRun run;
+    run.name = variation.name;
+    run.settings = nlohmann::ordered_json::object();
+    for (const auto* settings : {&common, &variation.settings})
+      for (const Setting& setting : *settings) {
+        if (setting.path == "start.seed" && !p.seeds.empty())
+          faults.push_back(
+              {setting.where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
+        set_path(source, setting.path, setting.value, setting.where, faults);
+        if (settings == &variation.settings) run.settings[setting.path] = json_value(setting.value);
+      }
+    const bool own = !variation.methods.empty();
+    const std::vector<std::string>& methods = own ? variation.methods : p.methods;
+    if (own) run.settings["methods"] = methods;
+    const auto experiment = read_experiment(std::move(source), registry_, faults);
+    if (experiment) {
+      check_methods(*experiment, methods, own ? variation.methods_where : place_of("methods"), faults);
+      if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
+        faults.push_back({place_of(p.repeats ? "repeats" : "seeds"),
+                          "every seed gives the same run where \"start.perturbation\" is 0; set it, as in "
+                          "\"set: {start.perturbation: 1e-3}\""});
+    }
+    for (const ConfigError& fault : faults) note(fault, variation.name);
+    if (faults.empty()) add_runs(*experiment, methods, variation, run);
+  }
+
+  static void check_methods(const Experiment& experiment, const std::vector<std::string>& chosen,
+                            const Location& where, ConfigErrors& errors) {
+    std::vector<std::string> known;
+    for (const auto& method : experiment.methods) known.push_back(method.first);
+    for (const std::string& name : chosen)
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        errors.push_back(
+            {where, "there is no method \"" + name + "\"; the experiment's methods are " + joined(known)});
+  }
+
+  void add_runs(const Experiment& experiment, const std::vector<std::string>& methods,
+                const Variation& variation, SweepRun run) {
+    const ExperimentParameters& e = experiment.parameters;
+    ConfigNode resolved = experiment.resolved;
+    keep_methods(resolved, methods);
+    run.levels = e.levels;
+    run.vertices = coarse_vertices(e.cloth) * std::pow(4.0, e.levels - 1);
+    std::vector<int> seeds = sweep_.parameters.seeds;
+    if (seeds.empty()) seeds.push_back(e.start.seed);
+    for (const int seed : seeds) {
+      set_path(resolved, "start.seed", ConfigNode::of(seed), {}, errors_);
+      run.seed = seed;
+      run.folder = "runs/" + variation.folder + "/seed_" + std::to_string(seed);
+      run.config = to_yaml(resolved);
+      const auto [other, first] = configs_.emplace(run.config, run.name);
+      if (!first)
+        same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
+                                              "\" come to the same experiment; take one of them out"});
+      sweep_.runs.push_back(run);
+    }
+  }
+
+  void note(const ConfigError& fault, const std::string& variation) {
+    auto& names = faulty_[fault.text()];
+    if (names.empty()) faults_.push_back(fault);
+    names.push_back(variation);
+  }
+
+  /// Each fault once, with the variations that have it, in the order of the file.
+  void list_faults(std::size_t variations) {
+    for (ConfigError& fault : faults_) {
+      const auto& names = faulty_[fault.text()];
+      if (names.size() < variations)
+        fault.message += " (variation \"" + names[0] + "\"" +
+                         (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "") + ")";
+      errors_.push_back(fault);
+    }
+    if (errors_.empty()) errors_ = same_;
+    std::stable_sort(errors_.begin(), errors_.end(), [&](const ConfigError& a, const ConfigError& b) {
+      const auto order = [&](const Location& l) {
+        return std::tuple(l.file != source_.where.file, l.line, l.column);
+      };
+      return order(a.where) < order(b.where);
+    });
+  }
+
+  const Registry& registry_;
+  ConfigErrors& errors_;
+  Sweep sweep_;
+  ConfigNode source_;
+  ConfigErrors faults_, same_;
+  std::map<std::string, std::vector<std::string>> faulty_;
+  std::map<std::string, std::string> configs_;
+};
+
+}  // namespace
+
+std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
+                                ConfigErrors& errors) {
+  Sweep sweep = Reader(registry, errors).read(file);
+  if (!errors.empty()) return std::nullopt;
+  return sweep;
+}
+
+}  // namespace drape

@@ -1,0 +1,68 @@
+#include "core/plugin/describe.h"
+#include "core/sweep/sweep.h"
+
+namespace drape {
+
+void VariationParameters::declare(Declaration<VariationParameters>& d) {
+  d.add("name", &VariationParameters::name).required().meaning("names its runs, and their folder");
+  d.add_node("set", &VariationParameters::set)
+      .meaning("a map: a path of keys in the experiment (methods.pcs.hessian, energies.0), then its value");
+  d.add("levels", &VariationParameters::levels)
+      .at_least(1)
+      .at_most(10)
+      .meaning("in place of the experiment's");
+  d.add("methods", &VariationParameters::methods)
+      .meaning("which methods to run; those of the sweep if not given");
+}
+
+void SweepParameters::declare(Declaration<SweepParameters>& d) {
+  d.add("name", &SweepParameters::name).required().meaning("names the sweep's folder");
+  d.add("description", &SweepParameters::description).meaning("one sentence");
+  d.add("base", &SweepParameters::base)
+      .required()
+      .path()
+      .meaning("the experiment that is varied, relative to this file");
+  d.add_node("set", &SweepParameters::set)
+      .meaning("a map: a path of keys in the experiment, then its value, for every variation");
+  d.add("seeds", &SweepParameters::seeds)
+      .at_least(0)
+      .meaning(
+          "every variation is run with each of these as start.seed; the experiment's alone if not given");
+  d.add("repeats", &SweepParameters::repeats)
+      .at_least(1)
+      .at_most(10000)
+      .meaning("short for the seeds 1, 2, … up to this");
+  d.add("methods", &SweepParameters::methods)
+      .meaning("which of the experiment's methods to run; all if not given");
+  d.add("threads", &SweepParameters::threads).at_least(1).meaning("of each run");
+  d.add_node("ablation", &SweepParameters::ablation)
+      .meaning(
+          "a list of variations, or {grid: {path: [values], …}}: every combination; the base alone if not "
+          "given");
+}
+
+std::string describe_sweep() {
+  return describe(schema_of<SweepParameters>()) + "\na variation in ablation:\n\n" +
+         describe(schema_of<VariationParameters>());
+}
+
+std::string describe_sweep_markdown() {
+  return describe_markdown(schema_of<SweepParameters>()) + "\nA variation in `ablation`:\n\n" +
+         describe_markdown(schema_of<VariationParameters>());
+}
+
+nlohmann::ordered_json sweep_json_schema() {
+  using Json = nlohmann::ordered_json;
+  Json schema = json_schema(schema_of<SweepParameters>());
+  const Json values = {{"type", "array"}, {"minItems", 1}};
+  const Json grid = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", values}};
+  schema["properties"]["ablation"]["anyOf"] = Json::array(
+      {Json{{"type", "array"}, {"minItems", 1}, {"items", json_schema(schema_of<VariationParameters>())}},
+       Json{{"type", "object"},
+            {"properties", {{"grid", grid}}},
+            {"required", {"grid"}},
+            {"additionalProperties", false}}});
+  return schema;
+}
+
+}  // namespace drape

@@ -1,0 +1,344 @@
+// Sweeps on this machine: same results however many workers, continued where cut, nothing run twice.
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string small_sweep = "sweep " DRAPE_SOURCE_DIR "/tests/sweep/small_sweep.yaml ";
+
+Json runs_of(const fs::path& sweep) { return Json::parse(text_of(sweep / "sweep.json"))["runs"]; }
+
+/// What a sweep computed: every level's mesh and every energy, by file and method.
+std::map<std::string, std::string> outcome_of(const fs::path& sweep) {
+  std::map<std::string, std::string> all;
+  for (const Json& run : runs_of(sweep)) {
+    const std::string folder = run["folder"];
+    for (const auto& entry : fs::directory_iterator(sweep / folder / "levels"))
+      if (entry.path().extension() == ".ply")
+        all[folder + "/" + entry.path().filename().string()] = text_of(entry.path());
+    const Json results = Json::parse(text_of(sweep / folder / "results.json"));
+    for (const auto& [name, method] : results["methods"].items())
+      for (const Json& level : method["levels"])
+        all[folder + ":" + name] += level["energy"].dump() + " " + level["newton_iterations"].dump() + " ";
+  }
+  return all;
+}
+
+int count_of(const Json& runs, const std::string& status) {
+  return int(
+      std::count_if(runs.begin(), runs.end(), [&](const Json& run) { return run["status"] == status; }));
+}
+
+/// Waits until so many runs of a sweep that is at work have that status.
+void wait_for(const fs::path& sweep, const std::string& status, int runs) {
+  for (int k = 0; k < 3000; ++k) {
+    if (fs::exists(sweep / "sweep.json"))
+      if (count_of(runs_of(sweep), status) >= runs) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  FAIL(sweep << " does not come to " << runs << " runs that are " << status);
+}
+
+/// A folder with two runs that converge at once and, between them, one that never does.
+void write_endless(const Scratch& folder) {
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: first}\n"
+               "  - {name: endless, set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}}\n"
+               "  - {name: last, set: {refiner: midpoint}}\n");
+}
+
+}  // namespace
+
+TEST_CASE("24 runs give the same results with one worker and with two, and are not run again") {
+  const Scratch folder;
+  const Ended one = drape_with(small_sweep + "--out one --workers 1", folder.path);
+  CHECK(one.exit_code == 0);
+  CHECK_THAT(one.err, Contains("[24/24] refiner=midpoint,levels=2,step_growth=3, seed 3: converged after "));
+  if (std::thread::hardware_concurrency() >= 2) {
+    CHECK(drape_with(small_sweep + "--out two --workers 2", folder.path).exit_code == 0);
+    const auto expected = outcome_of(folder / "one");
+    CHECK(expected.size() == 24 * 2 + 12 * 2 + 12 * 4);  // energies by method; meshes by method and level
+    CHECK((outcome_of(folder / "two") == expected));
+    // The seeds and the variations differ, so that the comparison says something.
+    std::map<std::string, int> different;
+    for (const auto& [name, content] : expected)
+      if (name.find("newton_l0.ply") != std::string::npos) ++different[content];
+    CHECK(different.size() >= 3);
+  }
+
+  const std::string before = text_of(folder / "one/sweep.json");
+  const Ended again = drape_with(small_sweep + "--out one", folder.path);
+  CHECK(again.exit_code == 0);
+  CHECK(again.err == "");
+  CHECK(again.out == one.out);
+  CHECK(text_of(folder / "one/sweep.json") == before);
+  const Json runs = runs_of(folder / "one");
+  REQUIRE(runs.size() == 24);
+  for (const Json& run : runs) CHECK(run["starts"] == 1);
+  CHECK(runs[23]["name"] == "refiner=midpoint,levels=2,step_growth=3");
+  CHECK(runs[23]["seed"] == 3);
+  CHECK(runs[23]["settings"]["refiner"] == "midpoint");
+
+  // A run can be repeated by hand from the file beside it.
+  const std::string run = "one/" + runs[23]["folder"].get<std::string>();
+  CHECK(drape_with("run " + run + ".yaml --out by_hand --quiet --no-report", folder.path).exit_code == 0);
+  CHECK(text_of(folder / "by_hand/levels/pcs_l1.ply") == text_of(folder / (run + "/levels/pcs_l1.ply")));
+}
+
+TEST_CASE("kill -9 in the middle loses nothing but what was running") {
+  const Scratch folder;
+  REQUIRE(drape_with(small_sweep + "--out whole", folder.path).exit_code == 0);
+  for (const int done : {1, 9, 17}) {
+    Command command("exec " + drape_command + " " + small_sweep + " --out cut", folder.path);
+    wait_for(folder / "cut", "converged", done);
+    command.send(SIGKILL);  // the sweep alone: its runs are in groups of their own, and must die with it
+    REQUIRE(command.wait().exit_code == 128 + SIGKILL);
+  }
+  const Json before = runs_of(folder / "cut");
+  const Ended ended = drape_with(small_sweep + "--out cut", folder.path);
+  CHECK(ended.exit_code == 0);
+  CHECK((outcome_of(folder / "cut") == outcome_of(folder / "whole")));
+  const Json after = runs_of(folder / "cut");
+  const int workers = int(std::thread::hardware_concurrency());
+  int starts = 0;
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    starts += after[k]["starts"].get<int>();
+    if (before[k]["status"] == "converged") CHECK(after[k]["starts"] == before[k]["starts"]);
+  }
+  CHECK(starts >= 24);
+  CHECK(starts <= 24 + 3 * workers);
+}
+
+TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same command goes on") {
+  const Scratch folder;
+  write_endless(folder);
+  Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
+  wait_for(folder / "out", "running", 1);
+  wait_for(folder / "out", "converged", 1);
+  for (int k = 0; k < 1000 && !fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const Ended second = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(second.exit_code == 2);
+  CHECK_THAT(second.err,
+             Catch::Matchers::Matches("error: out: another `drape sweep` is at work here \\(process "
+                                      "[0-9]+ on .+\\); wait for it, or name another folder with "
+                                      "--out\n"));
+  command.send(SIGINT);
+  const Ended ended = command.wait();
+  CHECK(ended.exit_code == 130);
+  CHECK_THAT(ended.err, Contains("stopping: 1 running save what they have\n"));
+  CHECK_THAT(ended.err, Catch::Matchers::EndsWith(
+                            "stopped on request; the same command goes on with what is missing\n"));
+  const Json stopped = runs_of(folder / "out");
+  CHECK(stopped[0]["status"] == "converged");
+  CHECK(stopped[1]["status"] == "cancelled");
+  CHECK(stopped[2]["status"] == "waiting");
+  CHECK(stopped[2]["starts"] == 0);
+  const Json results = Json::parse(text_of(folder / "out/runs/endless/seed_1/results.json"));
+  CHECK(results["methods"]["newton"]["status"] == "cancelled");
+
+  // With fewer steps it ends, though not converged: those are results, and the exit code says so.
+  folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 100000000", "max_steps: 3"));
+  const Ended on = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(on.exit_code == 1);
+  const Json after = runs_of(folder / "out");
+  CHECK(after[0]["starts"] == 1);
+  CHECK(after[1]["status"] == "ended");
+  CHECK(after[1]["exit_code"] == 1);
+  CHECK(after[1]["starts"] == 2);
+  CHECK(after[2]["starts"] == 1);
+  CHECK(Json::parse(text_of(folder / "out/sweep.json"))["complete"] == true);
+}
+
+TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
+               "  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
+  const std::string error = "pin 0 (ball) holds no vertex of the coarsest level; widen its region";
+  const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));
+  CHECK_THAT(ended.err, Contains("; 1 failed") && Contains(error));
+  Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "failed");
+  CHECK(runs[0]["exit_code"] == 2);
+  CHECK_THAT(runs[0]["error"].get<std::string>(), Contains(error));
+  CHECK(runs[1]["status"] == "converged");
+
+  const Ended again = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(again.exit_code == 1);
+  CHECK_THAT(again.out, Contains(error));
+  CHECK(runs_of(folder / "out")[0]["starts"] == 1);
+  const Ended retried = drape_with("sweep s.yaml --out out --retry-failed", folder.path);
+  CHECK(retried.exit_code == 1);
+  runs = runs_of(folder / "out");
+  CHECK(runs[0]["starts"] == 2);
+  CHECK(runs[1]["starts"] == 1);
+  // Once its experiment is another, it is no longer the one that failed.
+  folder.write("s.yaml",
+               replaced(text_of(folder / "s.yaml"), "point: [5, 5, 5]", "point: [0, 0, 0], radius: 0.3"));
+  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  CHECK(runs_of(folder / "out")[0]["starts"] == 3);
+}
+
+TEST_CASE("a run that is killed has failed, by name of the signal") {
+  const Scratch folder;
+  write_endless(folder);
+  Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
+  wait_for(folder / "out", "running", 1);
+  wait_for(folder / "out", "converged", 1);
+  for (int k = 0; k < 1000 && !fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  // The one process whose command names this run's folder.
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    std::stringstream words;
+    words << std::ifstream(entry.path() / "cmdline", std::ios::binary).rdbuf();
+    const std::string name = entry.path().filename();
+    std::error_code none;
+    if (words.str().find("out/runs/endless/seed_1.yaml") != std::string::npos &&
+        fs::read_symlink(entry.path() / "cwd", none) == fs::canonical(folder.path))
+      kill(std::stoi(name), SIGKILL);
+  }
+  const Ended ended = command.wait();
+  CHECK(ended.exit_code == 1);
+  const Json runs = runs_of(folder / "out");
+  CHECK(runs[1]["status"] == "failed");
+  CHECK(runs[1]["error"] == "ended by signal 9 (Killed)");
+  CHECK(runs[2]["status"] == "converged");
+}
+
+TEST_CASE("a sweep that no longer fits its results is refused, and they stay") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string sweep =
+      "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation: [{name: a}, {name: b, set: "
+      "{refiner: midpoint}}]\n";
+  folder.write("s.yaml", sweep);
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  const std::string before = text_of(folder / "out/sweep.json");
+  const std::string ways =
+      "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
+      "it again: ";
+  const auto said = [&](const std::string& arguments) {
+    const Ended ended = drape_with("sweep s.yaml --out out" + arguments, folder.path);
+    CHECK(ended.exit_code == 2);
+    CHECK(text_of(folder / "out/sweep.json") == before);
+    return ended.err;
+  };
+  folder.write("s.yaml", replaced(sweep, "midpoint", "loop, levels: 2"));
+  CHECK(said("") ==
+        "error: out: the results of run \"b\", seed 1 are of another experiment than the sweep now says" +
+            ways + "out/runs/b/seed_1*\n");
+  folder.write("s.yaml", replaced(sweep, "{name: a}, ", ""));
+  CHECK(said("") == "error: out: has results of run \"a\", seed 1, which the sweep no longer has" + ways +
+                        "out/runs/a/seed_1*\n");
+  folder.write("s.yaml", sweep);
+  if (std::thread::hardware_concurrency() >= 2)
+    CHECK(said(" --threads 2") ==
+          "error: out: run \"a\", seed 1 was made with 1 threads a run, not 2, so times would not compare" +
+              ways + "out/runs/a/seed_1*\n");
+  // What was added is run; what was there is not.
+  folder.write("s.yaml", replaced(sweep, "{name: a}, ", "{name: a}, {name: c, levels: 2}, "));
+  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  for (const Json& run : runs_of(folder / "out")) CHECK(run["starts"] == 1);
+}
+
+TEST_CASE("a folder where a run would go, and that the sweep has not made, stays") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string sweep =
+      "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n";
+  folder.write("s.yaml", sweep);
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  fs::create_directories(folder / "out/runs/b/seed_1");
+  folder.write("out/runs/b/seed_1/notes", "mine");
+  folder.write("s.yaml", sweep + "  - {name: b, levels: 2}\n");
+  const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.err ==
+        "error: out/runs/b/seed_1: is there already, and not from this sweep; move it away, or name another "
+        "folder with --out\n");
+  CHECK(text_of(folder / "out/runs/b/seed_1/notes") == "mine");
+}
+
+TEST_CASE("runs that do not fit into the memory together run one after another, with a warning") {
+  if (std::thread::hardware_concurrency() < 2) return;
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nrepeats: 4\n");
+  const Ended ended = drape_with("sweep s.yaml --out out --workers 2 --memory-limit 0.001", folder.path);
+  CHECK(ended.exit_code == 0);
+  CHECK_THAT(ended.err, Contains("warning: base, seed 1 may need 0.1 GB where 0.0 GB are to be had; it runs "
+                                 "alone\n"));
+  double last_end = 0;
+  for (const Json& run : runs_of(folder / "out")) {
+    const fs::path log = folder / ("out/" + run["folder"].get<std::string>() + "/log.jsonl");
+    std::istringstream lines(text_of(log));
+    std::string first, last;
+    for (std::string line; std::getline(lines, line); last = line)
+      if (first.empty()) first = line;
+    CHECK(Json::parse(first)["time"].get<double>() > last_end);
+    last_end = Json::parse(last)["time"];
+  }
+}
+
+TEST_CASE("a run whose end was not noted down has its results, and is not run again") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n  - {name: a}\n"
+               "  - {name: b, set: {newton.max_steps: 2}}\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 1);
+  for (const std::string name : {"a", "b"}) {
+    const std::string status = "out/runs/" + name + "/seed_1.status.json";
+    const std::string word = name == "a" ? "converged" : "ended";
+    folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
+  }
+  const Ended again = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(again.exit_code == 1);
+  CHECK(again.err == "");
+  const Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "converged");
+  CHECK(runs[1]["status"] == "ended");
+  for (const Json& run : runs) CHECK(run["starts"] == 1);
+
+  folder.write("out/runs/a/seed_1.status.json", "{");
+  const Ended broken = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(broken.exit_code == 2);
+  CHECK_THAT(broken.err,
+             Catch::Matchers::StartsWith("error: out/runs/a/seed_1.status.json: is not a run's status (") &&
+                 Catch::Matchers::EndsWith("); remove it and the run's folder\n"));
+}
+
+TEST_CASE("two tasks for one run, as after a daemon's death, run it once") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nmethods: [newton]\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  fs::remove_all(folder / "out/runs/base/seed_1");
+  fs::remove(folder / "out/runs/base/seed_1.status.json");
+  const std::string task = "exec " + drape_command + " sweep-job out --task 0";
+  Command first(task, folder.path), second(task, folder.path);
+  CHECK(first.wait().exit_code == 0);
+  CHECK(second.wait().exit_code == 0);
+  CHECK(drape_with("sweep-job out", folder.path).exit_code == 0);  // collects
+  const Json runs = runs_of(folder / "out");
+  CHECK(runs[0]["status"] == "converged");
+  CHECK(runs[0]["starts"] == 1);
+  const Ended none = drape_with("sweep-job out --task 1", folder.path);
+  CHECK(none.exit_code == 2);
+  CHECK(none.err == "error: out: sweep.json has no run 1\n");
+}

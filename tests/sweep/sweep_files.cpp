@@ -1,0 +1,192 @@
+// What `drape sweep` says to bad sweep files and options: the exact lines. Nothing may be written in any
+// case.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Standard error of a sweep that must be refused, and leave nothing behind.
+std::string said_of(const std::string& sweep, const std::string& arguments = "") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\n" + sweep);
+  const Ended ended = drape_with("sweep s.yaml --out out " + arguments, folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  CHECK(!fs::exists(folder / "out"));
+  return ended.err;
+}
+
+}  // namespace
+
+TEST_CASE("keys and values of a sweep") {
+  CHECK(said_of("ablaton: []\n") ==
+        "error: s.yaml:3:1: unknown key \"ablaton\"; did you mean \"ablation\"?\n");
+  CHECK(said_of("threads: 0\n") == "error: s.yaml:3:10: \"threads\" must be at least 1, not 0\n");
+  CHECK(
+      said_of("methods: [psc]\n") ==
+      "error: s.yaml:3:10: there is no method \"psc\"; the experiment's methods are pcs, cascadic, newton\n");
+  const Scratch folder;
+  folder.write("s.yaml", "name: ../s\nbase: nowhere.yaml\n");
+  CHECK(
+      drape_with("sweep s.yaml", folder.path).err ==
+      "error: s.yaml:1:7: name \"../s\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
+      "not beginning with \".\"\n"
+      "error: nowhere.yaml: no such file (the sweep's \"base\", named at s.yaml:2:7)\n");
+}
+
+TEST_CASE("seeds") {
+  CHECK(said_of("seeds: [1, 1]\n") == "error: s.yaml:3:8: \"seeds\" names one of them twice\n");
+  CHECK(said_of("seeds: [1]\nrepeats: 2\n") ==
+        "error: s.yaml:4:10: \"repeats\" and \"seeds\" are both given; keep one of them\n");
+  CHECK(said_of("repeats: 2\nset: {start.seed: 4}\n") ==
+        "error: s.yaml:4:7: \"start.seed\" is what the sweep's seeds set; take one of them out\n");
+  CHECK(said_of("seeds: [1, 2]\nset: {start.perturbation: 0}\n") ==
+        "error: s.yaml:3:8: every seed gives the same run where \"start.perturbation\" is 0; set it, as in "
+        "\"set: {start.perturbation: 1e-3}\"\n");
+}
+
+TEST_CASE("the shape of an ablation") {
+  const std::string shape =
+      "\"ablation\" must be a list of variations, as in \"ablation: [{name: coarse, set: "
+      "{methods.pcs.hessian: coarse}}]\", or a map with a \"grid\"\n";
+  CHECK(said_of("ablation: []\n") == "error: s.yaml:3:11: " + shape);
+  CHECK(said_of("ablation: coarse\n") == "error: s.yaml:3:11: " + shape);
+  CHECK(said_of("ablation: {gird: {levels: [1]}}\n") ==
+        "error: s.yaml:3:11: \"grid\" in ablation is required and missing\n"
+        "error: s.yaml:3:12: unknown key \"gird\" in ablation; did you mean \"grid\"?\n");
+  CHECK(
+      said_of("ablation: {grid: {levels: []}}\n") ==
+      "error: s.yaml:3:19: \"levels\" in grid must be a list of at least one value, as in \"refiner: [loop, "
+      "midpoint]\"\n");
+  CHECK(said_of("ablation: {grid: [1]}\n") ==
+        "error: s.yaml:3:18: \"grid\" must be a map of paths of keys and lists of values, as in \"grid: "
+        "{refiner: [loop, midpoint], levels: [2, 3]}\"\n");
+  CHECK(said_of("ablation:\n  - {nam: a}\n  - {name: b, set: [1]}\n  - c\n") ==
+        "error: s.yaml:4:5: \"name\" in a variation is required and missing\n"
+        "error: s.yaml:4:6: unknown key \"nam\" in a variation; did you mean \"name\"?\n"
+        "error: s.yaml:5:20: \"set\" must be a map of paths of keys and values, as in \"set: "
+        "{newton.step_size: 0.2}\"\n"
+        "error: s.yaml:6:5: \"a variation\" must be a map of keys and values, not \"c\"\n");
+  CHECK(said_of("set: {levels: 1, levels: 2}\n") ==
+        "error: s.yaml:3:18: repeated key \"levels\" in set; it is first set at s.yaml:3:7\n");
+  std::string ten = "[1", grid;
+  for (int k = 2; k <= 10; ++k) ten += ", " + std::to_string(k);
+  for (const char* key :
+       {"newton.max_steps", "newton.refresh", "newton.iterations_per_step", "levels", "newton.step_growth"})
+    grid += std::string(grid.empty() ? "" : ", ") + key + ": " + ten + "]";
+  CHECK(said_of("ablation: {grid: {" + grid + "}}\n") ==
+        "error: s.yaml:3:18: the grid has more than 10000 variations; take some values out\n");
+}
+
+TEST_CASE("every variation is checked, and every fault is named with its place and its variation") {
+  CHECK(
+      said_of("ablation:\n"
+              "  - {name: a, set: {newton.step_siz: 1}}\n"
+              "  - {name: b, levels: 1, set: {newton.step_growth: 0.5, refiner: lop, pins.7.radius: 1}}\n"
+              "  - {name: c, methods: [psc]}\n"
+              "  - {name: d, levels: 1}\n"
+              "  - {name: d, levels: 1, set: {levels: 3}}\n") ==
+      "error: s.yaml:4:21: unknown key \"step_siz\" in newton; did you mean \"step_size\"? (variation "
+      "\"a\")\n"
+      "error: s.yaml:5:52: \"step_growth\" must be at least 1, not 0.5 (variation \"b\")\n"
+      "error: s.yaml:5:66: unknown refiner \"lop\"; did you mean \"loop\"? known: loop, midpoint (variation "
+      "\"b\")\n"
+      "error: s.yaml:5:71: \"7\" is not an index of a list of 2, counted from 0 (variation \"b\")\n"
+      "error: s.yaml:6:24: there is no method \"psc\"; the experiment's methods are pcs, cascadic, newton "
+      "(variation \"c\")\n"
+      "error: s.yaml:8:12: variation \"d\" is given twice; rename one of them\n"
+      "error: s.yaml:8:32: \"levels\" is given twice in variation \"d\"; take one of them out\n");
+  // What is wrong in all of them is said once.
+  CHECK(
+      said_of("set: {newton.step_siz: 1, levels: 0}\nablation:\n  - {name: a}\n  - {name: b, levels: 1}\n") ==
+      "error: s.yaml:3:7: unknown key \"step_siz\" in newton; did you mean \"step_size\"?\n"
+      "error: s.yaml:3:35: \"levels\" must be at least 1, not 0 (variation \"a\")\n");
+}
+
+TEST_CASE("two variations that are one") {
+  CHECK(
+      said_of("ablation: [{name: a b}, {name: a_b, levels: 1}]\n") ==
+      "error: s.yaml:3:32: variations \"a b\" and \"a_b\" would share the folder a_b; rename one of them\n");
+  CHECK(said_of("ablation: [{name: a}, {name: b, levels: 2}]\n") ==
+        "error: s.yaml:3:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
+  CHECK(said_of(
+            "methods: [pcs]\nablation: [{name: a}, {name: b, set: {methods.newton.newton.refresh: 2}}]\n") ==
+        "error: s.yaml:4:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
+  CHECK(said_of("ablation: {grid: {levels: [1, 1]}}\n") ==
+        "error: s.yaml:3:18: variation \"levels=1\" is given twice; rename one of them\n");
+}
+
+TEST_CASE("options that do not fit, and a folder that is somebody's") {
+  const int cores = int(std::thread::hardware_concurrency());
+  const std::string count = std::to_string(cores), more = std::to_string(cores + 1);
+  const std::string rest = " threads (workers × threads) are more than the " + count +
+                           " cores of this machine; lower --workers or --threads\n";
+  CHECK(said_of("", "--workers " + more) == "error: " + more + " × 1" + rest);
+  CHECK(said_of("threads: " + more + "\n") == "error: 1 × " + more + rest);
+  CHECK(said_of("", "--wait") == "error: --wait is of --engine slurm; give that too\n");
+  CHECK(said_of("", "--engine cloud") ==
+        "error: --engine: cloud not in {local,slurm}; see `drape sweep --help`\n");
+  CHECK(said_of("", "--engine slurm --cancel") ==
+        "error: out: has no jobs in Slurm's queue; there is nothing to cancel\n");
+
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\n");
+  fs::create_directory(folder / "mine");
+  folder.write("mine/notes", "mine");
+  const Ended mine = drape_with("sweep s.yaml --out mine", folder.path);
+  CHECK(mine.exit_code == 2);
+  CHECK(mine.err == "error: mine: holds notes, and no sweep; name another folder with --out\n");
+  CHECK(drape_with("sweep s.yaml --out s.yaml", folder.path).err ==
+        "error: s.yaml: cannot make the sweep's folder (Not a directory); name another with --out\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  folder.write("other.yaml", "name: other\nbase: e.yaml\n");
+  CHECK(drape_with("sweep other.yaml --out out", folder.path).err ==
+        "error: out: holds the sweep \"s\"; name another folder with --out\n");
+}
+
+TEST_CASE("--dry-run checks and lists, and leaves no trace") {
+  const Scratch folder;
+  const std::string sweep = DRAPE_SOURCE_DIR "/tests/sweep/small_sweep.yaml";
+  const Ended ended = drape_with("sweep " + sweep + " --dry-run", folder.path);
+  CHECK(ended.exit_code == 0);
+  CHECK(ended.err == "");
+  CHECK_THAT(ended.out, Catch::Matchers::StartsWith(
+                            "sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
+                            "waiting    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
+                            "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
+                            "\"newton.step_growth\":1.5}\n"));
+  CHECK(fs::is_empty(folder.path));
+}
+
+TEST_CASE("a setting may be a whole map or list, and its files are relative to the sweep's own") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  fs::create_directory(folder / "sweeps");
+  fs::create_directory(folder / "sweeps/meshes");
+  folder.write("sweeps/meshes/sheet.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n");
+  folder.write("sweeps/s.yaml",
+               "name: s\nbase: ../e.yaml\nset: {levels: 2}\nmethods: [newton]\nablation:\n"
+               "  - name: other energies\n    set:\n      energies: [stvk, {type: gravity, acceleration: [0, "
+               "0, -5]}]\n"
+               "      methods: {newton: {newton: {step_size: 0.25}}}\n      reference: newton\n"
+               "  - name: mesh\n    set: {cloth: {shape: file, file: meshes/sheet.off}}\n");
+  const Ended ended = drape_with("sweep sweeps/s.yaml --out out", folder.path);
+  CHECK(ended.exit_code == 0);
+  const std::string other = text_of(folder / "out/runs/other_energies/seed_1/config.yaml");
+  for (const char* line : {"- type: stvk\n", "acceleration: [0, 0, -5]\n", "step_size: 0.25\n"})
+    CHECK_THAT(other, Catch::Matchers::Contains(line));
+  CHECK(other.find("hinge") == std::string::npos);
+  CHECK(fs::exists(folder / "out/runs/mesh/seed_1/levels/newton_l1.ply"));
+  const auto json = nlohmann::json::parse(text_of(folder / "out/sweep.json"));
+  CHECK(json["complete"] == true);
+  CHECK(json["runs"][0]["settings"]["energies"][1]["acceleration"][2] == -5);
+  CHECK(json["runs"][1]["folder"] == "runs/mesh/seed_1");
+}
