@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/plugin/config_node.h"
 #include "core/report/chart_data.h"
 #include "core/report/html.h"
 #include "core/report/run_rows.h"
@@ -21,11 +22,15 @@ constexpr double noticeable = 0.05;  // differences of medians below this part g
 
 Cell words(const std::string& content) { return {content, false}; }
 
+/// Rounded for the eye; in full for the table's files.
 std::string shown(const std::optional<Spread>& spread) {
   if (!spread) return figure({});
   const std::string low = figure(spread->low), high = figure(spread->high);
-  return figure(spread->median) +
-         (low == high ? "" : " <span class=\"range\">" + low + " … " + high + "</span>");
+  std::string full;
+  for (const double value : {spread->median, spread->low, spread->high})
+    full += (full.empty() ? "" : " ") + ConfigNode::of(value).scalar;
+  return "<span data-spread=\"" + full + "\">" + figure(spread->median) + "</span>" +
+         (low == high ? "" : "<span class=\"range\">" + low + " … " + high + "</span>");
 }
 
 const RowFigure& figure_named(const std::string& name) {

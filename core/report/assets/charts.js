@@ -79,9 +79,12 @@ const drape = (() => {
   /// What a plot shows: a row a point of its lines, or a row a bar.
   function rowsOf(chart) {
     const sets = chart.data.datasets.filter(set => set.label);
-    if (chart.config.type === 'bar')
-      return [['name', ...sets.map(set => set.label)],
-        ...chart.data.labels.map((label, k) => [label, ...sets.map(set => set.data[k])])];
+    if (chart.config.type === 'bar') {
+      const ranged = sets.filter(set => set.ranges);
+      return [['name', ...sets.map(set => set.label), ...ranged.flatMap(() => ['lowest', 'highest'])],
+        ...chart.data.labels.map((label, k) => [label, ...sets.map(set => set.data[k]),
+          ...ranged.flatMap(set => set.ranges[k] || [null, null])])];
+    }
     const {x, y} = chart.options.scales, extra = [...new Set(sets.flatMap(set =>
       set.data.flatMap(point => Object.keys(point).filter(key => key !== 'x' && key !== 'y'))))];
     return [['series', x.title.text, y.title.text, ...extra],
@@ -141,22 +144,34 @@ const drape = (() => {
     addEventListener('afterprint', () => { delete theme.theme; draw(); });
   }
 
-  /// A cell for every column that one spans, and those of rows above that reach down.
+  /// A cell's words as a file has them: d_H_fit, no dashes for what is absent, no spaces within numbers.
+  function wordsOf(cell) {
+    const copy = cell.cloneNode(true);
+    copy.querySelectorAll('sub, sup').forEach(part => part.replaceWith('_' + part.textContent));
+    return copy.textContent.trim().replace(/^–$/, '').replace(/\u202f/g, '');
+  }
+
+  /// A cell for every column that one spans, and those of rows above that reach down. A column of medians gives
+  /// three: the median, the lowest and the highest.
   function cellsOf(table) {
-    const grid = [];
+    const grid = [], spread = [];
     [...table.rows].forEach((row, r) => {
       grid[r] = grid[r] || [];
       for (const cell of row.cells) {
         let c = 0;
         while (grid[r][c] !== undefined) ++c;
+        const range = cell.querySelector('[data-spread]');
+        if (range) spread[c] = true;
         for (let i = 0; i < cell.rowSpan; ++i)
           for (let j = 0; j < cell.colSpan; ++j)
-            (grid[r + i] = grid[r + i] || [])[c + j] = cell.textContent.trim().replace(/^–$/, '');
+            (grid[r + i] = grid[r + i] || [])[c + j] = range ? range.dataset.spread.split(' ') : wordsOf(cell);
       }
     });
     const heads = table.tHead ? table.tHead.rows.length : 1;
     const names = grid[0].map((_, c) => [...new Set(grid.slice(0, heads).map(row => row[c]))].join(' ').trim());
-    return [names, ...grid.slice(heads)];
+    const wide = (row, c) => Array.isArray(row[c]) ? row[c] : [row[c], '', ''];
+    return [names.flatMap((name, c) => spread[c] ? [name, name + ', lowest', name + ', highest'] : [name]),
+      ...grid.slice(heads).map(row => names.flatMap((_, c) => spread[c] ? wide(row, c) : [row[c]]))];
   }
 
   document.querySelectorAll('.scroll').forEach((frame, k) => {
