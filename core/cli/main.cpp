@@ -15,7 +15,10 @@
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
 #include "core/plugin/words.h"
+#include "core/report/compare.h"
 #include "core/report/report.h"
+#include "core/report/run_set.h"
+#include "core/report/runs_report.h"
 #include "core/report/tables.h"
 #include "core/sweep/sweep.h"
 #include "core/version.h"
@@ -24,7 +27,7 @@ namespace {
 
 using namespace drape;
 
-constexpr int exit_not_converged = 1, exit_bad_input = 2;
+constexpr int exit_not_converged = 1, exit_bound_broken = 1, exit_bad_input = 2;
 constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metric"};
 
 volatile std::sig_atomic_t stop_signal = 0;
@@ -199,6 +202,22 @@ int reference(const Registry& registry) {
   return 0;
 }
 
+int report(const std::vector<std::filesystem::path>& folders, std::filesystem::path page) {
+  const bool several = folders.size() > 1 || is_sweep(folders.front());
+  if (!several && !page.empty())
+    throw std::runtime_error(
+        "--out is for the page of several runs; a run's own is report.html in its folder");
+  if (page.empty()) page = folders.front() / "report.html";
+  if (folders.size() > 1 && page == folders.front() / "report.html")
+    throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
+  if (several)
+    write_runs_report(folders, page);
+  else
+    write_report(folders.front());
+  std::cout << "report: " << page.string() << "\n";
+  return 0;
+}
+
 void require_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -249,8 +268,19 @@ int main_checked(int argc, char** argv) {
   CLI::App* describe_command =
       app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
   describe_command->add_option("plugin", plugin, "name of the plugin")->required();
-  CLI::App* report_command = app.add_subcommand("report", "write the report of a results folder again");
-  report_command->add_option("folder", run_folder, "results folder")->required();
+  std::vector<std::string> report_folders, compared, bounds;
+  CLI::App* report_command =
+      app.add_subcommand("report", "write the report of a run again, or one of several runs or of a sweep");
+  report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
+  report_command->add_option("--out", out, "page of several runs (default: report.html in a sweep's folder)");
+  CLI::App* compare_command = app.add_subcommand(
+      "compare", "say what got faster, slower, better or worse from one run or sweep to another");
+  compare_command->add_option("runs", compared, "the one before and the one after")->required()->expected(2);
+  compare_command
+      ->add_option("--bound", bounds,
+                   "exit with 1 when a figure is more than so many times what it was; may be repeated")
+      ->type_name("KEY=RATIO")
+      ->allow_extra_args(false);
   CLI::App* table1_command =
       app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
   table1_command->add_option("folder", run_folder, "results folder")->required();
@@ -276,9 +306,12 @@ int main_checked(int argc, char** argv) {
 
   set_thread_count(threads);
   if (*report_command) {
-    write_report(run_folder);
-    std::cout << "report: " << (std::filesystem::path(run_folder) / "report.html").string() << "\n";
-    return 0;
+    return report({report_folders.begin(), report_folders.end()}, out);
+  }
+  if (*compare_command) {
+    const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
+    std::cout << comparison.text();
+    return comparison.broken() ? exit_bound_broken : 0;
   }
   if (*table1_command) {
     std::cout << table1_text(read_run(run_folder));

@@ -75,6 +75,17 @@ void PinParameters::declare(Declaration<PinParameters>& d) {
       .meaning("held at the rest place moved by this; without it, where the start puts them");
 }
 
+void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
+  d.add("method", &ReferenceParameters::method).meaning("method whose finest state it is");
+  d.add("force_tolerance", &ReferenceParameters::force_tolerance)
+      .at_least(0)
+      .meaning("to which that state is solved further, once all methods have ended; 0 leaves it as it is");
+  d.add("file", &ReferenceParameters::file)
+      .path()
+      .meaning(
+          "in place of a method: a mesh on the finest level, or the folder of a run that had a reference");
+}
+
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add("name", &ExperimentParameters::name).required().meaning("names the results folder and the report");
   d.add("description", &ExperimentParameters::description).meaning("one sentence for the report");
@@ -102,8 +113,15 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add_node("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
       .meaning("all that there are if not given");
-  d.add("reference", &ExperimentParameters::reference)
-      .meaning("method whose finest state the others' are measured against");
+  d.add_section("reference", &ExperimentParameters::reference)
+      .or_word("method")
+      .meaning(
+          "what errors are measured against, beside each method's own finest state; a method's name is "
+          "enough");
+  d.add("frames", &ExperimentParameters::frames)
+      .at_least(0)
+      .at_most(1000)
+      .meaning("states a level that are kept on the way and whose errors are measured; 0 for none");
   d.add_choice("verify", &ExperimentParameters::verify,
                {{"every_level", Verify::every_level}, {"every_step", Verify::every_step}})
       .meaning("when intersections are counted, by exact predicates where the shapes are meshes");
@@ -244,10 +262,21 @@ class Maker {
       resolved_map.add(name, resolved);
     }
     set("methods", resolved_map);
-    const std::string& reference = e_.parameters.reference;
-    if (!reference.empty() && !names.count(reference))
-      errors_.push_back({e_.source.find("reference")->where,
-                         "\"reference\" must be one of the methods, not \"" + reference + "\""});
+    check_reference(names);
+  }
+
+  void check_reference(const std::set<std::string>& methods) {
+    const ReferenceParameters& reference = e_.parameters.reference;
+    const auto refuse = [&](const std::string& what) {
+      errors_.push_back({e_.place_of("reference"), "\"reference\" " + what});
+    };
+    if (!reference.method.empty() && !reference.file.empty())
+      refuse("takes either a method or a file, not both");
+    else if (!reference.method.empty() && !methods.count(reference.method))
+      refuse("must be one of the methods, not \"" + reference.method + "\"");
+    else if (reference.method.empty() && reference.force_tolerance > 0)
+      refuse("needs the method whose finest state is solved further, as in {method: " +
+             (methods.empty() ? "newton" : *methods.rbegin()) + ", force_tolerance: 1e-5}");
   }
 
   void set(const std::string& key, ConfigNode value) {

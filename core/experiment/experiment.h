@@ -62,6 +62,14 @@ struct PinParameters {
   static void declare(Declaration<PinParameters>& d);
 };
 
+/// The state that the methods' errors are measured against, beside each method's own finest one.
+struct ReferenceParameters {
+  std::string method;
+  double force_tolerance = 0;
+  std::string file;
+  static void declare(Declaration<ReferenceParameters>& d);
+};
+
 /// When exact predicates count the intersections.
 enum class Verify { every_level, every_step };
 
@@ -80,7 +88,8 @@ struct ExperimentParameters {
   NewtonParameters newton;
   ConfigNode methods;
   std::vector<ConfigNode> metrics;
-  std::string reference;
+  ReferenceParameters reference;
+  int frames = 8;
   Verify verify = Verify::every_level;
   static void declare(Declaration<ExperimentParameters>& d);
 };
@@ -120,6 +129,7 @@ struct Scene {
   Hierarchy hierarchy;
   std::vector<std::unique_ptr<LevelModel>> models;
   std::vector<Positions> starts;
+  std::optional<Positions> reference;  ///< on the finest level, where the experiment names a file with it
 
   Problem problem() const;
 };

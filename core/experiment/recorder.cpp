@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/experiment/machine.h"
+#include "core/experiment/reference.h"
 #include "core/mesh/io.h"
 #include "core/numerics/parallel.h"
 #include "core/version.h"
@@ -28,10 +29,14 @@ nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::str
 }  // namespace
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
-    : folder_(folder), experiment_(experiment), scene_(scene) {
+    : folder_(folder),
+      experiment_(experiment),
+      scene_(scene),
+      frames_(experiment.parameters.frames),
+      errors_(folder, experiment, scene) {
   steps_.open(folder.file("steps.csv"));
   steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-            "step_size,contacts,smallest_gap,intersections\n";
+            "step_size,contacts,smallest_gap,intersections,flops\n";
   log_.open(folder.file("log.jsonl"));
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
@@ -46,6 +51,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   save();
   for (const Level& level : scene.hierarchy.levels)
     write_ply(folder.file("rest/l" + std::to_string(level.index) + ".ply"), level.rest);
+  if (scene.reference)
+    write_ply(folder.file("reference.ply"), {*scene.reference, scene.hierarchy.levels.back().rest.triangles});
   results_["obstacles"] = Json::array();
   for (const auto& contact : scene.models.back()->contacts())
     for (const TriangleMesh& obstacle : contact->obstacles()) {
@@ -73,6 +80,8 @@ std::string Recorder::file_of(const std::string& method, int level, const char* 
 void Recorder::method_started(const std::string& method) {
   method_ = method;
   sound_of_method_ = true;
+  spent_ = Work();
+  overhead_ = 0;
   reset_peak_memory();
   method_entry() = {{"status", "running"},
                     {"seconds", 0.0},
@@ -84,6 +93,8 @@ void Recorder::method_started(const std::string& method) {
 }
 
 void Recorder::level_started(int level) {
+  frames_.begin_level();
+  last_ = Work();
   log({{"event", "level_started"}, {"method", method_}, {"level", level}});
 }
 
@@ -105,9 +116,12 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
+  const double seconds = r.seconds - overhead_;
+  last_ = {std::max(seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
+  if (frames_.any()) frames_.iteration(last_, x);
   char line[400];
   std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
-                r.iteration, r.seconds, r.energy, r.decrement, r.force_residual, r.step_length);
+                r.iteration, seconds, r.energy, r.decrement, r.force_residual, r.step_length);
   steps_ << line;
   if (r.proxy_energy) std::snprintf(line, sizeof line, "%.17g", *r.proxy_energy), steps_ << line;
   std::snprintf(line, sizeof line, ",%.9g,", r.step_size);
@@ -119,6 +133,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   steps_ << ',';
   if (experiment_.parameters.verify == Verify::every_step)
     if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
+  std::snprintf(line, sizeof line, ",%.9g", spent_.flops + r.flops), steps_ << line;
   steps_ << std::endl;
 }
 
@@ -135,13 +150,14 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
                 {"steps", r.steps},
                 {"newton_iterations", r.iterations},
+                {"afresh", r.afresh},
                 {"factorisations", r.factorisations},
+                {"flops", r.flops},
                 {"analyses", r.analyses},
                 {"seconds", r.seconds},
                 {"seconds_by_phase", r.seconds_by_phase},
                 {"energy", finite_or_null(energy)},
-                {"energy_on_finest", finite_or_null(scene_.models.back()->value(scene_.hierarchy.prolong(
-                                         r.x, r.level, static_cast<int>(scene_.models.size()) - 1)))},
+                {"energy_on_finest", finite_or_null(drape::energy_on_finest(scene_, r.level, r.x))},
                 {"decrement", finite_or_null(r.decrement)},
                 {"force_residual", finite_or_null(r.force_residual)},
                 {"intersections", crossing},
@@ -151,11 +167,18 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
 }
 
 void Recorder::level_finished(const LevelResult& r) {
+  const Stopwatch watch;
   const TriangleMesh mesh{r.x, scene_.hierarchy.levels[r.level].rest.triangles};
   write_ply(folder_.file(file_of(method_, r.level, ".ply")), mesh);
   write_vtp(folder_.file(file_of(method_, r.level, ".vtp")), mesh);
   Json& entry = method_entry();
   entry["levels"].push_back(state_entry(r));
+  // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
+  const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
+  if (frames_.any())
+    entry["levels"].back()["frames"] =
+        errors_.add(method_, r, frames_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
+  spent_ = spent_ + work;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = peak_memory_bytes();
   save();
@@ -165,6 +188,7 @@ void Recorder::level_finished(const LevelResult& r) {
        {"status", to_string(r.outcome)},
        {"message", r.message},
        {"seconds", r.seconds}});
+  overhead_ += watch.seconds();
 }
 
 MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
@@ -230,18 +254,54 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
   log({{"event", "method_finished"}, {"method", method_}, {"status", to_string(worst)}});
 }
 
-void Recorder::run_finished(bool complete) {
-  const Positions* reference = nullptr;
-  for (const auto& [method, x] : finest_)
-    if (method == experiment_.parameters.reference) reference = &x;
-  if (reference)
+const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
+  const ReferenceParameters& p = experiment_.parameters.reference;
+  if (scene_.reference) {
+    results_["reference"] = {{"file", p.file}, {"mesh", "reference.ply"}};
+    return &*scene_.reference;
+  }
+  for (const auto& [method, x] : finest_) {
+    if (method != p.method) continue;
+    Json& entry = results_["reference"];
+    entry = {{"method", method}, {"mesh", "reference.ply"}};
+    if (p.force_tolerance == 0 || cancelled) return &x;
+    tightened_ = tighten(experiment_, scene_, x, observer);
+    entry.update({{"force_tolerance", p.force_tolerance},
+                  {"status", to_string(tightened_->outcome)},
+                  {"message", tightened_->message},
+                  {"force_residual", finite_or_null(tightened_->force_residual)},
+                  {"newton_iterations", tightened_->iterations},
+                  {"seconds", tightened_->seconds}});
+    log({{"event", "reference_solved"}, {"status", to_string(tightened_->outcome)}});
+    return &tightened_->x;
+  }
+  return nullptr;
+}
+
+bool Recorder::measure_errors(Observer& observer, bool cancelled) {
+  const ReferenceParameters& p = experiment_.parameters.reference;
+  const int finest = static_cast<int>(scene_.models.size()) - 1;
+  const Positions* reference = find_reference(observer, cancelled);
+  if (reference) {
+    write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
     for (const auto& [method, x] : finest_)
       if (&x != reference) {
         method_ = method;
-        Json row = compare(static_cast<int>(scene_.models.size()) - 1, x, *reference, "");
-        row["against"] = experiment_.parameters.reference;
+        Json row = compare(finest, x, *reference, "");
+        row["against"] = p.method.empty() ? p.file : p.method;
         results_["methods"][method]["reference"] = row;
       }
+  }
+  save();
+  if (errors_.empty()) return !observer.stop_requested() || cancelled;
+  const auto stop = [&] { return !cancelled && observer.stop_requested(); };
+  errors_.write(reference, stop, [&](const std::string& fault) {
+    log({{"event", "not_measured"}, {"message", fault}});
+  });
+  return !stop();
+}
+
+void Recorder::run_finished(bool complete) {
   results_["complete"] = complete;
   save();
   log({{"event", "run_finished"}, {"complete", complete}});

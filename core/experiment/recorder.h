@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/experiment/errors.h"
 #include "core/experiment/experiment.h"
+#include "core/experiment/frames.h"
 #include "core/experiment/run_folder.h"
 
 namespace drape {
@@ -17,7 +19,9 @@ class Recorder : public Observer {
   void method_started(const std::string& method);
   /// Measures the levels reached and every pair of them, and writes results.json.
   void method_finished(const std::vector<LevelResult>& results);
-  /// Measures every method's finest state against the reference method's; marks the results complete.
+  /// Finds the reference, where need be by solving on under `observer`, and measures every method's finest
+  /// state and every frame's error. False when it was stopped.
+  bool measure_errors(Observer& observer, bool cancelled);
   void run_finished(bool complete);
 
   void level_started(int level) override;
@@ -38,6 +42,8 @@ class Recorder : public Observer {
   /// A metric's result; one that cannot measure the state leaves a note in `entry` and the run goes on.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
+  /// The state that errors are measured against, also as reference.ply; null where there is none.
+  const Positions* find_reference(Observer& observer, bool cancelled);
   void log(Json entry);
   void save() const;
 
@@ -49,6 +55,12 @@ class Recorder : public Observer {
   std::string method_;
   bool sound_ = true, sound_of_method_ = true;
   std::vector<std::pair<std::string, Positions>> finest_;  // of each method that reached it
+  Frames frames_;
+  ErrorTable errors_;
+  Work spent_;           // by the method, in the levels before this one
+  Work last_;            // of this level's last iteration
+  double overhead_ = 0;  // seconds that recording has taken between the levels of a method
+  std::optional<LevelResult> tightened_;
 };
 
 }  // namespace drape

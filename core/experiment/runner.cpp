@@ -38,6 +38,25 @@ class RunObserver : public Observer {
   const std::function<bool()>& stop_;
 };
 
+/// Of what belongs to no method: nothing is recorded.
+class UnrecordedObserver : public Observer {
+ public:
+  UnrecordedObserver(Progress& progress, const std::function<bool()>& stop)
+      : progress_(progress), stop_(stop) {}
+
+  void level_started(int level) override {
+    progress_.method_started("reference");
+    progress_.level_started(level);
+  }
+  void iteration(const IterationRow& row, const Positions& x) override { progress_.iteration(row, x); }
+  void level_finished(const LevelResult& result) override { progress_.level_finished(result); }
+  bool stop_requested() override { return stop_ && stop_(); }
+
+ private:
+  Progress& progress_;
+  const std::function<bool()>& stop_;
+};
+
 void require_methods(const Experiment& experiment, const std::vector<std::string>& chosen) {
   std::string known;
   for (const auto& [name, solver] : experiment.methods) known += (known.empty() ? "" : ", ") + name;
@@ -47,11 +66,13 @@ void require_methods(const Experiment& experiment, const std::vector<std::string
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
 }
 
-/// The resolved experiment as it is read from the results folder: a mesh file is the copy that lies there.
+/// The resolved experiment as it is read from the results folder: mesh files are the copies that lie there.
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
   if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.reference.file.empty())
+    set_path(config, "reference.file", "reference.ply", none);
   return config;
 }
 
@@ -82,7 +103,9 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
   }
-  recorder.run_finished(!cancelled);
+  UnrecordedObserver unrecorded(progress, options.stop);
+  const bool measured = recorder.measure_errors(unrecorded, cancelled);
+  recorder.run_finished(!cancelled && measured);
   if (options.report) write_report(folder.path());
   return all_converged && recorder.sound();
 }

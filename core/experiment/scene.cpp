@@ -3,6 +3,7 @@
 #include <random>
 
 #include "core/experiment/experiment.h"
+#include "core/experiment/reference.h"
 #include "core/mesh/check.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
@@ -196,7 +197,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
       refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
-  return scene;
+  scene->reference = read_reference(e, scene->hierarchy, errors);
+  return errors.empty() ? std::move(scene) : nullptr;
 }
 
 }  // namespace drape

@@ -31,6 +31,7 @@ const char* to_string(Outcome outcome);
 struct IterationRow {
   int level = 0, step = 0, iteration = 0;
   double seconds = 0;                  ///< since the method's start
+  double flops = 0;                    ///< of the level's factorisations so far
   double energy = 0;                   ///< E_l, the plain energy of the level [J]
   std::optional<double> proxy_energy;  ///< F_l where the method minimises that [J]
   double decrement = 0;                ///< ‖p‖ / (h √n) [m/s]
@@ -47,7 +48,9 @@ struct LevelResult {
   Outcome outcome = Outcome::converged;
   std::string message;  ///< what stopped it, where that is not convergence
   Positions x;
+  bool afresh = false;  ///< begun from the scene's start, so that no other level's work is in it
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
+  double flops = 0;  ///< of the factorisations; one that breaks off counts in full
   double seconds = 0;
   std::map<std::string, double> seconds_by_phase;
   double decrement = 0;

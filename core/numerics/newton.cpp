@@ -292,6 +292,7 @@ class Newton {
     }
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
+    result_.flops += cholesky_.flops();
     return cholesky_.factorise(matrix, (inverse_h2() + added_mass_ + extra_shift) * model_.masses());
   }
 
@@ -362,6 +363,7 @@ class Newton {
     row.step_length = alpha_;
     row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
     row.seconds = clock_.seconds();
+    row.flops = result_.flops;
     observer_.iteration(row, result_.x);
   }
 

@@ -23,6 +23,7 @@ std::vector<LevelResult> solve_progressively(
       result.message = start.fault;
     }
     result.level = l;
+    result.afresh = l == 0;
     if (l > 0) {
       result.seconds += start.seconds;
       result.seconds_by_phase["refinement"] = start.seconds;

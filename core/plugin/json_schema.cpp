@@ -52,6 +52,7 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
     json = item_schema(p.type, p, registry);
     if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
   }
+  if (!p.word_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
   if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
   std::string description = p.meaning;
   if (!p.unit.empty() && p.unit != "1") description += (description.empty() ? "[" : " [") + p.unit + "]";

@@ -112,6 +112,20 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   return errors.size() == before;
 }
 
+/// A section that was written as a bare word, as the map that it stands for; set_path has made one of it
+/// already, with the word as its type, where it set another key.
+ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
+  if (p.word_key.empty()) return node;
+  ConfigNode map = node;
+  for (auto& [key, value] : map.entries)
+    if (key == "type") key = p.word_key;
+  if (node.kind != Kind::scalar) return map;
+  map = ConfigNode();
+  map.where = node.where;
+  map.add(p.word_key, node);
+  return map;
+}
+
 /// A file's path as it holds from the current folder, which is what one on the command line is relative to.
 ConfigNode from_here(const ConfigNode& node) {
   ConfigNode path = node;
@@ -165,7 +179,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
                                                 : "; known keys are " + joined(known);
       errors.push_back({map.key_places[i], "unknown key \"" + key + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
-      parameters[index].read(object, parameters[index].path ? from_here(node) : node, errors);
+      parameters[index].read(
+          object, parameters[index].path ? from_here(node) : spelt_out(node, parameters[index]), errors);
     }
   }
   for (const Parameter& p : parameters)

@@ -30,6 +30,7 @@ struct Parameter {
   std::vector<std::string> choices;  ///< text: the allowed words, empty for any
   std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
   bool or_list = false;              ///< a node: a list of such nodes is taken too
+  std::string word_key;              ///< a section: a bare word stands for the map with it under this key
   bool path = false;                 ///< text: a file, relative to the one it is written in
 
   // Type-erased access to the member of a struct; `read` is given only nodes that passed the checks above.
@@ -104,6 +105,10 @@ class ParameterHandle {
   }
   ParameterHandle& or_list() {
     p_.or_list = true;
+    return *this;
+  }
+  ParameterHandle& or_word(std::string key) {
+    p_.word_key = std::move(key);
     return *this;
   }
   ParameterHandle& path() {

@@ -14,14 +14,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_points = 500;  // a series; more cannot be seen and only make the page large
 
-/// Six digits: enough to draw, a third of the bytes.
-Json rounded(const Figure& value) {
-  if (!value) return nullptr;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", *value);
-  return std::strtod(text, nullptr);
-}
-
 /// Energies are compared with others of the same function only: the plain energy of a level, or a
 /// level's proxy, which the finest level does not have.
 bool is_proxy(const RunData& run, const IterationSeries& series, const StepRow& row) {
@@ -106,18 +98,31 @@ Json bars_json(const RunData& run, NamedFigures LevelRecord::*member) {
   return {{"labels", labels}, {"names", names}, {"values", values}};
 }
 
+Json errors_json(const RunData& run) {
+  Json all = Json::array();
+  for (const ErrorSeries& series : run.errors) {
+    Json entry = {{"method", series.method}, {"level", series.level}};
+    for (std::size_t w = 0; w < error_works.size(); ++w)
+      for (const ErrorRow& row : series.rows) entry[error_works[w]].push_back(rounded(row.work[w]));
+    for (std::size_t t = 0; t < error_targets.size(); ++t)
+      for (std::size_t m = 0; m < error_measures.size(); ++m)
+        for (const ErrorRow& row : series.rows)
+          entry[error_targets[t]][error_measures[m]].push_back(rounded(row.error[t][m]));
+    all.push_back(entry);
+  }
+  return all;
+}
+
 }  // namespace
 
-std::string chart_data(const RunData& run) {
-  Json methods = Json::array();
-  for (const MethodRecord& method : run.methods) methods.push_back(method.name);
-  const Json data = {{"methods", methods},
-                     {"coarsest", run.coarsest_level()},
-                     {"finest", run.finest_level()},
-                     {"tolerance", rounded(run.force_tolerance)},
-                     {"series", series_json(run)},
-                     {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
-                     {"parts", bars_json(run, &LevelRecord::energy_parts)}};
+Json rounded(const Figure& value) {
+  if (!value) return nullptr;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", *value);
+  return std::strtod(text, nullptr);
+}
+
+std::string script_json(const Json& data) {
   const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string safe;
   for (const char c : text) {
@@ -128,6 +133,20 @@ std::string chart_data(const RunData& run) {
     }
   }
   return safe;
+}
+
+std::string chart_data(const RunData& run) {
+  Json methods = Json::array();
+  for (const MethodRecord& method : run.methods) methods.push_back(method.name);
+  const Json data = {{"methods", methods},
+                     {"coarsest", run.coarsest_level()},
+                     {"finest", run.finest_level()},
+                     {"tolerance", rounded(run.force_tolerance)},
+                     {"series", series_json(run)},
+                     {"errors", errors_json(run)},
+                     {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
+                     {"parts", bars_json(run, &LevelRecord::energy_parts)}};
+  return script_json(data);
 }
 
 }  // namespace drape

@@ -1,13 +1,21 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/report/run_data.h"
 
 namespace drape {
 
-/// What the page's script draws, as JSON that is safe inside a <script> element: series per method and
-/// level (iteration, seconds, force residual, energy above the best), seconds by phase, energy by part.
+/// What the page of a run draws, as JSON that is safe inside a <script> element: series per method and level
+/// (iteration, seconds, force residual, energy above the best; cost and errors), seconds by phase, energy by
+/// part.
 std::string chart_data(const RunData& run);
+
+/// Six digits: enough to draw, a third of the bytes; null where there is no figure.
+nlohmann::ordered_json rounded(const Figure& value);
+
+/// JSON made safe inside a script element.
+std::string script_json(const nlohmann::ordered_json& data);
 
 }  // namespace drape

@@ -9,6 +9,9 @@ struct Embedded {
   static std::string_view page_html();
   static std::string_view page_css();
   static std::string_view page_js();
+  static std::string_view charts_js();
+  static std::string_view runs_html();
+  static std::string_view runs_js();
   static std::string_view table1_json();
   static std::string_view chart_js();
   static std::string_view cloth_vertex_shader();

@@ -122,6 +122,44 @@ Figure final_energy(const RunData& run, const MethodRecord& method) {
   return last.level == run.finest_level() ? last.energy : Figure();
 }
 
+namespace {
+
+std::string energy_words(double energy, double lowest) {
+  const double percent = 100 * (energy - lowest) / std::abs(lowest);
+  if (percent == 0) return "lowest energy";
+  return percent < 0.1 ? "energy within 0.1&nbsp;% of the lowest"
+                       : "energy " + figure(percent) + "&nbsp;% higher";
+}
+
+}  // namespace
+
+std::string method_verdict(const RunData& run, const MethodRecord& method) {
+  if (method.status != "converged") return "did not converge; its figures are of where it stopped";
+  Figure fastest, lowest, best_preview;
+  int compared = 0;
+  const auto preview = [&](const MethodRecord& m) {
+    return m.levels.size() > 1 ? m.levels.front().energy_on_finest : Figure();
+  };
+  const auto lower = [](Figure& best, const Figure& value) {
+    if (value) best = std::min(best.value_or(*value), *value);
+  };
+  for (const MethodRecord& m : run.methods) {
+    if (m.status != "converged") continue;
+    ++compared;
+    lower(fastest, m.cost(&LevelRecord::seconds));
+    lower(lowest, final_energy(run, m));
+    lower(best_preview, preview(m));
+  }
+  if (compared < 2) return "converged; nothing to compare it with";
+  const Figure seconds = method.cost(&LevelRecord::seconds), energy = final_energy(run, method);
+  std::string text;
+  if (seconds && *fastest > 0)
+    text = *seconds == *fastest ? "fastest" : figure(*seconds / *fastest) + "× the fastest's time";
+  if (energy && *lowest != 0) text += (text.empty() ? "" : "; ") + energy_words(*energy, *lowest);
+  if (best_preview && preview(method) == best_preview) text += "; best preview";
+  return text;
+}
+
 std::string outcome_sentence(const RunData& run) {
   if (run.methods.empty()) return "The run holds no method's results yet.";
   int converged = 0;

@@ -139,6 +139,15 @@ std::string published_section(const RunData& run) {
          "between methods, not figures.</p>\n" + published_table(reference);
 }
 
+std::string reference_sentence(const RunData& run) {
+  if (run.errors.empty()) return "No states were kept in this run (<code>frames: 0</code>).";
+  if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
+  std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
+  if (run.reference_tolerance)
+    text += ", solved on to a force residual of " + figure(run.reference_tolerance);
+  return text + ".";
+}
+
 std::string notes(const PictureSet& set) {
   if (set.notes.empty()) return "";
   std::string text = "<details><summary>Not drawn</summary><ul>\n";
@@ -177,6 +186,8 @@ void write_report(const std::filesystem::path& run_directory) {
                    run.configuration.empty() ? "config.yaml was not stored." : escape(run.configuration)},
                   {"data", chart_data(run)},
                   {"chart_library", std::string(Embedded::chart_js())},
+                  {"reference", reference_sentence(run)},
+                  {"charts", std::string(Embedded::charts_js())},
                   {"script", std::string(Embedded::page_js())}});
   write_file(run_directory / "report.html", page);
 }

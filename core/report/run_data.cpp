@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
+#include "core/report/csv.h"
 
 namespace drape {
 
@@ -46,6 +45,8 @@ LevelRecord level_record(const Json& json, int position) {
   r.triangles = figure(at(json, "triangles"));
   r.steps = figure(at(json, "steps"));
   r.newton_iterations = figure(at(json, "newton_iterations"));
+  r.flops = figure(at(json, "flops"));
+  r.afresh = at(json, "afresh").is_boolean() && at(json, "afresh").get<bool>();
   r.seconds = figure(at(json, "seconds"));
   r.energy = figure(at(json, "energy"));
   r.energy_on_finest = figure(at(json, "energy_on_finest"));
@@ -101,40 +102,41 @@ std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
 }
 
-Figure figure_of(const std::string& cell) {
-  char* end = nullptr;
-  const double value = std::strtod(cell.c_str(), &end);
-  if (end == cell.c_str() || !std::isfinite(value)) return {};
-  return value;
+/// The rows of one level of one method, which are made if they are not there yet.
+template <class Series>
+Series& series_of(std::vector<Series>& all, const std::string& method, int level) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Series& s) { return s.method == method && s.level == level; });
+  if (found != all.end()) return *found;
+  return *all.insert(all.end(), {method, level, {}});
 }
 
-/// Columns are found by the header's names; a last line cut short by a killed run is left out.
 std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
   std::vector<IterationSeries> all;
-  std::istringstream lines(file_if_there(path));
-  std::map<std::string, std::size_t> column;
-  for (std::string line; std::getline(lines, line);) {
-    std::vector<std::string> cells;
-    std::istringstream rest(line + ",");
-    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-    if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
-    if (column.empty()) {
-      for (std::size_t k = 0; k < cells.size(); ++k) column[cells[k]] = k;
-      continue;
-    }
-    if (cells.size() < column.size() || !column.count("method") || !column.count("level")) continue;
-    const auto cell = [&](const char* name) {
-      return column.count(name) ? figure_of(cells[column.at(name)]) : Figure();
-    };
-    const std::string& method = cells[column.at("method")];
-    const int level = static_cast<int>(cell("level").value_or(0));
-    auto series = std::find_if(all.begin(), all.end(), [&](const IterationSeries& s) {
-      return s.method == method && s.level == level;
-    });
-    if (series == all.end()) series = all.insert(all.end(), {method, level, {}});
-    series->rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
-                            cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
-                            cell("smallest_gap"), cell("intersections")});
+  const Csv csv(path);
+  if (!csv.has("method") || !csv.has("level")) return all;
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    const auto cell = [&](const char* name) { return csv.figure(k, name); };
+    series_of(all, csv.text(k, "method"), static_cast<int>(cell("level").value_or(0)))
+        .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
+                         cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
+                         cell("smallest_gap"), cell("intersections")});
+  }
+  return all;
+}
+
+std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
+  std::vector<ErrorSeries> all;
+  const Csv csv(path);
+  if (!csv.has("method") || !csv.has("level")) return all;
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    ErrorRow row;
+    for (std::size_t w = 0; w < error_works.size(); ++w) row.work[w] = csv.figure(k, error_works[w]);
+    for (std::size_t t = 0; t < error_targets.size(); ++t)
+      for (std::size_t m = 0; m < error_measures.size(); ++m)
+        row.error[t][m] = csv.figure(k, std::string(error_targets[t]) + "_" + error_measures[m]);
+    series_of(all, csv.text(k, "method"), static_cast<int>(csv.figure(k, "level").value_or(0)))
+        .rows.push_back(row);
   }
   return all;
 }
@@ -171,6 +173,15 @@ const ConsistencyRecord* MethodRecord::pair(int coarse, int fine) const {
     if (r.coarse == coarse && r.fine == fine) return &r;
   }
   return nullptr;
+}
+
+Figure MethodRecord::cost(Figure LevelRecord::*member) const {
+  Figure sum;
+  for (const LevelRecord& level : levels) {
+    if (level.afresh) sum.reset();
+    if (level.*member) sum = sum.value_or(0) + *(level.*member);
+  }
+  return sum;
 }
 
 bool RunData::has_contact() const {
@@ -229,6 +240,10 @@ RunData read_run(const std::filesystem::path& folder) {
   run.cpu = text(at(machine, "cpu"));
   run.cores = figure(at(machine, "cores"));
   run.threads = figure(at(machine, "threads"));
+  const Json& reference = at(json, "reference");
+  for (const char* key : {"method", "file"})
+    if (!text(at(reference, key)).empty()) run.reference = text(at(reference, key));
+  run.reference_tolerance = figure(at(reference, "force_tolerance"));
   run.force_tolerance = figure(at(at(json, "tolerance"), "force_residual"));
   const Json& methods = at(json, "methods");
   if (methods.is_object()) {
@@ -238,13 +253,16 @@ RunData read_run(const std::filesystem::path& folder) {
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });
   run.iterations = read_steps(folder / "steps.csv");
-  const auto place = [&run](const IterationSeries& s) {
+  const auto place = [&run](const auto& s) {
     const auto method = std::find_if(run.methods.begin(), run.methods.end(),
-                                     [&s](const MethodRecord& m) { return m.name == s.method; });
+                                     [&](const MethodRecord& m) { return m.name == s.method; });
     return std::pair(method - run.methods.begin(), s.level);
   };
   std::stable_sort(run.iterations.begin(), run.iterations.end(),
                    [&](const IterationSeries& a, const IterationSeries& b) { return place(a) < place(b); });
+  run.errors = read_errors(folder / "errors.csv");
+  std::stable_sort(run.errors.begin(), run.errors.end(),
+                   [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
   run.configuration = file_if_there(folder / "config.yaml");
   add_last_contacts(run);
   add_step_sizes(run);

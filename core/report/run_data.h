@@ -1,11 +1,14 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "core/experiment/error_measures.h"
 
 namespace drape {
 
@@ -19,7 +22,8 @@ using NamedFigures = std::vector<std::pair<std::string, Figure>>;
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  Figure vertices, triangles, steps, newton_iterations, seconds;
+  Figure vertices, triangles, steps, newton_iterations, seconds, flops;
+  bool afresh = false;               ///< begun from the scene's start: what came before is not in it
   Figure energy, energy_on_finest;   ///< [J]
   Figure decrement, force_residual;  ///< [m/s], [1]
   Figure largest_stretch, intersections, smallest_gap;
@@ -43,6 +47,8 @@ struct MethodRecord {
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
 
+  /// What the last state took: the sum over the levels that it builds on, of those that are known.
+  Figure cost(Figure LevelRecord::*member) const;
   const LevelRecord* level(int index) const;
   const ConsistencyRecord* pair(int coarse, int fine) const;
 };
@@ -60,6 +66,18 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
+/// One row of errors.csv: what a state cost, and its error against each target in each measure.
+struct ErrorRow {
+  std::array<Figure, error_works.size()> work;
+  std::array<std::array<Figure, error_measures.size()>, error_targets.size()> error;
+};
+
+struct ErrorSeries {
+  std::string method;
+  int level = 0;
+  std::vector<ErrorRow> rows;
+};
+
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
@@ -69,6 +87,9 @@ struct RunData {
   std::vector<std::string> obstacles;  ///< meshes, relative to the folder
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
+  std::vector<ErrorSeries> errors;          ///< likewise
+  std::string reference;                    ///< the method, or file, that errors are measured against
+  Figure reference_tolerance;               ///< of the force residual, to which it was solved further
 
   /// Whether anything was kept apart, so that gaps and intersections mean something.
   bool has_contact() const;

@@ -59,9 +59,9 @@ std::vector<std::string> part_names(const RunData& run) {
 }  // namespace
 
 std::string summary_table(const RunData& run) {
-  Row head = {words("method"),    words("status"),       {"levels"},           {"time [s]"},
-              {"steps"},          {"Newton iterations"}, {"final energy [J]"}, {"above lowest [J]"},
-              {"force residual"}, {"decrement [m/s]"},   {"largest stretch"}};
+  Row head = {words("method"),      words("status"),    words("verdict"),      {"levels"},
+              {"time [s]"},         {"steps"},          {"Newton iterations"}, {"final energy [J]"},
+              {"above lowest [J]"}, {"force residual"}, {"decrement [m/s]"},   {"largest stretch"}};
   add_contact_head(head, run);
   head.push_back({"peak memory"});
   Figure lowest;
@@ -76,6 +76,7 @@ std::string summary_table(const RunData& run) {
     const Figure seconds = method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
     Row row = {words(escape(method.name)),
                words(status_badge(method.status)),
+               words("<span class=\"verdict\">" + method_verdict(run, method) + "</span>"),
                {std::to_string(method.levels.size())},
                {figure(seconds)},
                {html::count(sum_of_levels(method, &LevelRecord::steps))},

@@ -26,6 +26,9 @@ std::string troubles(const RunData& run);
 /// The energy of the finest model in the last state of a method [J].
 Figure final_energy(const RunData& run, const MethodRecord& method);
 
+/// In a few words what a method has done beside the others that converged.
+std::string method_verdict(const RunData& run, const MethodRecord& method);
+
 /// One row a method: status, cost and quality of what it ended with.
 std::string summary_table(const RunData& run);
 

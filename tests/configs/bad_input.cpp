@@ -43,7 +43,7 @@ std::string said_of_set(const std::string& set) { return said_of(small_experimen
 const std::string top_keys =
     "name, description, table1_scene, cloth, levels, material, start, pins, energies, refiner, contact, "
     "newton, "
-    "methods, metrics, reference, verify";
+    "methods, metrics, reference, frames, verify";
 
 }  // namespace
 
@@ -157,6 +157,17 @@ TEST_CASE("energies, methods and their names") {
         "{}}\"\n");
   CHECK(said_of_edit("reference: newton", "reference: nwton") ==
         "error: e.yaml:14:12: \"reference\" must be one of the methods, not \"nwton\"\n");
+  CHECK(said_of_edit("reference: newton", "reference: {force_tolerance: 1e-5}") ==
+        "error: e.yaml:14:12: \"reference\" needs the method whose finest state is solved further, as in "
+        "{method: pcs, force_tolerance: 1e-5}\n");
+  CHECK(said_of_edit("reference: newton", "reference: {method: newton, file: a.ply}") ==
+        "error: e.yaml:14:12: \"reference\" takes either a method or a file, not both\n");
+  CHECK(said_of_edit("reference: newton", "reference: {file: nothing.ply}") ==
+        "error: e.yaml:14:12: \"reference\": cannot read nothing.ply: No such file or directory\n");
+  CHECK(said_of_edit("reference: newton", "reference: {file: .}") ==
+        "error: e.yaml:14:12: \"reference\": . holds no reference.ply; name a mesh, as in "
+        "./levels/newton_l3.ply, or run that experiment with a reference of its own\n");
+  CHECK(said_of_set("frames=-1") == "error: --set frames: \"frames\" must be at least 0, not -1\n");
 }
 
 TEST_CASE("pins that hold nothing, or what is not there") {

@@ -120,7 +120,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   }
   int near = 0, far = 0;
   for (const auto& row : rows_of(folder / "out/steps.csv")) {
-    REQUIRE(row.size() == 14);
+    REQUIRE(row.size() == 15);
     CHECK(row[13] == "0");
     REQUIRE(!row[11].empty());
     const bool any = std::stoi(row[11]) > 0;

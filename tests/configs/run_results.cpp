@@ -150,12 +150,13 @@ TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where i
   std::getline(lines, line);
   CHECK(line ==
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-        "step_size,contacts,smallest_gap,intersections");
+        "step_size,contacts,smallest_gap,intersections,flops");
   std::map<std::pair<std::string, int>, int> rows;
   while (std::getline(lines, line)) {
     INFO(line);
     const std::vector<std::string> cells = cells_of(line);
-    REQUIRE(cells.size() == 14);
+    REQUIRE(cells.size() == 15);
+    CHECK(std::stod(cells[14]) > 0);
     const int level = std::stoi(cells[1]);
     ++rows[{cells[0], level}];
     const bool proxy = cells[0] == "pcs" && level < levels - 1;

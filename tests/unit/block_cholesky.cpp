@@ -240,3 +240,20 @@ TEST_CASE("Block Cholesky with every vertex fixed has nothing to solve", "[chole
   cholesky.solve(Positions::Random(10, 3), x);
   REQUIRE(x.isZero(0));
 }
+
+TEST_CASE("The work of a full matrix is a third of the cube of its size") {
+  const int vertices = 100;
+  Stencils all(vertices * (vertices - 1) / 2, 4);
+  for (int i = 0, e = 0; i < vertices; ++i)
+    for (int j = 0; j < i; ++j, ++e) {
+      all.row(e).head<2>() << i, j;
+      for (int k = 0, at = 2; at < 4; ++k)  // an element has four vertices
+        if (k != i && k != j) all(e, at++) = k;
+    }
+  BlockCholesky cholesky;
+  cholesky.analyse(BlockPattern::of(vertices, {all}), std::vector<char>(vertices, 0));
+  const double n = 3.0 * vertices;
+  CHECK(cholesky.unknowns() == 300);
+  CHECK(cholesky.flops() == Approx(n * (n + 1) * (2 * n + 1) / 6));  // a column of k entries takes k²
+  CHECK(cholesky.flops() == Approx(n * n * n / 3).epsilon(0.01));
+}

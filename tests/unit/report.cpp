@@ -443,3 +443,47 @@ TEST_CASE("colour maps are symmetric around their middle and clamp at their ends
   CHECK(magnitude_quantile({&ramp}, 0.5) == 50);
   CHECK(magnitude_quantile({}, 0.5) == 0);
 }
+
+TEST_CASE("errors are read, drawn and told of; a run without them says so") {
+  SampleRun run;
+  CHECK(contains(run.page(), "No states were kept in this run"));
+  write_file(run.folder / "errors.csv",
+             "method,level,iteration,seconds,iterations,flops,vertices,own_rms,own_hausdorff,own_d_H_fit,"
+             "own_energy_gap,reference_rms,reference_hausdorff,reference_d_H_fit,reference_energy_gap\n"
+             "newton,1,3,2.5,3,1e9,625,0,0,0,0,,,,\n"
+             "pcs,0,3,0.5,3,1e6,169,0.25,0.5,7,0.125,0.3,0.6,8,-0.01\n"
+             "pcs,1,9,0.7");  // cut short
+  run.results["reference"] = {{"method", "newton"}, {"force_tolerance", 1e-5}};
+  CHECK(contains(run.page(),
+                 "The reference is <b>newton</b>'s finest state, solved on to a force residual of 1.00e-5."));
+  const RunData data = read_run(run.folder);
+  REQUIRE(data.errors.size() == 2);
+  CHECK(data.errors[0].method == "pcs");
+  CHECK(data.errors[0].rows[0].work[2].value() == 1e6);
+  CHECK(data.errors[0].rows[0].error[1][3].value() == -0.01);
+  CHECK(!data.errors[1].rows[0].error[1][0]);
+  const Json drawn = Json::parse(chart_data(data))["errors"];
+  REQUIRE(drawn.size() == 2);
+  CHECK(drawn[0]["own"]["rms"] == Json{0.25});
+  CHECK(drawn[0]["seconds"] == Json{0.5});
+  CHECK(drawn[1]["reference"]["rms"] == Json{nullptr});
+}
+
+TEST_CASE("every method has a verdict beside the others that converged") {
+  RunData run;
+  for (const char* name : {"pcs", "newton", "stuck"}) {
+    MethodRecord& m = run.methods.emplace_back();
+    m.name = name;
+    m.status = m.name == "stuck" ? "stalled" : "converged";
+    for (int l = 0; l < 2; ++l) {
+      LevelRecord& level = m.levels.emplace_back();
+      level.level = l;
+      level.seconds = m.name == "pcs" ? 2 : 6;
+      level.afresh = m.name == "newton";
+      level.energy_on_finest = m.name == "pcs" ? -2 - l : -1 - 1.5 * l;
+    }
+  }
+  CHECK(method_verdict(run, run.methods[0]) == "fastest; lowest energy; best preview");
+  CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
+  CHECK(method_verdict(run, run.methods[2]) == "did not converge; its figures are of where it stopped");
+}

@@ -1,8 +1,6 @@
 'use strict';
 (() => {
-  const data = JSON.parse(document.getElementById('data').textContent);
-  const charts = [];
-  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const {data, colour, short, axis, show} = drape;
 
   // Level shows as dash and width: dotted and thin is coarse, solid and thick is the finest.
   const dashes = [[1, 3], [4, 3], [8, 3], [12, 3, 2, 3]];
@@ -25,61 +23,6 @@
       borderDash: [[], [9, 5], [2, 3], [12, 4, 2, 4]][Math.max(k, 0) % 4]});
   }
 
-  const short = value => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3)
-    ? value.toExponential(2).replace('e+', 'e') : String(Number(value.toPrecision(3)));
-  const superscript = n => String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
-
-  function axis(title, logarithmic) {
-    const options = {
-      type: logarithmic ? 'logarithmic' : 'linear',
-      title: {display: true, text: title, color: colour('--soft')},
-      grid: {color: colour('--line'), borderColor: colour('--line')},
-      ticks: {color: colour('--soft'), maxRotation: 0},
-    };
-    if (logarithmic) {
-      options.ticks.autoSkip = false;
-      options.ticks.callback = value => {
-        const power = Math.log10(value);
-        if (Math.abs(power - Math.round(power)) > 1e-6) return '';
-        return Math.round(power) >= -2 && Math.round(power) <= 3 ? String(Number(value.toPrecision(1)))
-          : '10' + superscript(Math.round(power));
-      };
-      options.grid.color = context => {
-        const power = context.tick ? Math.log10(context.tick.value) : 0;
-        return Math.abs(power - Math.round(power)) < 1e-6 ? colour('--line') : 'transparent';
-      };
-    }
-    return options;
-  }
-
-  /// Chart.js leaves the dashes out of its legend.
-  function lineLabels(chart) {
-    return Chart.defaults.plugins.legend.labels.generateLabels(chart)
-      .filter(item => item.text !== 'tolerance')
-      .map(item => Object.assign(item, {lineDash: chart.data.datasets[item.datasetIndex].borderDash}));
-  }
-
-  function show(id, config, count) {
-    const canvas = document.getElementById(id);
-    if (!canvas) return;
-    if (!count) {
-      const note = document.createElement('p');
-      note.className = 'absent';
-      note.textContent = 'Nothing was recorded for this plot.';
-      canvas.parentElement.style.height = 'auto';
-      canvas.replaceWith(note);
-      return;
-    }
-    config.options.animation = false;
-    config.options.responsive = true;
-    config.options.maintainAspectRatio = false;
-    config.options.plugins = Object.assign({
-      legend: {position: 'bottom', labels: {color: colour('--ink'), usePointStyle: true, pointStyle: 'line',
-        boxWidth: 34, font: {size: 11}, generateLabels: lineLabels}},
-    }, config.options.plugins);
-    charts.push(new Chart(canvas, config));
-  }
-
   function lines(id, x, y, titles, logarithmicX, withTolerance, chosen = data.series, style = lineStyle) {
     const datasets = chosen.map(series => Object.assign(style(series), {
       data: series[x].map((value, k) => ({x: value, y: series[y][k]}))
@@ -96,8 +39,7 @@
       data: {datasets: datasets.map(set => Object.assign(set, {showLine: true}))},
       options: {
         scales: {x: axis(titles[0], logarithmicX), y: axis(titles[1], true)},
-        plugins: {tooltip: {callbacks: {label: item => item.dataset.label + ': ' + short(item.parsed.x) + ', ' +
-          short(item.parsed.y)}}},
+        plugins: {tooltip: drape.tooltip},
       },
     }, all.length);
   }
@@ -125,9 +67,17 @@
     }, count);
   }
 
+  /// Levels that build on each other go on where the last one ends; a method's colour is its own.
+  function drawErrors() {
+    const {measure, target, work} = chosenError();
+    const series = data.errors.map(s => Object.assign({error: (s[target] || {})[measure] || []}, s));
+    lines('errors', work, 'error', [drape.works[work], drape.measures[measure]], true, false, series,
+      s => Object.assign(lineStyle(Object.assign({iteration: s[work]}, s)), {pointRadius: 2.5}));
+  }
+  const chosenError = drape.choices('error', drawErrors);
+
   function draw() {
-    while (charts.length) charts.pop().destroy();
-    Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+    drawErrors();
     lines('residual-iteration', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true);
     lines('residual-seconds', 'seconds', 'residual', ['time [s]', 'force residual'], false, true);
     lines('gap-seconds', 'seconds', 'gap', ['time [s]', 'energy above the lowest [J]'], true, false);
@@ -140,17 +90,23 @@
     bars('parts', data.parts, 'J');
   }
 
-  const theme = document.documentElement.dataset;
-  draw();
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
-  addEventListener('beforeprint', () => { theme.theme = 'light'; draw(); });
-  addEventListener('afterprint', () => { delete theme.theme; draw(); });
+  drape.follow(draw);
 
   const dialog = document.getElementById('enlarged');
-  document.querySelectorAll('figure img').forEach(img => img.addEventListener('click', () => {
-    dialog.firstElementChild.src = img.src;
-    dialog.firstElementChild.alt = img.alt;
-    dialog.showModal();
-  }));
+  document.querySelectorAll('figure img').forEach(img => {
+    const enlarge = () => {
+      dialog.firstElementChild.src = img.src;
+      dialog.firstElementChild.alt = img.alt;
+      dialog.showModal();
+    };
+    img.tabIndex = 0;
+    img.setAttribute('role', 'button');
+    img.addEventListener('click', enlarge);
+    img.addEventListener('keydown', event => {
+      if (event.key !== 'Enter' && event.key !== ' ') return;
+      event.preventDefault();
+      enlarge();
+    });
+  });
   dialog.addEventListener('click', () => dialog.close());
 })();

@@ -22,6 +22,7 @@ class NewtonSolver : public Solver {
       observer.level_started(l);
       PlainObjective objective(*problem.models[l]);
       results.push_back(minimise(objective, problem.starts[l], p_.newton, clock, observer));
+      results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
     }

@@ -1,0 +1,106 @@
+#include "core/experiment/errors.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace drape {
+
+namespace {
+
+/// The value of a metric that a measure is; the energy gap needs none.
+constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit"};
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return std::isfinite(value) ? text : "";
+}
+
+std::string cells(const StateError& error) {
+  std::string text;
+  for (const auto& value : error) text += "," + (value ? number(*value) : "");
+  return text;
+}
+
+}  // namespace
+
+double energy_on_finest(const Scene& scene, int level, const Positions& x) {
+  return scene.models.back()->value(scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1));
+}
+
+StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
+                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault) {
+  StateError error;
+  for (const auto& [name, metric] : experiment.metrics) {
+    if (metric->scope() != MetricScope::pair) continue;
+    try {
+      const MetricResult result =
+          metric->evaluate({scene.hierarchy.levels.back(), *scene.models.back(), target.x, &x});
+      for (const MetricValue& v : result.values)
+        for (std::size_t k = 0; k < metric_values.size(); ++k)
+          if (v.name == metric_values[k]) error[k] = v.value;
+    } catch (const std::exception& problem) {
+      fault(name + ": " + problem.what());
+    }
+  }
+  if (target.energy != 0) error.back() = (energy - target.energy) / std::abs(target.energy);
+  return error;
+}
+
+nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelResult& result,
+                                       const std::vector<Frame>& frames, const Work& before,
+                                       const Work& spent) {
+  LevelFrames level;
+  level.method = method;
+  level.level = result.level;
+  level.file = "frames/" + method + "_l" + std::to_string(result.level) + ".bin";
+  level.last = result.x;
+  level.converged = result.outcome == Outcome::converged;
+  nlohmann::ordered_json entry = {{"file", level.file}};
+  for (const Frame& frame : frames) {
+    level.work.push_back(before + frame.work);
+    level.iterations.push_back(frame.work.iterations);
+    level.energies.push_back(energy_on_finest(scene_, result.level, frame.x));
+    entry["iterations"].push_back(frame.work.iterations);
+    entry["seconds"].push_back(spent.seconds + frame.work.seconds);
+  }
+  std::filesystem::create_directories(folder_.file("frames"));
+  write_frames(folder_.file(level.file), frames);
+  levels_.push_back(std::move(level));
+  return entry;
+}
+
+void ErrorTable::write(const Positions* reference, const std::function<bool()>& stop,
+                       const std::function<void(const std::string&)>& fault) {
+  const int finest = scene_.hierarchy.level_count() - 1;
+  std::string text = "method,level,iteration,seconds,iterations,flops,vertices";
+  for (const char* target : error_targets)
+    for (const char* measure : error_measures) text += "," + std::string(target) + "_" + measure;
+  text += "\n";
+  std::optional<ErrorTarget> standard;
+  if (reference) standard = {*reference, scene_.models.back()->value(*reference)};
+  for (const LevelFrames& level : levels_) {
+    std::optional<ErrorTarget> own;
+    for (const LevelFrames& other : levels_)
+      if (other.method == level.method && other.level == finest && other.converged)
+        own = {other.last, other.energies.back()};
+    const bool same = own && standard && own->x == standard->x;
+    const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
+    std::vector<Positions> states = read_frames(folder_.file(level.file), vertices);
+    states.back() = level.last;
+    for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
+      const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest);
+      const auto against = [&](const std::optional<ErrorTarget>& target) {
+        return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
+      };
+      const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
+      const Work& work = level.work[k];
+      text += level.method + "," + std::to_string(level.level) + "," + std::to_string(level.iterations[k]) +
+              "," + number(work.seconds) + "," + std::to_string(work.iterations) + "," + number(work.flops) +
+              "," + std::to_string(vertices) + cells(to_own) + cells(to_standard) + "\n";
+    }
+  }
+  folder_.write_text("errors.csv", text);
+}
+
+}  // namespace drape

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment/error_measures.h"
+#include "core/experiment/experiment.h"
+#include "core/experiment/frames.h"
+#include "core/experiment/run_folder.h"
+
+namespace drape {
+
+/// One figure a measure; absent where no metric of the experiment gives it.
+using StateError = std::array<std::optional<double>, error_measures.size()>;
+
+/// A state on the finest level that others are measured against.
+struct ErrorTarget {
+  Positions x;
+  double energy = 0;  ///< of the finest level there, without limits and contact [J]
+};
+
+/// The error of x on the finest level, whose energy there is known. A metric that cannot measure it leaves
+/// its figures out and tells `fault`.
+StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
+                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault);
+
+/// The energy of the finest level in a state carried up to it by the refiner [J].
+double energy_on_finest(const Scene& scene, int level, const Positions& x);
+
+/// Collects the frames of a run and measures them all once the methods have ended, so that no method's time
+/// has the measuring in it.
+class ErrorTable {
+ public:
+  ErrorTable(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
+      : folder_(folder), experiment_(experiment), scene_(scene) {}
+
+  /// Takes a level's frames in: writes them to their file, evaluates their energies and says, for
+  /// results.json, where they are. `before` is the work that the level builds on; `spent` all that the method
+  /// has done before it.
+  nlohmann::ordered_json add(const std::string& method, const LevelResult& result,
+                             const std::vector<Frame>& frames, const Work& before, const Work& spent);
+
+  /// Measures every frame against the finest state of its method, where that converged, and against the
+  /// reference, and writes errors.csv. Ends early, without the rest, when `stop` says so.
+  void write(const Positions* reference, const std::function<bool()>& stop,
+             const std::function<void(const std::string&)>& fault);
+
+  bool empty() const { return levels_.empty(); }
+
+ private:
+  struct LevelFrames {
+    std::string method, file;
+    int level = 0;
+    std::vector<Work> work;        // of each frame, with what it builds on
+    std::vector<int> iterations;   // of the level
+    std::vector<double> energies;  // on the finest level
+    Positions last;                // in full precision
+    bool converged = false;
+  };
+
+  const RunFolder& folder_;
+  const Experiment& experiment_;
+  const Scene& scene_;
+  std::vector<LevelFrames> levels_;
+};
+
+}  // namespace drape

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <vector>
+
+#include "core/model/solver.h"
+
+namespace drape {
+
+/// What a state has cost.
+struct Work {
+  double seconds = 0;
+  int iterations = 0;
+  double flops = 0;  ///< of factorisations
+};
+
+inline Work operator+(const Work& a, const Work& b) {
+  return {a.seconds + b.seconds, a.iterations + b.iterations, a.flops + b.flops};
+}
+
+/// A state on the way through a level.
+struct Frame {
+  Work work;    ///< since the level's start
+  Positions x;  ///< n×3 [m]
+};
+
+/// Keeps states of a level while it is solved, evenly over its iterations and not more than so many: when
+/// there are too many, every second one goes and the spacing doubles.
+class Frames {
+ public:
+  /// At most `most` frames a level, its last state among them; 0 keeps nothing and costs nothing.
+  explicit Frames(int most) : most_(most) {}
+
+  bool any() const { return most_ > 0; }
+  void begin_level();
+  /// The state after an iteration; `work` counts from the level's start.
+  void iteration(const Work& work, const Positions& x);
+  /// The level's frames, `last` at their end.
+  std::vector<Frame> end_level(const Work& work, const Positions& last);
+
+ private:
+  int most_, spacing_ = 1, seen_ = 0;
+  std::vector<Frame> kept_;
+};
+
+/// float32, little-endian, frame after frame, row by row. Written as a whole, then renamed.
+void write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames);
+
+/// The positions of such a file, `vertices` rows each. Throws std::runtime_error when the file is not made of
+/// them.
+std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices);
+
+}  // namespace drape

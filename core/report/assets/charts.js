@@ -1,0 +1,188 @@
+'use strict';
+// What the pages of one run and of many runs share: colours, axes, plots that follow the theme, and the data of
+// every plot and table as files.
+const drape = (() => {
+  const data = JSON.parse(document.getElementById('data').textContent);
+  const charts = new Map();
+  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const short = value => Math.abs(value) >= 1e5 || (value !== 0 && Math.abs(value) < 1e-3)
+    ? value.toExponential(2).replace('e+', 'e') : String(Number(value.toPrecision(3)));
+  const superscript = n => String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
+
+  // What errors are measured in and against, and what they cost, as errors.csv has them.
+  const measures = {rms: 'distance, RMS [diagonals]', hausdorff: 'Hausdorff distance [diagonals]',
+    d_H_fit: 'difference in mean curvature, d_H_fit', energy_gap: 'energy above the target, relative'};
+  const targets = {reference: 'the reference', own: 'the method’s own finest state'};
+  const works = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
+
+  function axis(title, logarithmic) {
+    const options = {
+      type: logarithmic ? 'logarithmic' : 'linear',
+      title: {display: true, text: title, color: colour('--soft')},
+      grid: {color: colour('--line'), borderColor: colour('--line')},
+      ticks: {color: colour('--soft'), maxRotation: 0},
+    };
+    if (logarithmic) {
+      options.ticks.autoSkip = false;
+      options.ticks.callback = value => {
+        const power = Math.log10(value);
+        if (Math.abs(power - Math.round(power)) > 1e-6) return '';
+        return Math.round(power) >= -2 && Math.round(power) <= 3 ? String(Number(value.toPrecision(1)))
+          : '10' + superscript(Math.round(power));
+      };
+      options.grid.color = context => {
+        const power = context.tick ? Math.log10(context.tick.value) : 0;
+        return Math.abs(power - Math.round(power)) < 1e-6 ? colour('--line') : 'transparent';
+      };
+    }
+    return options;
+  }
+
+  /// Chart.js leaves the dashes out of its legend.
+  function lineLabels(chart) {
+    return Chart.defaults.plugins.legend.labels.generateLabels(chart)
+      .filter(item => item.text && item.text !== 'tolerance')
+      .map(item => Object.assign(item, {lineDash: chart.data.datasets[item.datasetIndex].borderDash}));
+  }
+
+  function save(name, type, text) {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([text], {type}));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  }
+
+  const quoted = cell => cell === null || cell === undefined ? ''
+    : /[",\n]/.test(cell) ? '"' + String(cell).replace(/"/g, '""') + '"' : String(cell);
+  const csv = rows => rows.map(row => row.map(quoted).join(',') + '\n').join('');
+  /// Rows, the first of which are names, as a list of objects.
+  const records = rows => JSON.stringify(rows.slice(1).map(row =>
+    Object.fromEntries(rows[0].map((name, k) => [name, row[k] === undefined ? null : row[k]]))), null, 1);
+
+  /// Two buttons below `element`; `rows` is asked when one is pressed.
+  function offer(element, name, what, rows) {
+    const note = document.createElement('p');
+    note.className = 'data';
+    note.append('data: ');
+    for (const [kind, type, text] of [['CSV', 'text/csv', csv], ['JSON', 'application/json', records]]) {
+      const button = document.createElement('button');
+      button.type = 'button';
+      button.textContent = kind;
+      button.setAttribute('aria-label', kind + ' of ' + what);
+      button.addEventListener('click', () => save(name + '.' + kind.toLowerCase(), type, text(rows())));
+      note.append(button, ' ');
+    }
+    element.append(note);
+  }
+
+  /// What a plot shows: a row a point of its lines, or a row a bar.
+  function rowsOf(chart) {
+    const sets = chart.data.datasets.filter(set => set.label);
+    if (chart.config.type === 'bar') {
+      const ranged = sets.filter(set => set.ranges);
+      return [['name', ...sets.map(set => set.label), ...ranged.flatMap(() => ['lowest', 'highest'])],
+        ...chart.data.labels.map((label, k) => [label, ...sets.map(set => set.data[k]),
+          ...ranged.flatMap(set => set.ranges[k] || [null, null])])];
+    }
+    const {x, y} = chart.options.scales, extra = [...new Set(sets.flatMap(set =>
+      set.data.flatMap(point => Object.keys(point).filter(key => key !== 'x' && key !== 'y'))))];
+    return [['series', x.title.text, y.title.text, ...extra],
+      ...sets.flatMap(set => set.data.map(p => [set.label, p.x, p.y, ...extra.map(key => p[key])]))];
+  }
+
+  /// Draws a plot, or draws it again; `count` is of its points.
+  function show(id, config, count) {
+    const canvas = document.getElementById(id);
+    if (!canvas) return;
+    const figure = canvas.closest('figure'), first = !charts.has(id);
+    if (!first && charts.get(id)) charts.get(id).destroy();
+    let note = figure.querySelector('p.absent');
+    if (!note) {
+      note = document.createElement('p');
+      note.className = 'absent';
+      note.textContent = 'Nothing was recorded for this plot.';
+      figure.append(note);
+    }
+    note.hidden = count > 0;
+    canvas.parentElement.hidden = !count;
+    charts.set(id, null);
+    if (!count) return;
+    config.options.animation = false;
+    config.options.responsive = true;
+    config.options.maintainAspectRatio = false;
+    config.options.plugins = Object.assign({
+      legend: {position: 'bottom', labels: {color: colour('--ink'), usePointStyle: true, pointStyle: 'line',
+        boxWidth: 34, font: {size: 11}, generateLabels: lineLabels}},
+    }, config.options.plugins);
+    charts.set(id, new Chart(canvas, config));
+    if (!figure.querySelector('p.data'))
+      offer(figure, id, canvas.getAttribute('aria-label'), () => rowsOf(charts.get(id)));
+  }
+
+  const tooltip = {callbacks: {label: item => item.dataset.label + ': ' + short(item.parsed.x) + ', ' +
+    short(item.parsed.y)}};
+
+  /// Choices above a plot, by the name of its select element; calls `draw` when one changes.
+  function choices(id, draw) {
+    const select = name => document.getElementById(id + '-' + name);
+    for (const [name, words] of [['measure', measures], ['target', targets], ['work', works]]) {
+      if (!select(name)) continue;
+      for (const [value, text] of Object.entries(words)) select(name).add(new Option(text, value));
+      select(name).addEventListener('change', draw);
+    }
+    return () => Object.fromEntries(['measure', 'target', 'work'].map(name => [name, select(name).value]));
+  }
+
+  /// Calls `draw` now and whenever the theme changes; paper is light.
+  function follow(draw) {
+    const theme = document.documentElement.dataset;
+    Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+    draw();
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', draw);
+    addEventListener('beforeprint', () => { theme.theme = 'light'; draw(); });
+    addEventListener('afterprint', () => { delete theme.theme; draw(); });
+  }
+
+  /// A cell's words as a file has them: d_H_fit, no dashes for what is absent, no spaces within numbers.
+  function wordsOf(cell) {
+    const copy = cell.cloneNode(true);
+    copy.querySelectorAll('sub, sup').forEach(part => part.replaceWith('_' + part.textContent));
+    return copy.textContent.trim().replace(/^–$/, '').replace(/\u202f/g, '');
+  }
+
+  /// A cell for every column that one spans, and those of rows above that reach down. A column of medians gives
+  /// three: the median, the lowest and the highest.
+  function cellsOf(table) {
+    const grid = [], spread = [];
+    [...table.rows].forEach((row, r) => {
+      grid[r] = grid[r] || [];
+      for (const cell of row.cells) {
+        let c = 0;
+        while (grid[r][c] !== undefined) ++c;
+        const range = cell.querySelector('[data-spread]');
+        if (range) spread[c] = true;
+        for (let i = 0; i < cell.rowSpan; ++i)
+          for (let j = 0; j < cell.colSpan; ++j)
+            (grid[r + i] = grid[r + i] || [])[c + j] = range ? range.dataset.spread.split(' ') : wordsOf(cell);
+      }
+    });
+    const heads = table.tHead ? table.tHead.rows.length : 1;
+    const names = grid[0].map((_, c) => [...new Set(grid.slice(0, heads).map(row => row[c]))].join(' ').trim());
+    const wide = (row, c) => Array.isArray(row[c]) ? row[c] : [row[c], '', ''];
+    return [names.flatMap((name, c) => spread[c] ? [name, name + ', lowest', name + ', highest'] : [name]),
+      ...grid.slice(heads).map(row => names.flatMap((_, c) => spread[c] ? wide(row, c) : [row[c]]))];
+  }
+
+  document.querySelectorAll('.scroll').forEach((frame, k) => {
+    const title = frame.closest('section').querySelector('h2').textContent;
+    frame.tabIndex = 0;  // scrolls by the arrow keys
+    frame.setAttribute('role', 'region');
+    frame.setAttribute('aria-label', 'table: ' + title);
+    const below = document.createElement('div');
+    frame.after(below);
+    offer(below, 'table-' + (k + 1), 'the table: ' + title, () => cellsOf(frame.querySelector('table')));
+  });
+
+  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, works};
+})();

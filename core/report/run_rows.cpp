@@ -1,0 +1,126 @@
+#include "core/report/run_rows.h"
+
+#include <algorithm>
+#include <functional>
+
+#include "core/report/tables.h"
+
+namespace drape {
+
+namespace {
+
+constexpr std::size_t own = 0, reference = 1;                // targets
+constexpr std::size_t rms = 0, d_H_fit = 2, energy_gap = 3;  // measures
+
+const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool preview) {
+  if (method.levels.empty() || (preview && method.levels.size() < 2)) return nullptr;
+  const int level = (preview ? method.levels.front() : method.levels.back()).level;
+  for (const ErrorSeries& series : run.errors)
+    if (series.method == method.name && series.level == level && !series.rows.empty())
+      return &series.rows.back();
+  return nullptr;
+}
+
+template <bool preview, std::size_t target, std::size_t measure>
+Figure error_of(const RunData& run, const MethodRecord& method) {
+  const ErrorRow* row = last_error(run, method, preview);
+  return row ? row->error[target][measure] : Figure();
+}
+
+Figure seconds(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::seconds); }
+Figure iterations(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::newton_iterations); }
+Figure flops(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::flops); }
+Figure preview_seconds(const RunData&, const MethodRecord& m) {
+  return m.levels.size() > 1 ? m.levels.front().seconds : Figure();
+}
+
+}  // namespace
+
+std::string RunRow::title(bool several_variations) const {
+  return several_variations ? variation + ", " + method : method;
+}
+
+const std::vector<RowFigure>& row_figures() {
+  static const std::vector<RowFigure> all = {
+      {"seconds", "time [s]", seconds},
+      {"iterations", "iterations", iterations},
+      {"flops", "flops", flops},
+      {"energy", "final energy [J]", final_energy},
+      {"energy_gap", "energy gap", error_of<false, reference, energy_gap>},
+      {"error_rms", "error, RMS", error_of<false, reference, rms>},
+      {"error_d_H_fit", "error, d<sub>H</sub><sup>fit</sup>", error_of<false, reference, d_H_fit>},
+      {"preview_seconds", "preview after [s]", preview_seconds},
+      {"preview_rms", "preview's own error, RMS", error_of<true, own, rms>},
+      {"preview_d_H_fit", "preview's own d<sub>H</sub><sup>fit</sup>", error_of<true, own, d_H_fit>},
+      {"preview_energy_gap", "preview's own energy gap", error_of<true, own, energy_gap>}};
+  return all;
+}
+
+std::vector<RunRow> rows_of(const RunSet& set) {
+  std::vector<RunRow> rows;
+  for (const std::string& variation : set.variations())
+    for (const std::string& method : set.methods()) {
+      RunRow row{variation, method, {}, 0};
+      for (const SetRun* run : set.of(variation)) {
+        if (!run->data) continue;
+        for (const MethodRecord& m : run->data->methods)
+          if (m.name == method) {
+            row.repeats.push_back({run, &m});
+            row.converged += m.status == "converged";
+          }
+      }
+      if (!row.repeats.empty()) rows.push_back(std::move(row));
+    }
+  return rows;
+}
+
+std::optional<Spread> spread_of(const RunRow& row, const RowFigure& figure) {
+  std::vector<double> values;
+  for (const Repeat& repeat : row.repeats)
+    if (repeat.method->status == "converged")
+      if (const Figure value = figure.of(*repeat.run->data, *repeat.method)) values.push_back(*value);
+  return spread_of(std::move(values));
+}
+
+std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t work,
+                                   std::size_t target, std::size_t measure) {
+  int begin = 0;
+  for (const MethodRecord& m : run.methods)
+    if (m.name == method)
+      for (const LevelRecord& level : m.levels)
+        if (level.afresh) begin = level.level;
+  std::vector<CostPoint> curve;
+  for (const ErrorSeries& series : run.errors) {
+    if (series.method != method || series.level < begin) continue;
+    for (const ErrorRow& row : series.rows)
+      if (row.work[work] && row.error[target][measure])
+        curve.push_back({*row.work[work], *row.error[target][measure]});
+  }
+  return curve;
+}
+
+RunData median_consistency(const RunSet& set, const std::string& variation) {
+  constexpr std::array members = {&ConsistencyRecord::d_H_fit, &ConsistencyRecord::d_H_ddg,
+                                  &ConsistencyRecord::d_K_fit, &ConsistencyRecord::d_K_ddg,
+                                  &ConsistencyRecord::distance_rms};
+  RunData medians;
+  for (const RunRow& row : rows_of(set)) {
+    if (row.variation != variation) continue;
+    MethodRecord& method = medians.methods.emplace_back();
+    method.name = row.method;
+    std::map<std::pair<int, int>, std::array<std::vector<double>, members.size()>> values;
+    for (const Repeat& repeat : row.repeats)
+      for (const ConsistencyRecord& pair : repeat.method->consistency)
+        for (std::size_t k = 0; k < members.size(); ++k)
+          if (const Figure& value = pair.*members[k]) values[{pair.coarse, pair.fine}][k].push_back(*value);
+    for (const auto& [levels, lists] : values) {
+      ConsistencyRecord& pair = method.consistency.emplace_back();
+      pair.coarse = levels.first, pair.fine = levels.second;
+      for (std::size_t k = 0; k < members.size(); ++k)
+        if (const auto spread = spread_of(lists[k])) pair.*members[k] = spread->median;
+    }
+  }
+  return medians;
+}
+
+}  // namespace drape

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/report/run_data.h"
+
+namespace drape {
+
+/// One of several runs: a variation with one seed.
+struct SetRun {
+  std::string variation;
+  Figure seed;
+  std::string status;            ///< as sweep.json has it: "converged", "ended", "failed", …
+  std::string error;             ///< of a failed one
+  std::filesystem::path folder;  ///< as it is found from here
+  std::optional<RunData> data;   ///< of a run that has written results
+};
+
+/// Runs that are looked at together: those of a sweep, or some folders.
+struct RunSet {
+  std::string name;
+  bool complete = true;
+  std::vector<SetRun> runs;
+
+  std::vector<std::string> variations() const;  ///< in order of appearance
+  std::vector<std::string> methods() const;     ///< likewise
+  std::vector<const SetRun*> of(const std::string& variation) const;
+};
+
+/// Whether the folder is a sweep's.
+bool is_sweep(const std::filesystem::path& folder);
+
+/// Reads sweeps and runs together. Runs that are of one experiment but for the seed are one variation, named
+/// by the experiment; where others have that name too, by the folder. Throws std::runtime_error with one line
+/// for a folder that is neither a run nor a sweep.
+RunSet read_runs(const std::vector<std::filesystem::path>& folders);
+
+}  // namespace drape

@@ -1,0 +1,180 @@
+// Errors of states: known answers, and what a run writes.
+
+#include "core/experiment/errors.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/experiment/reference.h"
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<Row> rows_of(const fs::path& csv) {
+  std::istringstream lines(text_of(csv));
+  std::vector<std::string> names;
+  std::vector<Row> rows;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells;
+    std::istringstream rest(line + ",");
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    REQUIRE(cells.size() == names.size());
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      (k == 0 ? rows.emplace_back() : rows.back())[names[k]] = cells[k];
+  }
+  return rows;
+}
+
+struct Loaded {
+  Scratch folder;
+  std::optional<Experiment> experiment;
+  std::unique_ptr<Scene> scene;
+
+  explicit Loaded(const Overrides& overrides = {}) {
+    folder.write("e.yaml", small_experiment());
+    ConfigErrors errors;
+    experiment = read_experiment(folder / "e.yaml", overrides, test_registry(), errors);
+    if (errors.empty()) scene = build_scene(*experiment, errors);
+    throw_errors(errors);
+  }
+  StateError error(const Positions& x, const Positions& target) const {
+    return state_error(*experiment, *scene, x, energy_on_finest(*scene, 1, x),
+                       {target, energy_on_finest(*scene, 1, target)}, [](const std::string& f) { FAIL(f); });
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a state has no error against itself; a moved one has the shift over the diagonal") {
+  const Loaded small;
+  Positions x = small.scene->starts.back();
+  x.col(2) = 0.1 * (3 * x.col(0).array()).sin();
+  for (const auto& value : small.error(x, x)) CHECK(value.value() == 0);
+  Positions moved = x;
+  moved.col(2).array() += 0.01;
+  const StateError error = small.error(moved, x);
+  CHECK(error[0].value() == Approx(0.01 / std::sqrt(2.0)).epsilon(1e-9));
+  CHECK(error[1].value() <= 0.01 / std::sqrt(2.0) * (1 + 1e-9));
+  CHECK(error[1].value() > 0.5 * 0.01 / std::sqrt(2.0));
+  CHECK(error[2].value() < 1e-12);
+  const double lifted = 472.6 * 3.18e-4 * 9.81 * 0.01;  // weight of a square metre, 1 cm up [J]
+  CHECK(error[3].value() == Approx(lifted / std::abs(energy_on_finest(*small.scene, 1, x))).epsilon(1e-6));
+}
+
+TEST_CASE("measures that no metric of the experiment gives stay out") {
+  const Loaded small(Overrides{{"metrics", "[distance]"}});
+  const Positions& x = small.scene->starts.back();
+  const StateError error = small.error(x, x);
+  CHECK(error[0].has_value());
+  CHECK(!error[2].has_value());
+  CHECK(error[3].has_value());
+}
+
+TEST_CASE("a run writes frames and errors, against its own end and a tighter reference") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string reference = " --set reference.force_tolerance=1e-7";
+  const Ended ended =
+      drape_with("run e.yaml --out out --threads 1 --quiet --no-report" + reference, folder.path);
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["reference"]["status"] == "converged");
+  CHECK(all["reference"]["force_residual"].get<double>() <= 1e-7);
+  const std::vector<Row> rows = rows_of(folder / "out/errors.csv");
+  std::size_t row = 0;
+  for (const std::string method : {"pcs", "cascadic", "newton"}) {
+    double flops = 0;
+    int iterations = 0;
+    for (int l = 0; l < 2; ++l) {
+      const Json& level = all["methods"][method]["levels"][l];
+      INFO(method << " level " << l);
+      const Json& frames = level["frames"];
+      const int vertices = level["vertices"];
+      const std::vector<Positions> states =
+          read_frames(folder / ("out/" + frames["file"].get<std::string>()), vertices);
+      REQUIRE(states.size() == frames["iterations"].size());
+      REQUIRE(states.size() == frames["seconds"].size());
+      CHECK(states.size() <= 8);
+      const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
+      CHECK((states.back() - last.vertices).norm() < 1e-5);
+      CHECK(frames["iterations"].back() == level["newton_iterations"]);
+      if (method == "newton") flops = 0, iterations = 0;  // every level begins afresh
+      flops += level["flops"].get<double>();
+      iterations += level["newton_iterations"].get<int>();
+      double seconds = 0;
+      for (std::size_t k = 0; k < states.size(); ++k, ++row) {
+        REQUIRE(row < rows.size());
+        const Row& r = rows[row];
+        CHECK(r.at("method") == method);
+        CHECK(r.at("level") == std::to_string(l));
+        CHECK(r.at("iteration") == frames["iterations"][k].dump());
+        CHECK(r.at("vertices") == std::to_string(vertices));
+        CHECK(std::stod(r.at("seconds")) >= seconds);
+        seconds = std::stod(r.at("seconds"));
+        for (const char* column : {"own_rms", "own_hausdorff", "own_d_H_fit", "own_energy_gap",
+                                   "reference_rms", "reference_hausdorff", "reference_d_H_fit"})
+          CHECK(std::stod(r.at(column)) >= 0);
+        if (k + 1 < states.size()) continue;
+        CHECK(std::stod(r.at("flops")) == Approx(flops));
+        CHECK(r.at("iterations") == std::to_string(iterations));
+        const bool end = l == 1;
+        CHECK((std::stod(r.at("own_rms")) == 0) == end);
+        CHECK((std::stod(r.at("own_energy_gap")) == 0) == end);
+        CHECK(std::stod(r.at("reference_rms")) > 0);
+      }
+    }
+  }
+  CHECK(row == rows.size());
+  // The last state of the reference's method is on the way to the reference.
+  CHECK(std::stod(rows.back().at("reference_rms")) < 1e-2);
+
+  SECTION("and another run takes the reference from its folder") {
+    REQUIRE(drape_with("run e.yaml --out next --threads 1 --quiet --no-report --set reference='{file: out}'",
+                       folder.path)
+                .exit_code == 0);
+    CHECK(text_of(folder / "next/reference.ply") == text_of(folder / "out/reference.ply"));
+    const std::vector<Row> again = rows_of(folder / "next/errors.csv");
+    REQUIRE(again.size() == rows.size());
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      CHECK(again[k].at("reference_rms") == rows[k].at("reference_rms"));
+    // Its saved config names the copy in its own folder.
+    CHECK(drape_with("check next/config.yaml", folder.path).exit_code == 0);
+  }
+}
+
+TEST_CASE("without frames there are no errors and no files of them") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  REQUIRE(drape_with("run e.yaml --out out --quiet --no-report --set frames=0", folder.path).exit_code == 0);
+  CHECK(!fs::exists(folder / "out/frames"));
+  CHECK(!fs::exists(folder / "out/errors.csv"));
+  const Json all = Json::parse(text_of(folder / "out/results.json"));
+  CHECK(!all["methods"]["pcs"]["levels"][0].contains("frames"));
+}
+
+TEST_CASE("a method that does not converge has errors against the reference alone") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  REQUIRE(
+      drape_with("run e.yaml --out out --quiet --no-report --set methods.pcs.newton.max_steps=3", folder.path)
+          .exit_code == 1);
+  int pcs = 0;
+  for (const Row& row : rows_of(folder / "out/errors.csv")) {
+    CHECK(row.at("own_rms").empty() == (row.at("method") == "pcs"));
+    CHECK(!row.at("reference_rms").empty());
+    pcs += row.at("method") == "pcs";
+  }
+  CHECK(pcs > 0);
+}

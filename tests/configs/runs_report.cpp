@@ -1,0 +1,247 @@
+// Several runs together: the page about a sweep, and compare.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/report/compare.h"
+#include "core/report/run_rows.h"
+#include "tests/support/command.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// A sweep's folder as one would be: two variations with three seeds each, and a run that failed. Made once;
+/// cases that change something work on copies.
+const fs::path& sweep() {
+  static const Scratch folder;
+  static const fs::path path = [] {
+    folder.write("e.yaml", small_experiment());
+    Json runs = Json::array();
+    for (const std::string matrix : {"galerkin", "coarse"})
+      for (int seed = 1; seed <= 3; ++seed) {
+        const std::string run = "runs/matrix=" + matrix + "/seed_" + std::to_string(seed);
+        const Ended ended = drape_with("run e.yaml --out sweep/" + run + " --threads 1 --quiet --no-report" +
+                                           " --set methods.pcs.hessian=" + matrix +
+                                           " --set start.seed=" + std::to_string(seed),
+                                       folder.path);
+        INFO(ended.err);
+        REQUIRE(ended.exit_code == 0);
+        runs.push_back(
+            {{"name", "matrix=" + matrix}, {"seed", seed}, {"folder", run}, {"status", "converged"}});
+      }
+    runs.push_back({{"name", "matrix=wrong"},
+                    {"seed", 1},
+                    {"folder", "runs/wrong"},
+                    {"status", "failed"},
+                    {"error", "error: a < b\nand more"}});
+    folder.write("sweep/sweep.json", Json{{"sweep", "matrices"}, {"complete", true}, {"runs", runs}}.dump());
+    return folder / "sweep";
+  }();
+  return path;
+}
+
+/// The JSON that the page's script reads.
+Json data_of(const std::string& page) {
+  const std::string open = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t begin = page.find(open) + open.size();
+  return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+std::string refused(const std::string& arguments) {
+  const Ended ended = drape_with(arguments, sweep());
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  return ended.err;
+}
+
+/// A copy of a run whose results are edited.
+struct Edited {
+  Scratch folder;
+  template <class Edit>
+  explicit Edited(Edit edit) {
+    fs::copy(sweep() / "runs/matrix=galerkin/seed_1", folder / "a", fs::copy_options::recursive);
+    fs::copy(folder / "a", folder / "b", fs::copy_options::recursive);
+    Json results = Json::parse(text_of(folder / "b/results.json"));
+    edit(results);
+    folder.write("b/results.json", results.dump());
+  }
+  Ended compare(const std::string& options = "") const {
+    return drape_with("compare a b" + options, folder.path);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a sweep's rows hold the medians over its seeds") {
+  const RunSet set = read_runs({sweep()});
+  CHECK(set.name == "matrices");
+  CHECK((set.variations() == std::vector<std::string>{"matrix=galerkin", "matrix=coarse", "matrix=wrong"}));
+  const std::vector<RunRow> rows = rows_of(set);
+  REQUIRE(rows.size() == 6);
+  CHECK(rows[0].title(true) == "matrix=galerkin, pcs");
+  CHECK(rows[0].converged == 3);
+  std::vector<double> iterations;
+  for (int seed = 1; seed <= 3; ++seed) {
+    const Json all = Json::parse(
+        text_of(sweep() / ("runs/matrix=galerkin/seed_" + std::to_string(seed) + "/results.json")));
+    double sum = 0;
+    for (const Json& level : all["methods"]["pcs"]["levels"]) sum += level["newton_iterations"].get<double>();
+    iterations.push_back(sum);
+  }
+  std::sort(iterations.begin(), iterations.end());
+  for (const RowFigure& f : row_figures()) {
+    if (std::string(f.name) != "iterations") continue;
+    const auto spread = spread_of(rows[0], f);
+    REQUIRE(spread);
+    CHECK(spread->low == iterations[0]);
+    CHECK(spread->median == iterations[1]);
+    CHECK(spread->high == iterations[2]);
+  }
+  const RunData medians = median_consistency(set, "matrix=coarse");
+  REQUIRE(medians.methods.size() == 3);
+  CHECK(medians.methods[0].pair(0, 1)->d_H_fit.value() > 0);
+}
+
+TEST_CASE("a direct method's cost is that of the level it ends with") {
+  const RunSet set = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
+  for (const MethodRecord& m : set.runs[0].data->methods) {
+    const double all = *m.levels[0].flops + *m.levels[1].flops;
+    CHECK(m.cost(&LevelRecord::flops).value() == (m.name == "newton" ? *m.levels[1].flops : all));
+    for (const CostPoint& p : error_curve(*set.runs[0].data, m.name, 2, 1, 0)) CHECK(p.cost <= all * 1.0001);
+  }
+}
+
+TEST_CASE("report of a sweep is one page with every row, curve and failure") {
+  const Ended ended = drape_with("report sweep", sweep().parent_path());
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  CHECK(ended.out == "report: sweep/report.html\n");
+  const std::string page = text_of(sweep() / "report.html");
+  CHECK_THAT(page, Contains("7 runs of 3 variations: 6 converged, 1 failed.") &&
+                       Contains("matrix=galerkin") && Contains("error: a &lt; b\nand more"));
+  const Json data = data_of(page);
+  CHECK(data["rows"].size() == 6);
+  for (const char* work : {"seconds", "iterations", "flops"})
+    for (const char* target : {"own", "reference"})
+      for (const char* measure : {"rms", "hausdorff", "d_H_fit", "energy_gap"}) {
+        const Json& plot = data["errors"][work][target][measure];
+        INFO(work << " " << target << " " << measure);
+        REQUIRE(plot["curves"].size() == 6);
+        REQUIRE(!plot["front"].empty());
+        double last = 0, error = 1e300;
+        for (const Json& point : plot["front"]) {
+          CHECK(point[0].get<double>() >= last);
+          CHECK(point[1].get<double>() < error);
+          last = point[0], error = point[1];
+        }
+      }
+  // A run's own page is linked to where it is.
+  REQUIRE(drape_with("report 'runs/matrix=coarse/seed_2'", sweep()).exit_code == 0);
+  REQUIRE(drape_with("report .", sweep()).exit_code == 0);
+  CHECK_THAT(text_of(sweep() / "report.html"), Contains("href=\"runs/matrix=coarse/seed_2/report.html\""));
+}
+
+TEST_CASE("report of several folders takes a page's name, and groups runs by all but their seed") {
+  CHECK(refused("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2") ==
+        "error: several folders: name the page with --out, as in --out results/together.html\n");
+  CHECK(refused("report runs/matrix=galerkin/seed_1 runs --out x.html") ==
+        "error: runs: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
+  CHECK(refused("report runs/matrix=galerkin/seed_1 --out x.html") ==
+        "error: --out is for the page of several runs; a run's own is report.html in its folder\n");
+  CHECK(!fs::exists(sweep() / "x.html"));
+  const Scratch folder;
+  const Ended ended = drape_with("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2 --out " +
+                                     (folder / "two.html").string(),
+                                 sweep());
+  CHECK(ended.exit_code == 0);
+  CHECK_THAT(text_of(folder / "two.html"), Contains("2 runs of 1 variation: 2 converged."));
+  const RunSet set =
+      read_runs({sweep() / "runs/matrix=galerkin/seed_1", sweep() / "runs/matrix=coarse/seed_1",
+                 sweep() / "runs/matrix=coarse/seed_3"});
+  // Both folders are called seed_1.
+  CHECK((set.variations() == std::vector<std::string>{(sweep() / "runs/matrix=galerkin/seed_1").string(),
+                                                      (sweep() / "runs/matrix=coarse/seed_1").string()}));
+  CHECK(set.runs[2].seed.value() == 3);
+}
+
+TEST_CASE("a sweep cut short is read as far as it went") {
+  const Scratch folder;
+  folder.write(
+      "sweep.json",
+      R"({"sweep": "s", "complete": false, "runs": [{"name": "a", "seed": 1, "folder": "r", "status": "running"}]})");
+  CHECK(drape_with("report .", folder.path).exit_code == 0);
+  CHECK_THAT(text_of(folder / "report.html"), Contains("Not all runs are done") && Contains("1 running") &&
+                                                  Contains("No run has written results yet."));
+  folder.write("sweep.json", "{\"sweep\": ");
+  const Ended ended = drape_with("report .", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.err == "error: ./sweep.json: not a sweep's list of runs; is it cut short?\n");
+}
+
+TEST_CASE("compare finds nothing between a run and itself") {
+  for (const char* bounds : {"", " --bound seconds=1 --bound d_H_fit=1 --bound energy=1"}) {
+    const Ended ended = drape_with("compare . ." + std::string(bounds), sweep());
+    CHECK(ended.exit_code == 0);
+    CHECK_THAT(ended.out, Contains(" the same. Times within 10 % or 0.05 s of each other"));
+    CHECK((ended.out.find("All bounds hold.\n") == std::string::npos) == std::string(bounds).empty());
+  }
+}
+
+TEST_CASE("compare says what changed, and exits with 1 where a bound is broken") {
+  const Edited run([](Json& all) {
+    Json& pcs = all["methods"]["pcs"];
+    pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
+    for (Json& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
+    all["methods"]["cascadic"]["levels"][1]["newton_iterations"] = 1000;
+  });
+  const Ended plain = run.compare();
+  CHECK(plain.exit_code == 0);
+  for (const char* line :
+       {"pcs, level 1 +seconds .* slower\n", "pcs, levels 0 → 1 +d_H_fit .* ×0.500 +better\n",
+        "cascadic, level 1 +iterations .* more work\n"})
+    CHECK_THAT(plain.out, Catch::Matchers::Matches("[\\s\\S]*" + std::string(line) + "[\\s\\S]*"));
+  CHECK(run.compare(" --bound d_H_fit=1 --bound energy=1").exit_code == 0);
+  const Ended broken = run.compare(" --bound seconds=1.5");
+  CHECK(broken.exit_code == 1);
+  CHECK_THAT(broken.out,
+             Contains("broken: pcs, level 1: seconds went from ") && Contains("slower (bound broken)"));
+}
+
+TEST_CASE("a bound does not hold where a method has stopped converging, or has gone") {
+  const Edited stalled([](Json& all) { all["methods"]["pcs"]["status"] = "stalled"; });
+  CHECK(stalled.compare().exit_code == 0);
+  const Ended ended = stalled.compare(" --bound seconds=2");
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now, so that no bound holds\n"));
+  const Edited gone([](Json& all) { all["methods"].erase("pcs"); });
+  CHECK_THAT(gone.compare().out, Contains("only in the first: pcs\n"));
+  CHECK(gone.compare(" --bound seconds=2").exit_code == 1);
+}
+
+TEST_CASE("bounds on negative energies and on counts that were nought") {
+  const Edited run([](Json& all) {
+    Json& level = all["methods"]["pcs"]["levels"][1];
+    level["energy_on_finest"] = level["energy_on_finest"].get<double>() + 0.1;
+  });
+  CHECK(run.compare(" --bound energy=1.05").exit_code == 1);
+  CHECK(run.compare(" --bound energy=2").exit_code == 0);
+}
+
+TEST_CASE("compare refuses bounds that say nothing") {
+  CHECK(refused("compare . . --bound seconds") ==
+        "error: --bound seconds: write it as KEY=RATIO, as in --bound seconds=1.1\n");
+  CHECK(refused("compare . . --bound second=1") ==
+        "error: --bound second=1: there is no figure \"second\"; did you mean \"seconds\"?\n");
+  CHECK(refused("compare . . --bound seconds=fast") ==
+        "error: --bound seconds=fast: the ratio must be a number above 0, as in --bound seconds=1.1\n");
+  CHECK(refused("compare . . --bound seconds=-1") ==
+        "error: --bound seconds=-1: the ratio must be a number above 0, as in --bound seconds=1.1\n");
+  CHECK(refused("compare . . --bound smallest_gap=2") ==
+        "error: --bound smallest_gap: no match has this figure on both sides\n");
+  CHECK(refused("compare . nowhere") ==
+        "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
+}
