@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <iostream>
+#include <thread>
 
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
@@ -16,6 +17,7 @@
 #include "core/report/report.h"
 #include "core/report/tables.h"
 #include "core/version.h"
+#include "core/view/live_view.h"
 
 namespace {
 
@@ -35,6 +37,24 @@ std::string positive_integer(const std::string& text) {
   const std::optional<int> number = parse_integer(text);
   return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
 }
+
+/// How a run is shown while it goes.
+struct ViewArguments {
+  bool view = false, keep = false;
+  int port = 0;
+
+  void add_to(CLI::App& command) {
+    CLI::Option* show =
+        command.add_flag("--view", view, "serve a live view of the run on 127.0.0.1; prints its address");
+    command.add_option("--port", port, "port of the live view (default: one that is free)")
+        ->check([](const std::string& text) -> std::string {
+          const std::optional<int> number = parse_integer(text);
+          return number && *number >= 0 && *number <= 65535 ? "" : "must be a port, 0 to 65535, not " + text;
+        })
+        ->needs(show);
+    command.add_flag("--view-keep", keep, "go on serving the view after the run, until Ctrl-C")->needs(show);
+  }
+};
 
 struct ConfigArguments {
   std::string config;
@@ -99,7 +119,8 @@ struct Loaded {
   }
 };
 
-int run(const ConfigArguments& arguments, RunOptions options, const Registry& registry) {
+int run(const ConfigArguments& arguments, const ViewArguments& showing, RunOptions options,
+        const Registry& registry) {
   Loaded loaded(arguments, registry);
   if (loaded.exit_code) return loaded.exit_code;
   if (options.out.empty())
@@ -107,14 +128,26 @@ int run(const ConfigArguments& arguments, RunOptions options, const Registry& re
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   options.stop = [] { return stop_signal != 0; };
+  std::optional<LiveView> view;
+  if (showing.view) {
+    view.emplace(*loaded.experiment, *loaded.scene, options.methods, showing.port);
+    options.view = &*view;
+    std::cout << "view: " << view->url() << std::endl;
+  }
   const bool converged = run_experiment(*loaded.experiment, *loaded.scene, options);
   if (options.report)
     std::cout << "report: " << (options.out / "report.html").string() << "\n";
   else
     std::cout << "results: " << (options.out / "results.json").string() << "\n";
-  if (stop_signal) {
+  const bool stopped = stop_signal != 0 || (view && view->stop_requested());
+  const int as_signal = stop_signal ? static_cast<int>(stop_signal) : SIGINT;  // the view's Stop is a Ctrl-C
+  if (showing.keep && !stop_signal) {
+    std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
+    while (!stop_signal) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  if (stopped) {
     std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
-    return 128 + stop_signal;
+    return 128 + as_signal;
   }
   return converged ? 0 : exit_not_converged;
 }
@@ -193,6 +226,7 @@ int main_checked(int argc, char** argv) {
   });
 
   ConfigArguments arguments;
+  ViewArguments showing;
   RunOptions options;
   std::string methods, out;
   int threads = 0;
@@ -206,6 +240,7 @@ int main_checked(int argc, char** argv) {
   run_command->add_flag("--overwrite", options.overwrite,
                         "replace the results of an earlier run in the folder");
   run_command->add_flag("--quiet", options.quiet, "no progress on standard error");
+  showing.add_to(*run_command);
   run_command->add_flag("!--no-report", options.report, "leave out report.html and its pictures");
 
   ConfigArguments check_arguments;
@@ -252,7 +287,7 @@ int main_checked(int argc, char** argv) {
   Registry registry;
   load_plugins(registry, plugin_directories());
   options.out = out;
-  if (*run_command) return run(arguments, options, registry);
+  if (*run_command) return run(arguments, showing, options, registry);
   if (*check_command) return check(check_arguments, registry);
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);

@@ -6,6 +6,7 @@
 #include "core/report/html.h"
 #include "core/report/pictures.h"
 #include "core/report/tables.h"
+#include "core/view/report_view.h"
 
 namespace drape {
 
@@ -150,11 +151,13 @@ std::string notes(const PictureSet& set) {
 
 void write_report(const std::filesystem::path& run_directory) {
   const RunData run = read_run(run_directory);
-  const PictureSet set = draw_pictures(run);
+  PictureSet set = draw_pictures(run);
   const Gallery gallery(set);
+  const ReportView view = report_view(run);
+  if (!view.note.empty()) set.notes.push_back(view.note);
   const std::string page =
       html::fill(Embedded::page_html(),
-                 {{"style", std::string(Embedded::page_css())},
+                 {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},
                   {"title", escape(run.experiment.empty() ? "Unnamed experiment" : run.experiment)},
                   {"description", escape(run.description)},
                   {"machine", machine_line(run)},
@@ -165,6 +168,8 @@ void write_report(const std::filesystem::path& run_directory) {
                   {"levels", level_table(run)},
                   {"states", state_grid(run, gallery)},
                   {"notes", notes(set)},
+                  {"view", view.section},
+                  {"view_scripts", view.scripts},
                   {"consistency", consistency_table(run, table1_block(run.table1_scene))},
                   {"published", published_section(run)},
                   {"H_surface", set.maps_on_rest ? "the flat rest shape" : "the finer state"},
