@@ -16,6 +16,7 @@ struct Embedded {
   static std::string_view viewer_css();
   static std::string_view viewer_data_js();
   static std::string_view viewer_scene_js();
+  static std::string_view viewer_controls_js();
   static std::string_view viewer_js();
   static std::string_view live_html();
   static std::string_view live_js();

@@ -15,7 +15,8 @@ namespace {
 using html::escape;
 using html::figure;
 
-constexpr std::size_t most_picture_bytes = 16'000'000;  // as PNG; a third more in the page
+constexpr std::size_t most_picture_bytes =
+    11'000'000;  // as PNG; a third more in the page, beside the 3D data
 
 /// Pictures as data URLs, at half size when all of them would make the page too large.
 class Gallery {
@@ -154,7 +155,7 @@ void write_report(const std::filesystem::path& run_directory) {
   PictureSet set = draw_pictures(run);
   const Gallery gallery(set);
   const ReportView view = report_view(run);
-  if (!view.note.empty()) set.notes.push_back(view.note);
+  set.notes.insert(set.notes.end(), view.notes.begin(), view.notes.end());
   const std::string page =
       html::fill(Embedded::page_html(),
                  {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double shortest_pause = 0.25;  // between two copies of the running state [s]
 constexpr double share_of_time = 0.05;   // that encoding may take
-constexpr double looked_lately = 3;      // since a page last asked [s]
+constexpr double looked_lately = 5;      // since a page last asked [s]
 
 std::vector<TriangleMesh> obstacles_of(const Scene& scene) {
   std::vector<TriangleMesh> all;
@@ -88,7 +88,7 @@ void LiveView::run_finished(const std::string& outcome) {
   outcome_ = outcome;
   const long last = ++version_;
   if (clock_.seconds() - last_heard_ > looked_lately) return;
-  heard_.wait_for(lock, std::chrono::seconds(2), [&] { return heard_version_ >= last; });
+  heard_.wait_for(lock, std::chrono::seconds(5), [&] { return heard_version_ >= last; });
 }
 
 std::string LiveView::refine() {
@@ -144,7 +144,8 @@ void LiveView::encode_fresh() {
 
     lock.lock();
     seconds_to_encode_ = watch.seconds();
-    forget_blocks(shown.name);
+    forget_blocks(shown.before);
+    shown.before = shown.name;
     shown.name = name;
     shown.entry = std::move(entry);
     ++version_;

@@ -41,9 +41,9 @@ class LiveView : public Observer {
     std::string status = "running";
     int iteration = 0;
     double seconds = 0;
-    bool fresh = false;  // not encoded yet
-    Json entry;          // of the state, once encoded
-    std::string name;    // of its blocks
+    bool fresh = false;        // not encoded yet
+    Json entry;                // of the state, once encoded
+    std::string name, before;  // of its blocks, and of those it replaced, which a page may still ask for
   };
 
   std::string page() const;

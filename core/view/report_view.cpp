@@ -83,7 +83,7 @@ class ReportViewMaker {
     return {section_open + std::string(Embedded::viewer_html()) + "</section>\n\n",
             "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n" + blocks_ +
                 viewer_scripts(),
-            ""};
+            notes_};
   }
 
  private:
@@ -102,10 +102,15 @@ class ReportViewMaker {
     for (std::size_t m = 0; m < run_.methods.size(); ++m)
       for (const LevelRecord& level : run_.methods[m].levels) {
         if (level.mesh.empty() || !std::filesystem::is_regular_file(run_.folder / level.mesh)) continue;
-        State state{read_mesh(run_.folder / level.mesh).vertices, {}};
-        if (state.x.rows() != levels_[level.level].vertex_count()) continue;
-        state.fields = document_->fields(level.level, state.x);
-        add_H_difference(run_.methods[m], level.level, state);
+        State state;
+        try {
+          state.x = read_mesh(run_.folder / level.mesh).vertices;
+          if (state.x.rows() != levels_[level.level].vertex_count()) continue;
+          state.fields = document_->fields(level.level, state.x);
+          add_H_difference(run_.methods[m], level.level, state);
+        } catch (const std::exception&) {
+          continue;  // the pictures name it
+        }
         shown.push_back(&states_.insert_or_assign({m, level.level}, std::move(state)).first->second.fields);
       }
     document_->set_ranges(shown);
@@ -125,6 +130,16 @@ class ReportViewMaker {
         state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
   }
 
+  /// None, and a note, where they cannot be read.
+  Frames frames_of(const Json& level, Eigen::Index n) {
+    try {
+      return recorded_frames(run_, level, n);
+    } catch (const std::exception& error) {
+      notes_.push_back(std::string("3D viewer: ") + error.what());
+      return {};
+    }
+  }
+
   Json method_entry(std::size_t m) {
     const MethodRecord& method = run_.methods[m];
     Json levels = Json::array();
@@ -137,7 +152,7 @@ class ReportViewMaker {
       const std::string name = "m" + std::to_string(m) + "l" + std::to_string(level.level);
       Json states = Json::array();
       const Eigen::Index n = state->second.x.rows();
-      const Frames frames = recorded_frames(run_, results_["methods"][method.name]["levels"][k], n);
+      const Frames frames = frames_of(results_.at("methods").at(method.name).at("levels").at(k), n);
       const std::size_t bytes = document_->state_bytes(level.level),
                         share = left / (method.levels.size() - k);
       for (const std::size_t f : chosen_frames(frames.count, share / bytes)) {
@@ -163,6 +178,7 @@ class ReportViewMaker {
   std::optional<ViewDocument> document_;
   std::map<std::pair<std::size_t, int>, State> states_;  // by number of the method, and level
   std::string blocks_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace
@@ -170,7 +186,8 @@ class ReportViewMaker {
 std::string viewer_scripts() {
   std::string text;
   for (const std::string_view script :
-       {Embedded::three_js(), Embedded::viewer_data_js(), Embedded::viewer_scene_js(), Embedded::viewer_js()})
+       {Embedded::three_js(), Embedded::viewer_data_js(), Embedded::viewer_scene_js(),
+        Embedded::viewer_controls_js(), Embedded::viewer_js()})
     text += "<script>\n" + std::string(script) + "\n</script>\n";
   return text;
 }
@@ -180,7 +197,7 @@ ReportView report_view(const RunData& run) {
   try {
     return ReportViewMaker(run).make();
   } catch (const std::exception& error) {
-    return {"", "", std::string("3D viewer: ") + error.what()};
+    return {"", "", {std::string("3D viewer: ") + error.what()}};
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/report/run_data.h"
 
@@ -9,8 +10,8 @@ namespace drape {
 /// The report's 3D viewer: what goes into the page where it is shown, and the data and scripts at the page's
 /// end.
 struct ReportView {
-  std::string section, scripts;  ///< HTML; both empty where the run has nothing to show
-  std::string note;              ///< why, where it has something that cannot be shown
+  std::string section, scripts;    ///< HTML; both empty where the run has nothing to show
+  std::vector<std::string> notes;  ///< what cannot be shown and why, one line each
 };
 
 /// Made of the meshes in the run's folder: every level's last state, and recorded frames, spread evenly, as

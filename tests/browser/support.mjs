@@ -61,7 +61,10 @@ export async function openPage(chrome, url, options = {}) {
   page.on('request', request => heard.requests.push(request.url()));
   await page.goto(url);
   await page.locator('#viewer').scrollIntoViewIfNeeded();
-  await page.waitForFunction(() => window.drapeViewer && window.drapeViewer.state().panels.length > 0);
+  await until('a state is shown', async () => {
+    if (heard.errors.length) throw new Error(heard.errors.join('; '));
+    return page.evaluate(() => window.drapeViewer && window.drapeViewer.state().panels.length > 0);
+  });
   return {page, heard, state: () => page.evaluate(() => window.drapeViewer.state())};
 }
 

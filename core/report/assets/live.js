@@ -33,17 +33,18 @@
     chart.update();
   }
 
-  function take(news) {
+  async function take(news) {
     version = news.version;
     rows = news.first_row + news.rows.length;
     last = news;
-    if (window.drapeViewer) window.drapeViewer.update(news);
-    else window.drapeViewer = new Viewer(Object.assign(source, {document: news}));
     drawChart(news);
     element('status').textContent = news.outcome ? `The run has ended: ${news.outcome}.`
       : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.';
     element('stop').disabled = !news.method || !!news.outcome;
     element('refine').disabled = element('stop').disabled || news.level === news.finest;
+    // Before more is asked for: states that are replaced are soon forgotten.
+    if (window.drapeViewer) await window.drapeViewer.update(news);
+    else window.drapeViewer = new Viewer(Object.assign(source, {document: news}));
   }
 
   async function ask() {
@@ -52,7 +53,7 @@
       const response = await fetch(`news?version=${version}&rows=${rows}`);
       misses = 0;
       if (response.status === 200) {
-        take(await response.json());
+        await take(await response.json());
         pause = last.outcome ? 0 : pause;  // at once, so that the run knows that it was heard
       } else if (last && last.outcome) {
         return;

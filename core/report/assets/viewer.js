@@ -25,7 +25,7 @@ class Viewer {
 
   say(text) { this.element.note.textContent = text; }
 
-  /// Takes a document, also while it grows; who looked at the newest state goes on to.
+  /// Takes a document, also while it grows; who looked at the newest state goes on to. A promise that it is shown.
   update(data) {
     const following = this.stop === this.stops.length - 1;
     this.data = data;
@@ -41,7 +41,7 @@ class Viewer {
     this.listMethods();
     this.element.rounding.textContent = data.rounding > 0
       ? `Positions are rounded to ${Number((data.rounding * 1e6).toPrecision(2))} µm here; the files in levels/ are exact.` : '';
-    if (this.stops.length) this.show(following ? this.stops.length - 1 : this.stop);
+    return this.stops.length ? this.show(following ? this.stops.length - 1 : this.stop) : null;
   }
 
   /// Drops the blocks of states that newer ones have replaced.
@@ -221,6 +221,10 @@ class Viewer {
     step(next);
   }
 
+  changeLevel(by) {
+    const level = (this.stops.length ? this.stops[this.stop].level : 0) + by;
+    if (this.stops.some(s => s.level === level)) this.showLevel(level);
+  }
   showLevel(level) { this.show(this.stops.findIndex(s => s.level === level && s.last)); }
 
   listen() {
@@ -231,51 +235,7 @@ class Viewer {
     play.addEventListener('click', () => this.play(!this.playing));
     reset.addEventListener('click', () => this.scene.resetView());
     matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => this.scene.draw());
-    canvas.addEventListener('keydown', event => this.key(event));
-    canvas.addEventListener('wheel', event => {
-      if (document.activeElement !== canvas && !event.ctrlKey) return;  // the page scrolls
-      event.preventDefault();
-      this.scene.zoom(Math.exp(event.deltaY * (event.deltaMode ? .05 : .0015)));
-    }, {passive: false});
-    this.listenToPointers(canvas);
-  }
-
-  key(event) {
-    const s = this.scene, way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
-    const level = this.stops.length ? this.stops[this.stop].level : 0;
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (way && event.shiftKey) s.move(.05 * way[0], .05 * way[1]);
-    else if (way) s.turn(.1 * way[0], .1 * way[1]);
-    else if (event.key === '+' || event.key === '=') s.zoom(1 / 1.15);
-    else if (event.key === '-') s.zoom(1.15);
-    else if (event.key === '0' || event.key === 'Home') s.resetView();
-    else if (event.key === 'PageUp') this.showLevel(Math.min(level + 1, Number(this.element.level.max)));
-    else if (event.key === 'PageDown') this.showLevel(Math.max(level - 1, this.stops[0].level));
-    else if (event.key === ' ') this.play(!this.playing);
-    else return;
-    event.preventDefault();
-  }
-
-  /// One pointer turns, or moves with Shift or another button than the first; two move and zoom.
-  listenToPointers(canvas) {
-    const down = new Map();
-    const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
-    const spread = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
-    canvas.addEventListener('contextmenu', event => event.preventDefault());
-    canvas.addEventListener('pointerdown', event => {
-      canvas.setPointerCapture(event.pointerId);
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-    });
-    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, event => down.delete(event.pointerId));
-    canvas.addEventListener('pointermove', event => {
-      if (!down.has(event.pointerId)) return;
-      const before = middle(), apart = down.size === 2 && spread();
-      down.set(event.pointerId, [event.clientX, event.clientY]);
-      const after = middle(), right = after[0] - before[0], up = before[1] - after[1], height = this.scene.panel.height;
-      if (down.size > 1 || event.shiftKey || event.buttons > 1) this.scene.move(right / height, up / height);
-      else this.scene.turn(right * 3 / height, -up * 3 / height);
-      if (apart) this.scene.zoom(apart / Math.max(spread(), 1));
-    });
+    listenToView(this, canvas);
   }
 
   /// What is shown, for tests and scripts.
