@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fstream>
 #include <iostream>
+#include <thread>
 
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
@@ -22,6 +23,7 @@
 #include "core/report/tables.h"
 #include "core/sweep/sweep.h"
 #include "core/version.h"
+#include "core/view/live_view.h"
 
 namespace {
 
@@ -41,6 +43,24 @@ void stop_on_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 }
+
+/// How a run is shown while it goes.
+struct ViewArguments {
+  bool view = false, keep = false;
+  int port = 0;
+
+  void add_to(CLI::App& command) {
+    CLI::Option* show =
+        command.add_flag("--view", view, "serve a live view of the run on 127.0.0.1; prints its address");
+    command.add_option("--port", port, "port of the live view (default: one that is free)")
+        ->check([](const std::string& text) -> std::string {
+          const std::optional<int> number = parse_integer(text);
+          return number && *number >= 0 && *number <= 65535 ? "" : "must be a port, 0 to 65535, not " + text;
+        })
+        ->needs(show);
+    command.add_flag("--view-keep", keep, "go on serving the view after the run, until Ctrl-C")->needs(show);
+  }
+};
 
 struct ConfigArguments {
   std::string config;
@@ -105,21 +125,34 @@ struct Loaded {
   }
 };
 
-int run(const ConfigArguments& arguments, RunOptions options, const Registry& registry) {
+int run(const ConfigArguments& arguments, const ViewArguments& showing, RunOptions options,
+        const Registry& registry) {
   Loaded loaded(arguments, registry);
   if (loaded.exit_code) return loaded.exit_code;
   if (options.out.empty())
     options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
   stop_on_signals();
   options.stop = [] { return stop_signal != 0; };
+  std::optional<LiveView> view;
+  if (showing.view) {
+    view.emplace(*loaded.experiment, *loaded.scene, options.methods, showing.port);
+    options.view = &*view;
+    std::cout << "view: " << view->url() << std::endl;
+  }
   const bool converged = run_experiment(*loaded.experiment, *loaded.scene, options);
   if (options.report)
     std::cout << "report: " << (options.out / "report.html").string() << "\n";
   else
     std::cout << "results: " << (options.out / "results.json").string() << "\n";
-  if (stop_signal) {
+  const bool stopped = stop_signal != 0 || (view && view->stop_requested());
+  const int as_signal = stop_signal ? static_cast<int>(stop_signal) : SIGINT;  // the view's Stop is a Ctrl-C
+  if (showing.keep && !stop_signal) {
+    std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
+    while (!stop_signal) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  if (stopped) {
     std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
-    return 128 + stop_signal;
+    return 128 + as_signal;
   }
   return converged ? 0 : exit_not_converged;
 }
@@ -241,6 +274,7 @@ int main_checked(int argc, char** argv) {
   });
 
   ConfigArguments arguments;
+  ViewArguments showing;
   RunOptions options;
   std::string methods, out;
   int threads = 0;
@@ -254,6 +288,7 @@ int main_checked(int argc, char** argv) {
   run_command->add_flag("--overwrite", options.overwrite,
                         "replace the results of an earlier run in the folder");
   run_command->add_flag("--quiet", options.quiet, "no progress on standard error");
+  showing.add_to(*run_command);
   run_command->add_flag("!--no-report", options.report, "leave out report.html and its pictures");
 
   ConfigArguments check_arguments;
@@ -323,7 +358,7 @@ int main_checked(int argc, char** argv) {
   Registry registry;
   load_plugins(registry, plugin_directories());
   options.out = out;
-  if (*run_command) return run(arguments, options, registry);
+  if (*run_command) return run(arguments, showing, options, registry);
   if (sweep.chosen()) return sweep.run(registry, stop);
   if (*check_command) return check(check_arguments, registry);
   if (*list_command) return list(kind, registry);

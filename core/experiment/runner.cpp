@@ -7,34 +7,40 @@
 #include "core/experiment/recorder.h"
 #include "core/experiment/yaml_file.h"
 #include "core/report/report.h"
+#include "core/view/live_view.h"
 
 namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder and the progress bar.
+/// Passes everything on to the recorder, the progress bar and the live view.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, Progress& progress, const std::function<bool()>& stop)
-      : recorder_(recorder), progress_(progress), stop_(stop) {}
+  RunObserver(Recorder& recorder, Progress& progress, LiveView* view, const std::function<bool()>& stop)
+      : recorder_(recorder), progress_(progress), view_(view), stop_(stop) {}
 
   void level_started(int level) override {
     recorder_.level_started(level);
     progress_.level_started(level);
+    if (view_) view_->level_started(level);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
     recorder_.iteration(row, x);
     progress_.iteration(row, x);
+    if (view_) view_->iteration(row, x);
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
     progress_.level_finished(result);
+    if (view_) view_->level_finished(result);
   }
-  bool stop_requested() override { return stop_ && stop_(); }
+  bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
+  bool refine_requested() override { return view_ && view_->refine_requested(); }
 
  private:
   Recorder& recorder_;
   Progress& progress_;
+  LiveView* view_;
   const std::function<bool()>& stop_;
 };
 
@@ -85,7 +91,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   Recorder recorder(folder, experiment, scene);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.quiet);
-  RunObserver observer(recorder, progress, options.stop);
+  RunObserver observer(recorder, progress, options.view, options.stop);
   const Problem problem = scene.problem();
 
   bool all_converged = true, cancelled = false;
@@ -96,6 +102,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     if (cancelled) break;
     recorder.method_started(name);
     progress.method_started(name);
+    if (options.view) options.view->method_started(name);
     const std::vector<LevelResult> results = solver->solve(problem, observer);
     recorder.method_finished(results);
     for (const LevelResult& r : results) {
@@ -107,7 +114,13 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
   recorder.run_finished(!cancelled && measured);
   if (options.report) write_report(folder.path());
-  return all_converged && recorder.sound();
+  const bool good = all_converged && recorder.sound();
+  if (options.view)
+    options.view->run_finished((cancelled ? "stopped on request"
+                                : good    ? "everything converged"
+                                          : "not everything converged") +
+                               ("; the results are in " + folder.path().string()));
+  return good;
 }
 
 }  // namespace drape

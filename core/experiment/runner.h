@@ -9,6 +9,8 @@
 
 namespace drape {
 
+class LiveView;
+
 struct RunOptions {
   std::filesystem::path out;         ///< results folder
   std::vector<std::string> methods;  ///< which to run, in the experiment's order; empty for all
@@ -16,6 +18,7 @@ struct RunOptions {
   bool quiet = false;                ///< no progress
   bool report = true;                ///< write report.html and its pictures at the end
   std::function<bool()> stop;        ///< asked after every step; may be empty
+  LiveView* view = nullptr;          ///< shown the run, and may stop it; may be null
 };
 
 /// Runs the methods one after another and writes everything down as it goes. Returns true when every

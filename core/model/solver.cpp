@@ -22,6 +22,8 @@ const char* to_string(Outcome outcome) {
       return "cancelled";
     case Outcome::infeasible:
       return "infeasible";
+    case Outcome::refined_early:
+      return "refined_early";
   }
   return "";
 }

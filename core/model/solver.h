@@ -23,8 +23,8 @@ struct Problem {
   Positions carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const;
 };
 
-/// How a solve ended.
-enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible };
+/// How a solve ended. `refined_early`: on request, so that the next level could begin.
+enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible, refined_early };
 const char* to_string(Outcome outcome);
 
 /// One Newton iteration, as observers see it.
@@ -66,6 +66,8 @@ class Observer {
   virtual void iteration(const IterationRow& row, const Positions& x) { (void)row, (void)x; }
   virtual void level_finished(const LevelResult& result) { (void)result; }
   virtual bool stop_requested() { return false; }
+  /// Whether the level is to end as it is and the next one to begin. Not asked on the finest level.
+  virtual bool refine_requested() { return false; }
 };
 
 /// A method: a schedule of Newton solves over the levels of a problem.

@@ -85,12 +85,13 @@ std::string brief(double value) {
 class Newton {
  public:
   Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const Stopwatch& clock,
-         Observer& observer)
+         Observer& observer, bool finer_follows)
       : f_(objective),
         model_(objective.model()),
         p_(parameters),
         clock_(clock),
         observer_(observer),
+        finer_follows_(finer_follows),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
@@ -110,6 +111,9 @@ class Newton {
                       "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
                           "; force residual " + brief(result_.force_residual));
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
+      if (finer_follows_ && observer_.refine_requested())
+        return finish(Outcome::refined_early,
+                      "refined on request; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
     }
   }
@@ -387,6 +391,7 @@ class Newton {
   const Stopwatch& clock_;
   Stopwatch watch_;
   Observer& observer_;
+  const bool finer_follows_;
 
   BlockCholesky cholesky_;
   LevelResult result_;
@@ -404,8 +409,8 @@ class Newton {
 }  // namespace
 
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer) {
-  return Newton(objective, std::move(x), parameters, clock, observer).run();
+                     const Stopwatch& clock, Observer& observer, bool finer_follows) {
+  return Newton(objective, std::move(x), parameters, clock, observer, finer_follows).run();
 }
 
 }  // namespace drape

@@ -35,8 +35,9 @@ struct NewtonParameters {
 
 /// Minimises the objective from x, where fixed vertices stay, step by implicit step
 ///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x),
-/// with a filtered line search. `clock` is the method's, for the rows that the observer gets.
+/// with a filtered line search. `clock` is the method's, for the rows that the observer gets. Where a finer
+/// level follows, the observer may ask for it early.
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer);
+                     const Stopwatch& clock, Observer& observer, bool finer_follows = false);
 
 }  // namespace drape

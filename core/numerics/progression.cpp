@@ -16,7 +16,7 @@ std::vector<LevelResult> solve_progressively(
     observer.level_started(l);
     LevelResult result;
     if (start.fault.empty()) {
-      result = minimise(*objective(l), std::move(start.x), newton, clock, observer);
+      result = minimise(*objective(l), std::move(start.x), newton, clock, observer, l < problem.finest());
     } else {
       result.x = std::move(start.x);
       result.outcome = Outcome::infeasible;

@@ -1,9 +1,12 @@
 #include "core/report/embedded.h"
 
 // The assembler looks for relative names in the compiler's include folders, so the project's own files
-// need only the include root; Chart.js lies where the system's package has put it.
+// need only the include root; Chart.js and three.js lie where the system's packages have put them.
 #ifndef DRAPE_CHART_JS
 #error "define DRAPE_CHART_JS as the quoted path of chart.min.js (Debian: libjs-chart.js)"
+#endif
+#ifndef DRAPE_THREE_JS
+#error "define DRAPE_THREE_JS as the quoted path of three.min.js (Debian: libjs-three)"
 #endif
 
 #define DRAPE_EMBED(name, path)                                                              \
@@ -36,6 +39,15 @@ DRAPE_EMBED(runs_html, "core/report/assets/runs.html")
 DRAPE_EMBED(runs_js, "core/report/assets/runs.js")
 DRAPE_EMBED(table1_json, "core/report/assets/table1.json")
 DRAPE_EMBED(chart_js, DRAPE_CHART_JS)
+DRAPE_EMBED(three_js, DRAPE_THREE_JS)
+DRAPE_EMBED(viewer_html, "core/report/assets/viewer.html")
+DRAPE_EMBED(viewer_css, "core/report/assets/viewer.css")
+DRAPE_EMBED(viewer_data_js, "core/report/assets/viewer_data.js")
+DRAPE_EMBED(viewer_scene_js, "core/report/assets/viewer_scene.js")
+DRAPE_EMBED(viewer_controls_js, "core/report/assets/viewer_controls.js")
+DRAPE_EMBED(viewer_js, "core/report/assets/viewer.js")
+DRAPE_EMBED(live_html, "core/report/assets/live.html")
+DRAPE_EMBED(live_js, "core/report/assets/live.js")
 DRAPE_EMBED(cloth_vertex_shader, "core/report/assets/cloth.vert")
 DRAPE_EMBED(cloth_fragment_shader, "core/report/assets/cloth.frag")
 DRAPE_EMBED(depth_vertex_shader, "core/report/assets/depth.vert")

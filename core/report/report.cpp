@@ -6,6 +6,7 @@
 #include "core/report/html.h"
 #include "core/report/pictures.h"
 #include "core/report/tables.h"
+#include "core/view/report_view.h"
 
 namespace drape {
 
@@ -14,7 +15,8 @@ namespace {
 using html::escape;
 using html::figure;
 
-constexpr std::size_t most_picture_bytes = 16'000'000;  // as PNG; a third more in the page
+constexpr std::size_t most_picture_bytes =
+    11'000'000;  // as PNG; a third more in the page, beside the 3D data
 
 /// Pictures as data URLs, at half size when all of them would make the page too large.
 class Gallery {
@@ -159,11 +161,13 @@ std::string notes(const PictureSet& set) {
 
 void write_report(const std::filesystem::path& run_directory) {
   const RunData run = read_run(run_directory);
-  const PictureSet set = draw_pictures(run);
+  PictureSet set = draw_pictures(run);
   const Gallery gallery(set);
+  const ReportView view = report_view(run);
+  set.notes.insert(set.notes.end(), view.notes.begin(), view.notes.end());
   const std::string page =
       html::fill(Embedded::page_html(),
-                 {{"style", std::string(Embedded::page_css())},
+                 {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},
                   {"title", escape(run.experiment.empty() ? "Unnamed experiment" : run.experiment)},
                   {"description", escape(run.description)},
                   {"machine", machine_line(run)},
@@ -174,6 +178,8 @@ void write_report(const std::filesystem::path& run_directory) {
                   {"levels", level_table(run)},
                   {"states", state_grid(run, gallery)},
                   {"notes", notes(set)},
+                  {"view", view.section},
+                  {"view_scripts", view.scripts},
                   {"consistency", consistency_table(run, table1_block(run.table1_scene))},
                   {"published", published_section(run)},
                   {"H_surface", set.maps_on_rest ? "the flat rest shape" : "the finer state"},

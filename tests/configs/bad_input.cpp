@@ -1,5 +1,8 @@
 // What the command says to bad input: the exact lines. Nothing may be written in any of these cases.
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
 #include <catch2/catch.hpp>
 #include <map>
 
@@ -229,6 +232,37 @@ TEST_CASE("a --set or --method that does not fit") {
         "error: --set levels: \"levels\" must be at most 10, not 11\n");
   CHECK(said_of(small_experiment(), "--fast") ==
         "error: The following argument was not expected: --fast; see `drape run --help`\n");
+}
+
+/// Listens on a port of 127.0.0.1 as long as it lives.
+struct TakenPort {
+  int socket = ::socket(AF_INET, SOCK_STREAM, 0), number = 0;
+  TakenPort() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* any = reinterpret_cast<sockaddr*>(&address);
+    REQUIRE(bind(socket, any, size) == 0);
+    REQUIRE(listen(socket, 1) == 0);
+    REQUIRE(getsockname(socket, any, &size) == 0);
+    number = ntohs(address.sin_port);
+  }
+  ~TakenPort() { close(socket); }
+};
+
+TEST_CASE("a live view that cannot be had") {
+  const TakenPort taken;
+  const std::string port = std::to_string(taken.number);
+  CHECK(said_of(small_experiment(), "--view --port " + port) ==
+        "error: --port " + port + ": cannot listen on 127.0.0.1:" + port +
+            " (Address already in use); name another port, or leave --port out for one that is free\n");
+  CHECK(said_of(small_experiment(), "--view --port 65536") ==
+        "error: --port: must be a port, 0 to 65535, not 65536; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--port 8000") ==
+        "error: --port requires --view; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--view-keep") ==
+        "error: --view-keep requires --view; see `drape run --help`\n");
 }
 
 TEST_CASE("a results folder that cannot be used") {

@@ -84,3 +84,24 @@ TEST_CASE("Solvers give the same bits from run to run, and with any number of th
     CHECK(finest[0] == finest[2]);
   }
 }
+
+TEST_CASE("Every solver goes on when asked to refine early, on every level but the finest", "[conformance]") {
+  struct Impatient : Observer {
+    int asked = 0;
+    bool refine_requested() override { return ++asked % 3 == 0; }
+  };
+  for (const std::string& name : solvers()) {
+    INFO(name);
+    Solved s = scene_from(hanging_square(name));
+    Impatient observer;
+    s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
+    REQUIRE(s.levels.size() == 3);
+    for (int l = 0; l < 2; ++l) {
+      CHECK(s.levels[l].outcome == Outcome::refined_early);
+      CHECK(s.levels[l].steps == 2);
+      CHECK(s.levels[l].message.starts_with("refined on request; force residual "));
+    }
+    CHECK(s.levels[2].outcome == Outcome::converged);
+    CHECK(observer.asked == 6);
+  }
+}

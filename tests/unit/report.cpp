@@ -487,3 +487,26 @@ TEST_CASE("every method has a verdict beside the others that converged") {
   CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
   CHECK(method_verdict(run, run.methods[2]) == "did not converge; its figures are of where it stopped");
 }
+
+TEST_CASE("the viewer has every state, and recorded frames that fit their mesh") {
+  SampleRun run;
+  const auto whole_page = [&] {
+    run.page();
+    return read_file(run.folder / "report.html");
+  };
+  const std::string page = whole_page();
+  CHECK(contains(page, "id=\"viewer-m0l0\""));
+  CHECK(contains(page, "id=\"viewer-m1l1-stretch\""));
+  CHECK_FALSE(contains(page, "id=\"viewer-m0l0f0\""));
+
+  fs::create_directories(run.folder / "frames");
+  Json& level = run.results["methods"]["pcs"]["levels"][0];
+  level["frames"] = {{"file", "frames/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
+  write_file(run.folder / "frames/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
+  CHECK(contains(whole_page(), "id=\"viewer-m0l0f1\""));
+  write_file(run.folder / "frames/pcs_l0.bin", std::string(100, '\0'));
+  const std::string without = whole_page();
+  CHECK_FALSE(contains(without, "id=\"viewer-m0l0f1\""));
+  CHECK(contains(without, "id=\"viewer-m0l0\""));
+  CHECK(contains(without, "frames/pcs_l0.bin: holds 100 bytes, not 3 frames of 169 vertices"));
+}

@@ -21,7 +21,8 @@ class NewtonSolver : public Solver {
     for (int l = 0; l <= problem.finest(); ++l) {
       observer.level_started(l);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(minimise(objective, problem.starts[l], p_.newton, clock, observer));
+      results.push_back(
+          minimise(objective, problem.starts[l], p_.newton, clock, observer, l < problem.finest()));
       results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;

@@ -1,0 +1,193 @@
+'use strict';
+/// The drawing: one WebGL context, a view a method side by side, one camera for all of them.
+class ViewerScene {
+  /// Throws where there is no WebGL.
+  constructor(canvas, labels) {
+    const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: true}), null);
+    if (!context) throw new Error('no WebGL');
+    Object.assign(this, {canvas, labels, views: [], obstacles: [], renders: 0, waiting: false});
+    this.renderer = new THREE.WebGLRenderer({canvas, context, antialias: true});
+    this.renderer.setScissorTest(true);
+    this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
+    this.camera.up.set(0, 0, 1);
+    this.cloth = ViewerScene.material(false);
+    this.painted = ViewerScene.material(true);
+    this.solid = ViewerScene.material(false);
+    this.solid.uniforms.front.value.set(.45, .47, .5);
+    this.solid.uniforms.back.value.set(.45, .47, .5);
+    this.lookAt([0, 0, 0], 1);
+    new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
+    canvas.addEventListener('webglcontextrestored', () => this.draw());
+  }
+
+  /// Light comes from above the viewer's left shoulder, so that both sides of the cloth are readable from anywhere.
+  static material(painted) {
+    return new THREE.ShaderMaterial({
+      side: THREE.DoubleSide,
+      uniforms: {front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
+      defines: painted ? {PAINTED: 1} : {},
+      vertexShader: `
+        attribute vec3 tint;
+        varying vec3 eyeNormal, eyePosition, colour;
+        void main() {
+          vec4 p = modelViewMatrix * vec4(position, 1.0);
+          eyePosition = p.xyz;
+          eyeNormal = mat3(viewMatrix) * normal;
+          #ifdef PAINTED
+          colour = tint;
+          #else
+          colour = vec3(0.0);
+          #endif
+          gl_Position = projectionMatrix * p;
+        }`,
+      fragmentShader: `
+        uniform vec3 front, back;
+        varying vec3 eyeNormal, eyePosition, colour;
+        void main() {
+          float side = gl_FrontFacing ? 1.0 : -1.0;
+          vec3 n = normalize(eyeNormal + vec3(0.0, 0.0, 1e-9)) * side;
+          vec3 up = mat3(viewMatrix) * vec3(0.0, 0.0, 1.0);
+          vec3 key = normalize(vec3(-0.75, 0.25, 0.25) + 0.62 * up), fill = normalize(vec3(0.8, 0.1, 0.5));
+          #ifdef PAINTED
+          vec3 base = colour * (gl_FrontFacing ? 1.0 : 0.94);
+          #else
+          vec3 base = gl_FrontFacing ? front : back;
+          #endif
+          float lambert = dot(n, key), direct = max(0.0, (lambert + 0.2) / 1.2);
+          float open = 0.5 + 0.5 * dot(n, up);
+          vec3 light = vec3(0.98, 0.92, 0.82) * direct * direct + vec3(0.12, 0.14, 0.18) * max(dot(n, fill), 0.0)
+                     + vec3(0.34, 0.38, 0.44) * (0.5 + 0.6 * open);
+          #ifdef PAINTED
+          light = mix(light, vec3(0.95), 0.5);
+          #endif
+          float sheen = pow(1.0 - max(dot(n, normalize(-eyePosition)), 0.0), 4.0);
+          vec3 lit = pow(base, vec3(2.2)) * light + vec3(0.07) * sheen;
+          gl_FragColor = vec4(pow(min(lit, vec3(1.0)), vec3(1.0 / 2.2)), 1.0);
+        }`,
+    });
+  }
+
+  geometry(x, index) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(index);
+    geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(ViewerData.normals(x, index.array), 3));
+    return geometry;
+  }
+
+  /// How many views there are, and what stands in all of them.
+  setViews(count) {
+    while (this.views.length < count) {
+      const view = {scene: new THREE.Scene(), mesh: null};
+      this.obstacles.forEach(geometry => view.scene.add(this.fixed(new THREE.Mesh(geometry, this.solid))));
+      this.views.push(view);
+    }
+    this.views.length = count;
+    this.layOut();
+  }
+  addObstacle(x, index) {
+    const geometry = this.geometry(x, index);
+    this.obstacles.push(geometry);
+    this.views.forEach(view => view.scene.add(this.fixed(new THREE.Mesh(geometry, this.solid))));
+  }
+  fixed(mesh) {
+    mesh.frustumCulled = false;
+    return mesh;
+  }
+
+  /// Shows a state in a view; null empties it. `tints` is three bytes a vertex, or null for plain cloth.
+  setCloth(k, shape) {
+    const view = this.views[k];
+    if (view.mesh && (!shape || view.mesh.userData.x !== shape.x)) {
+      view.scene.remove(view.mesh);
+      view.mesh.geometry.setIndex(null);  // the index is the level's, and stays
+      view.mesh.geometry.dispose();
+      view.mesh = null;
+    }
+    if (!shape) return;
+    if (!view.mesh) {
+      view.mesh = this.fixed(new THREE.Mesh(this.geometry(shape.x, shape.index), this.cloth));
+      view.mesh.userData.x = shape.x;
+      view.scene.add(view.mesh);
+    }
+    if (shape.tints) view.mesh.geometry.setAttribute('tint', new THREE.BufferAttribute(shape.tints, 3, true));
+    view.mesh.material = shape.tints ? this.painted : this.cloth;
+  }
+
+  /// Three quarters from above, as the pictures, from where a ball of that radius fills a view.
+  lookAt(centre, radius) {
+    this.home = {target: centre.slice(), radius};
+    this.resetView();
+  }
+  resetView() {
+    this.view = {target: this.home.target.slice(), azimuth: Math.atan2(-1, .55), elevation: Math.atan2(.68, Math.hypot(.55, 1)),
+      distance: this.home.radius / Math.sin(14 * Math.PI / 180) * .98};
+    this.draw();
+  }
+  turn(right, up) {
+    this.view.azimuth -= right;
+    this.view.elevation = Math.min(Math.max(this.view.elevation + up, -1.5), 1.5);
+    this.draw();
+  }
+  zoom(factor) {
+    const r = this.home.radius;
+    this.view.distance = Math.min(Math.max(this.view.distance * factor, .05 * r), 40 * r);
+    this.draw();
+  }
+  /// In heights of a view.
+  move(right, up) {
+    const {azimuth: a, elevation: e, distance} = this.view, size = 2 * distance * Math.tan(14 * Math.PI / 180);
+    const across = [-Math.sin(a), Math.cos(a), 0];
+    const upward = [-Math.cos(a) * Math.sin(e), -Math.sin(a) * Math.sin(e), Math.cos(e)];
+    for (let k = 0; k < 3; ++k) this.view.target[k] -= size * (right * across[k] + up * upward[k]);
+    this.draw();
+  }
+
+  layOut() {
+    const width = this.canvas.parentElement.clientWidth, count = Math.max(this.views.length, 1);
+    if (!width) return;
+    this.columns = Math.max(1, Math.min(count, Math.floor(width / 250)));
+    this.rows = Math.ceil(count / this.columns);
+    this.panel = {width: width / this.columns};
+    this.panel.height = Math.round(Math.min(this.panel.width * (count > 1 ? .86 : .6), .68 * innerHeight));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
+    this.renderer.setSize(width, this.panel.height * this.rows, false);
+    this.canvas.style.height = this.panel.height * this.rows + 'px';
+    this.labels.style.gridTemplate = `repeat(${this.rows}, ${this.panel.height}px) / repeat(${this.columns}, 1fr)`;
+    [...this.labels.children].forEach((label, k) => label.classList.toggle('first', k % this.columns === 0));
+    this.draw();
+  }
+
+  /// Once a frame, however often it is asked for.
+  draw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      if (this.panel) this.render();
+    });
+  }
+  render() {
+    const {target, azimuth, elevation, distance} = this.view, camera = this.camera, r = this.home.radius;
+    camera.position.set(target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),
+      target[1] + distance * Math.cos(elevation) * Math.sin(azimuth), target[2] + distance * Math.sin(elevation));
+    camera.lookAt(...target);
+    camera.aspect = this.panel.width / this.panel.height;
+    camera.near = Math.max(distance - 8 * r, distance / 200);
+    camera.far = distance + 12 * r;
+    camera.updateProjectionMatrix();
+    this.renderer.setClearColor(getComputedStyle(this.canvas.parentElement).backgroundColor);
+    const whole = [0, 0, this.panel.width * this.columns, this.panel.height * this.rows];
+    this.renderer.setScissor(...whole);
+    this.renderer.setViewport(...whole);
+    this.renderer.clear();
+    this.views.forEach((view, k) => {
+      const x = k % this.columns * this.panel.width, row = this.rows - 1 - Math.floor(k / this.columns);
+      const place = [x, row * this.panel.height, this.panel.width, this.panel.height];
+      this.renderer.setScissor(...place);
+      this.renderer.setViewport(...place);
+      this.renderer.render(view.scene, camera);
+    });
+    ++this.renders;
+  }
+}

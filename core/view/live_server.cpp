@@ -1,0 +1,146 @@
+#include "core/view/live_server.h"
+
+#include <httplib.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+namespace drape {
+
+namespace {
+
+using httplib::Request, httplib::Response;
+
+std::string random_token() {
+  unsigned char bytes[16];
+  if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
+    throw std::runtime_error("--view: the system gives no random numbers for the address");
+  std::string token;
+  char digits[3];
+  for (const unsigned char byte : bytes) std::snprintf(digits, sizeof digits, "%02x", byte), token += digits;
+  return token;
+}
+
+/// By a provider, as the library would compress a plain body at length.
+void send(Response& response, std::shared_ptr<const std::string> body, const char* type) {
+  const std::size_t size = body->size();
+  response.set_content_provider(size, type,
+                                [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                                  return sink.write(body->data() + offset, length);
+                                });
+}
+
+void send(Response& response, std::string body, const char* type) {
+  send(response, std::make_shared<const std::string>(std::move(body)), type);
+}
+
+void refuse(Response& response, int status, const std::string& why) {
+  response.status = status;
+  response.set_content(why + "\n", "text/plain");
+}
+
+}  // namespace
+
+struct LiveServer::Impl {
+  httplib::Server server;
+  std::thread thread;
+  std::atomic<bool> ended = false;
+  std::string origin, same_origin;  // http://127.0.0.1:port, and by name
+
+  /// Only what was asked for under the address that was printed: another site's page that makes its own name
+  /// point here, or that posts here, does not get through.
+  bool is_ours(const Request& request) const {
+    const std::string host = "http://" + request.get_header_value("Host");
+    if (host != origin && host != same_origin) return false;
+    return request.method == "GET" || !request.has_header("Origin") ||
+           request.get_header_value("Origin") == host;
+  }
+};
+
+LiveServer::LiveServer(int port, LiveAnswers answers) : impl_(std::make_unique<Impl>()) {
+  httplib::Server& server = impl_->server;
+  // The library's own choice would let two programs listen on one port.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  // Connections that idle would hold up the end.
+  server.set_keep_alive_max_count(1);
+  server.set_keep_alive_timeout(1);
+  server.set_payload_max_length(1024);
+  server.set_default_headers(
+      {{"Cache-Control", "no-store"},
+       {"Referrer-Policy", "same-origin"},
+       {"X-Content-Type-Options", "nosniff"},
+       {"Content-Security-Policy",
+        "default-src 'none'; img-src data:; connect-src 'self'; frame-ancestors 'none'; "
+        "style-src 'unsafe-inline'; script-src 'unsafe-inline'"}});
+  server.set_pre_routing_handler([this](const Request& request, Response& response) {
+    if (impl_->is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
+    refuse(response, 403, "Refused: the request comes from elsewhere than the live view's own page.");
+    return httplib::Server::HandlerResponse::Handled;
+  });
+
+  const std::string base = "/" + random_token() + "/";
+  server.Get(base, [answers](const Request&, Response& response) {
+    send(response, answers.page(), "text/html; charset=utf-8");
+  });
+  server.Get(base + "news", [answers](const Request& request, Response& response) {
+    const long version = std::atol(request.get_param_value("version").c_str());
+    const long rows = std::atol(request.get_param_value("rows").c_str());
+    std::string news = answers.news(version, static_cast<std::size_t>(std::max(rows, 0L)));
+    if (news.empty()) {
+      response.status = 204;
+    } else {
+      send(response, std::move(news), "application/json");
+    }
+  });
+  server.Get(base + "block/([a-zA-Z0-9_-]+)", [answers](const Request& request, Response& response) {
+    if (auto block = answers.block(request.matches[1]))
+      send(response, std::move(block), "application/octet-stream");
+    else
+      refuse(response, 404, "This state has been replaced by a newer one.");
+  });
+  server.Post(base + "stop", [answers](const Request&, Response& response) {
+    answers.stop();
+    response.status = 204;
+  });
+  server.Post(base + "refine", [answers](const Request&, Response& response) {
+    const std::string why_not = answers.refine();
+    if (why_not.empty())
+      response.status = 204;
+    else
+      refuse(response, 409, why_not);
+  });
+
+  errno = 0;
+  const int bound =
+      port == 0 ? server.bind_to_any_port("127.0.0.1") : (server.bind_to_port("127.0.0.1", port) ? port : -1);
+  if (bound <= 0)
+    throw std::runtime_error(
+        "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
+        std::strerror(errno) + "); name another port, or leave --port out for one that is free");
+  impl_->origin = "http://127.0.0.1:" + std::to_string(bound);
+  impl_->same_origin = "http://localhost:" + std::to_string(bound);
+  url_ = impl_->origin + base;
+  impl_->thread = std::thread([this] {
+    impl_->server.listen_after_bind();
+    impl_->ended = true;
+  });
+}
+
+LiveServer::~LiveServer() {
+  // One that has not begun to listen would not see the stop.
+  while (!impl_->server.is_running() && !impl_->ended) std::this_thread::yield();
+  impl_->server.stop();
+  impl_->thread.join();
+}
+
+}  // namespace drape

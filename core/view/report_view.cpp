@@ -1,0 +1,204 @@
+#include "core/view/report_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "core/mesh/file.h"
+#include "core/mesh/io.h"
+#include "core/report/embedded.h"
+#include "core/report/html.h"
+#include "core/view/view_blocks.h"
+#include "core/view/view_document.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_frame_bytes = 4'000'000;  // of the whole page, before they are compressed
+
+constexpr const char* section_open =
+    "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
+    "JavaScript.</p></noscript>\n"
+    "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
+    "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
+
+/// States on the way within a level: float32 positions, one frame after the other.
+struct Frames {
+  std::string bytes;
+  Json iterations, seconds;
+  std::size_t count = 0;
+
+  Positions positions(std::size_t frame, Eigen::Index n) const {
+    using Floats = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const auto* first = reinterpret_cast<const float*>(bytes.data()) + frame * 3 * n;
+    return Eigen::Map<const Floats>(first, n, 3).cast<double>();
+  }
+};
+
+Frames recorded_frames(const RunData& run, const Json& level, Eigen::Index n) {
+  if (!level.contains("frames") || !level["frames"].is_object()) return {};
+  const Json& entry = level["frames"];
+  Frames frames{read_file(run.folder / entry.at("file").get<std::string>()), entry.at("iterations"),
+                entry.at("seconds")};
+  frames.count = frames.iterations.size();
+  if (frames.seconds.size() != frames.count || frames.bytes.size() != frames.count * n * 12)
+    throw std::runtime_error((run.folder / entry["file"].get<std::string>()).string() + ": holds " +
+                             std::to_string(frames.bytes.size()) + " bytes, not " +
+                             std::to_string(frames.count) + " frames of " + std::to_string(n) + " vertices");
+  return frames;
+}
+
+/// At most `most` of them: the first, and others evenly; the last is the level's state, which is shown
+/// anyway.
+std::vector<std::size_t> chosen_frames(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  if (count < 2) return chosen;
+  const std::size_t shown = std::min(count - 1, most);
+  for (std::size_t k = 0; k < shown; ++k) chosen.push_back(k * (count - 1) / shown);
+  return chosen;
+}
+
+class ReportViewMaker {
+ public:
+  explicit ReportViewMaker(const RunData& run)
+      : run_(run), results_(Json::parse(read_file(run.folder / "results.json"))) {}
+
+  ReportView make() {
+    for (int l = 0; l <= run_.finest_level(); ++l)
+      levels_.push_back(Level::of(l, read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"))));
+    for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
+    document_.emplace(levels_, obstacles_, run_.has_contact(),
+                      [this](const std::string& name, const std::string& bytes) { embed(name, bytes); });
+    read_states();
+    if (states_.empty()) return {};
+    Json methods = Json::array();
+    for (std::size_t m = 0; m < run_.methods.size(); ++m) methods.push_back(method_entry(m));
+    std::string json =
+        document_->document(run_.experiment, methods).dump(-1, ' ', true, Json::error_handler_t::replace);
+    for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
+    return {section_open + std::string(Embedded::viewer_html()) + "</section>\n\n",
+            "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n" + blocks_ +
+                viewer_scripts(),
+            notes_};
+  }
+
+ private:
+  struct State {
+    Positions x;
+    SurfaceFields fields;
+  };
+
+  void embed(const std::string& name, const std::string& bytes) {
+    blocks_ += "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" +
+               html::base64(deflated(bytes)) + "</script>\n";
+  }
+
+  void read_states() {
+    std::vector<const SurfaceFields*> shown;
+    for (std::size_t m = 0; m < run_.methods.size(); ++m)
+      for (const LevelRecord& level : run_.methods[m].levels) {
+        if (level.mesh.empty() || !std::filesystem::is_regular_file(run_.folder / level.mesh)) continue;
+        State state;
+        try {
+          state.x = read_mesh(run_.folder / level.mesh).vertices;
+          if (state.x.rows() != levels_[level.level].vertex_count()) continue;
+          state.fields = document_->fields(level.level, state.x);
+          add_H_difference(run_.methods[m], level.level, state);
+        } catch (const std::exception&) {
+          continue;  // the pictures name it
+        }
+        shown.push_back(&states_.insert_or_assign({m, level.level}, std::move(state)).first->second.fields);
+      }
+    document_->set_ranges(shown);
+  }
+
+  /// As it was recorded on the finest mesh, at the vertices that it shares with the coarse level: those come
+  /// first. The finest level does not differ from itself.
+  void add_H_difference(const MethodRecord& method, int level, State& state) const {
+    const int finest = run_.finest_level();
+    const ConsistencyRecord* pair = method.pair(level, finest);
+    if (level == finest && !method.consistency.empty())
+      state.fields.emplace_back("H_difference", Eigen::VectorXd::Zero(state.x.rows()));
+    if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run_.folder / pair->fields))
+      return;
+    for (const VertexField& field : read_ply_fields(run_.folder / pair->fields))
+      if (field.name == "H_difference" && field.values.size() >= state.x.rows())
+        state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
+  }
+
+  /// None, and a note, where they cannot be read.
+  Frames frames_of(const Json& level, Eigen::Index n) {
+    try {
+      return recorded_frames(run_, level, n);
+    } catch (const std::exception& error) {
+      notes_.push_back(std::string("3D viewer: ") + error.what());
+      return {};
+    }
+  }
+
+  Json method_entry(std::size_t m) {
+    const MethodRecord& method = run_.methods[m];
+    Json levels = Json::array();
+    // What a coarse level leaves of its share, finer ones may use.
+    std::size_t left = most_frame_bytes / run_.methods.size();
+    for (std::size_t k = 0; k < method.levels.size(); ++k) {
+      const LevelRecord& level = method.levels[k];
+      const auto state = states_.find({m, level.level});
+      if (state == states_.end()) continue;
+      const std::string name = "m" + std::to_string(m) + "l" + std::to_string(level.level);
+      Json states = Json::array();
+      const Eigen::Index n = state->second.x.rows();
+      const Frames frames = frames_of(results_.at("methods").at(method.name).at("levels").at(k), n);
+      const std::size_t bytes = document_->state_bytes(level.level),
+                        share = left / (method.levels.size() - k);
+      for (const std::size_t f : chosen_frames(frames.count, share / bytes)) {
+        const Positions x = frames.positions(f, n);
+        Json frame = document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
+        frame["iteration"] = frames.iterations[f];
+        frame["seconds"] = frames.seconds[f];
+        states.push_back(frame);
+        left -= bytes;
+      }
+      Json last = document_->state(name, state->second.x, state->second.fields);
+      last["iteration"] = level.newton_iterations ? Json(*level.newton_iterations) : Json();
+      states.push_back(last);
+      levels.push_back({{"level", level.level}, {"status", level.status}, {"states", states}});
+    }
+    return {{"name", method.name}, {"levels", levels}};
+  }
+
+  const RunData& run_;
+  const Json results_;
+  std::vector<Level> levels_;
+  std::vector<TriangleMesh> obstacles_;
+  std::optional<ViewDocument> document_;
+  std::map<std::pair<std::size_t, int>, State> states_;  // by number of the method, and level
+  std::string blocks_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+std::string viewer_scripts() {
+  std::string text;
+  for (const std::string_view script :
+       {Embedded::three_js(), Embedded::viewer_data_js(), Embedded::viewer_scene_js(),
+        Embedded::viewer_controls_js(), Embedded::viewer_js()})
+    text += "<script>\n" + std::string(script) + "\n</script>\n";
+  return text;
+}
+
+ReportView report_view(const RunData& run) {
+  if (run.finest_level() < 0) return {};
+  try {
+    return ReportViewMaker(run).make();
+  } catch (const std::exception& error) {
+    return {"", "", {std::string("3D viewer: ") + error.what()}};
+  }
+}
+
+}  // namespace drape

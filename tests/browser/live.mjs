@@ -1,0 +1,123 @@
+// The live view of runs that go on: in a real browser, and against others who would meddle.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import http from 'node:http';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {browser, contactConfig, drawnShare, openPage, run, scratch, start, until} from './support.mjs';
+
+const folder = scratch();
+// Small steps for ever: at larger ones a level stalls before long.
+const endless = ['force_tolerance=1e-300', 'max_steps=1000000', 'step_size=2e-3', 'step_growth=1']
+  .flatMap(set => ['--set', 'newton.' + set]);
+let chrome;
+
+before(async () => { chrome = await browser(); });
+after(() => chrome.close());
+
+/// A run with a live view, once its address is known.
+async function startViewed(out, ...more) {
+  const command = start(folder, 'run', contactConfig, '--out', out, '--quiet', '--threads', '1', '--view', ...more);
+  const url = await until('the address', () => /^view: (\S+)\n/.exec(command.text.out)?.[1]);
+  return {...command, url};
+}
+
+function request(url, method, headers = {}) {
+  return new Promise((resolve, reject) => {
+    const asked = http.request(url, {method, headers}, response => {
+      let body = '';
+      response.on('data', data => { body += data; });
+      response.on('end', () => resolve({status: response.statusCode, body}));
+    });
+    asked.on('error', reject);
+    asked.end();
+  });
+}
+
+const results = out => JSON.parse(fs.readFileSync(path.join(folder, out, 'results.json')));
+
+test('levels appear and move; "refine now" goes on to the next; "stop" ends the run as Ctrl-C does', async () => {
+  const running = await startViewed('stopped', ...endless);
+  assert.match(running.url, /^http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\/$/);
+  const {page, heard, state} = await openPage(chrome, running.url);
+  const status = () => page.locator('#live-status').textContent();
+  assert.equal(await status(), 'Running: pcs, level 0 of 1.');
+  const first = (await state()).panels[0];
+  assert.deepEqual([first.method, first.level, first.vertices], ['pcs', 0, 81]);
+  await until('a newer state', async () => (await state()).panels[0].sum !== first.sum);
+  assert.match(await page.locator('#viewer-labels').textContent(), /level 0, running, [0-9]+ iterations.*not reached yet/s);
+  assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
+  assert.ok(await drawnShare(page, '#live-residual') > .01);
+  await page.locator('#viewer-field').selectOption('stretch');
+  await until('colours', async () => (await state()).panels[0].tints > 0);
+
+  await page.locator('#live-refine').click();
+  await until('level 1', async () => (await state()).panels[0].level === 1 && (await state()).panels[0].vertices === 289);
+  assert.equal(await status(), 'Running: pcs, level 1 of 1.');
+  assert.ok(await page.locator('#live-refine').isDisabled());
+  const refused = await request(running.url + 'refine', 'POST');
+  assert.deepEqual(refused, {status: 409, body: 'This is the finest level: there is none to refine to.\n'});
+
+  await page.locator('#live-stop').click();
+  const ended = await running.ended;
+  assert.equal(ended.code, 130);
+  assert.match(ended.err, /stopped on request; everything up to then is in stopped\n$/);
+  await until('the page says so', async () =>
+    (await status()) === 'The run has ended: stopped on request; the results are in stopped.');
+  assert.deepEqual(heard.errors, []);
+  assert.ok(heard.requests.every(url => url.startsWith(running.url) || url.startsWith('data:')), heard.requests.join());
+  const levels = results('stopped').methods.pcs.levels;
+  assert.deepEqual(levels.map(level => level.status), ['refined_early', 'cancelled']);
+  assert.match(levels[0].message, /^refined on request; force residual /);
+  assert.equal(results('stopped').methods.cascadic, undefined);
+  await page.context().close();
+});
+
+test('others can neither look nor stop the run', async () => {
+  const running = await startViewed('guarded', ...endless);
+  const {origin, host, port} = new URL(running.url);
+  for (const action of ['stop', 'refine']) {
+    const elsewhere = await request(running.url + action, 'POST', {Origin: 'http://elsewhere.example'});
+    assert.equal(elsewhere.status, 403);
+    assert.match(elsewhere.body, /^Refused: the request comes from elsewhere/);
+    assert.equal((await request(running.url + action, 'POST', {Origin: 'null'})).status, 403);
+    assert.equal((await request(`${origin}/${action}`, 'POST', {Origin: origin})).status, 404);
+    assert.equal((await request(running.url + action, 'GET')).status, 404);
+  }
+  assert.equal((await request(running.url, 'GET', {Host: `elsewhere.example:${port}`})).status, 403);
+  assert.equal((await request(origin + '/', 'GET')).status, 404);
+  assert.equal((await request(running.url + 'block/nothing', 'GET')).status, 404);
+  assert.equal((await request(running.url, 'GET', {Host: host})).status, 200);
+
+  // A page of another site, in a browser, with the right address.
+  const page = await (await chrome.newContext()).newPage();
+  await page.goto('data:text/html,<title>elsewhere</title>');
+  await page.evaluate(url => fetch(url + 'stop', {method: 'POST', mode: 'no-cors'}).catch(() => {}), running.url);
+  await page.context().close();
+  const lines = () => fs.readFileSync(path.join(folder, 'guarded/steps.csv'), 'utf8').split('\n').length;
+  const before = lines();
+  await until('the run goes on', () => lines() > before + 5);
+  assert.equal((await request(running.url + 'stop', 'POST', {Origin: origin})).status, 204);
+  assert.equal((await running.ended).code, 130);
+});
+
+test('a run has the same bits with a view, looked at, and without', async () => {
+  const short = ['--no-report', '--method', 'pcs,newton', '--set', 'newton.force_tolerance=0.1'];
+  const running = await startViewed('viewed', '--view-keep', ...short);
+  const {page, heard} = await openPage(chrome, running.url);
+  await until('the end', () => running.text.out.includes('the view stays at'), 60);
+  await until('the page says so', async () => /^The run has ended: /.test(await page.locator('#live-status').textContent()));
+  assert.equal((await page.evaluate(() => window.drapeViewer.state())).panels.filter(p => p.level === 1).length, 2);
+  assert.deepEqual(heard.errors, []);
+  running.child.kill('SIGINT');
+  assert.equal((await running.ended).code, 0);
+  await page.context().close();
+
+  run(folder, 'run', contactConfig, '--out', 'plain', '--quiet', '--threads', '1', ...short);
+  const read = (out, file) => fs.readFileSync(path.join(folder, out, file));
+  for (const method of ['pcs', 'newton'])
+    for (const level of [0, 1])
+      assert.ok(read('viewed', `levels/${method}_l${level}.ply`).equals(read('plain', `levels/${method}_l${level}.ply`)));
+  const untimed = out => read(out, 'steps.csv').toString().split('\n').map(line => line.split(',').filter((_, column) => column !== 4).join());
+  assert.deepEqual(untimed('viewed'), untimed('plain'));
+});

@@ -1,0 +1,147 @@
+// The report of a small run, opened from disk in a real browser.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {pathToFileURL} from 'node:url';
+import {browser, contactConfig, drawnShare, openPage, run, scratch, until} from './support.mjs';
+
+const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
+let chrome;
+
+before(async () => {
+  run(folder, 'run', contactConfig, '--out', 'out', '--quiet', '--threads', '1');
+  chrome = await browser();
+});
+after(() => chrome.close());
+
+test('opens without a complaint or a request, and draws', async () => {
+  const {page, heard, state} = await openPage(chrome, report);
+  const shown = await state();
+  assert.equal(shown.level, 1);
+  assert.deepEqual(shown.panels.map(p => p.method), ['pcs', 'cascadic', 'newton']);
+  assert.deepEqual(shown.panels.map(p => p.vertices), [289, 289, 289]);
+  assert.equal(new Set(shown.panels.map(p => p.sum)).size, 3);  // each method has its own state
+  assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
+  assert.match(await page.locator('#viewer-rounding').textContent(), /^Positions are rounded to [0-9.]+ µm here/);
+  assert.deepEqual(heard.errors, []);
+  assert.deepEqual(heard.requests.filter(url => !url.startsWith('data:')), [report]);
+  assert.ok(fs.statSync(path.join(folder, 'out/report.html')).size < 8e6);
+  await page.context().close();
+});
+
+test('the level slider changes the mesh, the colours and the legend follow the choice', async () => {
+  const {page, heard, state} = await openPage(chrome, report);
+  await page.locator('#viewer-level').fill('0');
+  await until('level 0', async () => (await state()).panels.every(p => p.level === 0 && p.vertices === 81));
+  assert.match(await page.locator('#viewer-level-text').textContent(), /^0, 81 vertices/);
+  const fields = await page.locator('#viewer-field option').evaluateAll(all => all.map(o => o.value));
+  assert.deepEqual(fields, ['', 'mean_curvature', 'H_difference', 'stretch', 'gap']);
+  const seen = new Set();
+  for (const field of fields.slice(1)) {
+    await page.locator('#viewer-field').selectOption(field);
+    await until(field, async () => (await state()).panels.every(p => p.tints > 0 && !seen.has(p.tints)));
+    seen.add((await state()).panels[0].tints);
+    assert.ok(await page.locator('#viewer-legend').isVisible());
+  }
+  assert.match(await page.locator('#viewer-legend').textContent(), /^0.* m.*distance to an obstacle/s);
+  await page.locator('#viewer-field').selectOption('');
+  await until('no tint', async () => (await state()).panels.every(p => p.tints === null));
+  assert.ok(!(await page.locator('#viewer-legend').isVisible()));
+  await page.locator('#viewer-methods input').nth(1).uncheck();
+  await until('two views', async () => (await state()).panels.map(p => p.method).join() === 'pcs,newton');
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+});
+
+test('the progression plays, frames between the levels included', async () => {
+  addFrames();
+  run(folder, 'report', 'out');
+  const {page, heard, state} = await openPage(chrome, report);
+  assert.equal((await state()).stops, 5);  // four of level 0, one of level 1
+  await page.evaluate(() => {  // in the page, as looking from here could miss one
+    const scene = window.drapeViewer.scene, setCloth = scene.setCloth;
+    window.shown = [];
+    scene.setCloth = (k, shape) => {
+      if (k === 0) window.shown.push(window.drapeViewer.stop + ' ' + shape.x[2]);
+      setCloth.call(scene, k, shape);
+    };
+  });
+  await page.locator('#viewer-play').click();
+  await until('the end', async () => !(await state()).playing && (await state()).stop === 4);
+  const shown = await page.evaluate(() => window.shown);
+  assert.deepEqual(shown.map(text => text.split(' ')[0]), ['0', '1', '2', '3', '4']);
+  assert.equal(new Set(shown.map(text => text.split(' ')[1])).size, 5);
+  await page.locator('#viewer-stop').fill('1');
+  await until('a frame', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
+  assert.match(await page.locator('#viewer-labels').textContent(), /7 iterations, 0.700 s/);
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+});
+
+test('keys and pointer turn all views together', async () => {
+  const {page, heard, state} = await openPage(chrome, report, {hasTouch: true});
+  const home = (await state()).camera;
+  await page.locator('#viewer-canvas').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('+');
+  await page.keyboard.press('Shift+ArrowRight');
+  const turned = (await state()).camera;
+  for (const name of ['azimuth', 'elevation', 'distance']) assert.notEqual(turned[name], home[name]);
+  assert.notDeepEqual(turned.target, home.target);
+  await page.keyboard.press('0');
+  assert.deepEqual((await state()).camera, home);
+  await page.keyboard.press('PageDown');
+  await until('the level below', async () => (await state()).panels.every(p => p.level === 0));
+  await page.keyboard.press('PageUp');  // from the end it plays from the start
+  await page.keyboard.press(' ');
+  assert.equal((await state()).playing, true);
+  await page.keyboard.press(' ');
+  const box = await page.locator('#viewer-canvas').boundingBox();
+  await page.mouse.move(box.x + 200, box.y + 150);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 300, box.y + 150);
+  await page.mouse.up();
+  assert.notEqual((await state()).camera.azimuth, home.azimuth);
+  await page.mouse.wheel(0, 100);
+  assert.ok((await state()).camera.distance > home.distance);
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+});
+
+test('dark, narrow, printed, and without WebGL', async () => {
+  const {page, heard} = await openPage(chrome, report, {colorScheme: 'dark', viewport: {width: 400, height: 800}});
+  assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  await page.emulateMedia({media: 'print'});
+  assert.ok(!(await page.locator('#in-3d').isVisible()));
+  assert.ok(await page.locator('#states img').first().isVisible());
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+
+  const bare = await (await chrome.newContext()).newPage();
+  await bare.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
+  await bare.goto(report);
+  await bare.locator('#viewer').scrollIntoViewIfNeeded();
+  await until('the sentence', async () => (await bare.locator('#viewer-note').textContent()).includes('no WebGL'));
+  assert.ok(!(await bare.locator('#viewer-stage').isVisible()));
+  await bare.context().close();
+});
+
+/// Writes four frames of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.
+function addFrames() {
+  const ply = fs.readFileSync(path.join(folder, 'out/levels/pcs_l0.ply')), marker = 'end_header\n';
+  const begin = ply.indexOf(marker) + marker.length, count = 81, frames = Buffer.alloc(4 * count * 12);
+  for (let k = 0; k < 4; ++k) {
+    for (let i = 0; i < 3 * count; ++i) {
+      const lift = i % 3 === 2 ? .03 * (3 - k) : 0;
+      frames.writeFloatLE(ply.readDoubleLE(begin + 8 * i) + lift, 4 * (3 * count * k + i));
+    }
+  }
+  fs.mkdirSync(path.join(folder, 'out/frames'), {recursive: true});
+  fs.writeFileSync(path.join(folder, 'out/frames/pcs_l0.bin'), frames);
+  const file = path.join(folder, 'out/results.json'), results = JSON.parse(fs.readFileSync(file));
+  results.methods.pcs.levels[0].frames = {file: 'frames/pcs_l0.bin', iterations: [1, 7, 15, 22], seconds: [.1, .7, 1.5, 2.2]};
+  fs.writeFileSync(file, JSON.stringify(results));
+}

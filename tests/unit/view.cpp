@@ -1,0 +1,153 @@
+// What the viewer is given: blocks, colours' values, and the report's share of it.
+
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <limits>
+
+#include "core/view/surface_fields.h"
+#include "core/view/view_blocks.h"
+#include "core/view/view_document.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// A unit square of (n + 1)² vertices in the plane z = 0, facing up.
+Level sheet(int n) {
+  TriangleMesh mesh{Positions((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
+  for (int j = 0, t = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const int v = j * (n + 1) + i;
+      mesh.vertices.row(v) << double(i) / n, double(j) / n, 0;
+      if (i == n || j == n) continue;
+      mesh.triangles.row(t++) << v, v + 1, v + n + 2;
+      mesh.triangles.row(t++) << v, v + n + 2, v + n + 1;
+    }
+  return Level::of(0, mesh);
+}
+
+template <class T>
+T at(const std::string& bytes, std::size_t place) {
+  T value;
+  std::memcpy(&value, bytes.data() + place, sizeof value);
+  return value;
+}
+
+/// As viewer_data.js reads them.
+Positions decoded(const std::string& bytes, Eigen::Index n) {
+  Positions x(n, 3);
+  for (int k = 0; k < 3; ++k) {
+    const double lower = at<float>(bytes, 4 * k), size = at<float>(bytes, 12 + 4 * k);
+    unsigned q = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      q = (q + at<std::uint16_t>(bytes, 24 + 2 * (k * n + i))) & 65535u;
+      x(i, k) = lower + size * q / 65535;
+    }
+  }
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("positions come back within the rounding that is stated") {
+  Positions x = sheet(7).rest.vertices * 3.7;
+  x.col(2) = (5 * x.col(0)).array().sin() * x.col(1).array();
+  x.rowwise() += Eigen::RowVector3d(10, -4, 0.3);
+  const std::string bytes = encode_positions(x);
+  REQUIRE(bytes.size() == 24 + 6 * 64);
+  const double error = (decoded(bytes, 64) - x).cwiseAbs().maxCoeff();
+  CHECK(error > 0);
+  CHECK(error <= position_rounding(x) + 2e-6);  // and the box's float32
+  const Eigen::RowVector3d size = x.colwise().maxCoeff() - x.colwise().minCoeff();
+  CHECK(position_rounding(x) == Approx(size.maxCoeff() / 65535 / 2));
+
+  x(3, 1) = none;
+  CHECK(decoded(encode_positions(x), 64).allFinite());
+  CHECK(decoded(encode_positions(Positions::Zero(2, 3)), 2).isZero(0));
+}
+
+TEST_CASE("triangles are differences, and pack well") {
+  const Level level = sheet(40);
+  const std::string bytes = encode_triangles(level.rest.triangles);
+  const Eigen::Index m = level.triangle_count();
+  REQUIRE(bytes.size() == static_cast<std::size_t>(12 * m));
+  for (int k = 0; k < 3; ++k) {
+    int v = 0;
+    for (Eigen::Index t = 0; t < m; ++t) {
+      v += at<std::int32_t>(bytes, 4 * (k * m + t));
+      REQUIRE(v == level.rest.triangles(t, k));
+    }
+  }
+  CHECK(deflated(bytes).size() < bytes.size() / 10);
+}
+
+TEST_CASE("scalars take their range's ends, and 255 is none") {
+  const std::string bytes = encode_scalars(Eigen::Vector4d(-9, 1, none, 99), 0, 2);
+  REQUIRE(bytes.size() == 12);
+  CHECK(at<float>(bytes, 0) == 0);
+  CHECK(at<float>(bytes, 4) == 2);
+  CHECK(at<std::uint8_t>(bytes, 8) == 0);
+  CHECK(at<std::uint8_t>(bytes, 9) == 127);
+  CHECK(at<std::uint8_t>(bytes, 10) == 255);
+  CHECK(at<std::uint8_t>(bytes, 11) == 254);
+}
+
+TEST_CASE("mean curvature of a cylinder bent downwards is half its inverse radius") {
+  const Level level = sheet(40);
+  Positions x = level.rest.vertices;
+  const double radius = 0.5;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double angle = (level.rest.vertices(i, 0) - 0.5) / radius;
+    x.row(i) << radius * std::sin(angle), level.rest.vertices(i, 1), radius * std::cos(angle);
+  }
+  const Eigen::VectorXd h = mean_curvature(level, x);
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    if (!level.topology.on_border[i]) REQUIRE(h[i] == Approx(0.5 / radius).epsilon(0.02));
+  CHECK(mean_curvature(level, level.rest.vertices).isZero(0));
+}
+
+TEST_CASE("largest stretch is the larger of two") {
+  const Level level = sheet(4);
+  const Positions x = level.rest.vertices * Eigen::DiagonalMatrix<double, 3>(1.2, 0.9, 1);
+  CHECK(largest_stretch(level, x).isApproxToConstant(1.2, 1e-12));
+}
+
+TEST_CASE("the gap is the distance to an obstacle, or to the cloth folded over itself") {
+  const Level level = sheet(20);
+  const TriangleMesh table{level.rest.vertices * 3, level.rest.triangles};
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(0.004);
+  CHECK(contact_gap(level, x, {table}, 0.01).isApproxToConstant(0.004, 1e-12));
+  CHECK(contact_gap(level, x, {table}, 0.003).array().isNaN().all());
+  CHECK(contact_gap(level, x, {}, 0.01).array().isNaN().all());  // flat, it is not near itself
+
+  // Folded in the middle, the halves 8 mm apart.
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    if (x(i, 0) > 0.5) x.row(i) << 1 - x(i, 0), x(i, 1), 0.012;
+  const Eigen::VectorXd gap = contact_gap(level, x, {}, 0.01);
+  CHECK(gap[0] == Approx(0.008));
+  CHECK(gap[20] == Approx(0.008));
+  CHECK(std::isnan(gap[10]));  // at the crease
+}
+
+TEST_CASE("the document names what can be coloured, and blocks of every state") {
+  const std::vector<Level> levels = {sheet(4)};
+  std::map<std::string, std::string> blocks;
+  ViewDocument view(levels, {}, false,
+                    [&](const std::string& name, std::string bytes) { blocks[name] = std::move(bytes); });
+  Positions x = levels[0].rest.vertices * 1.1;
+  x.col(2) = x.col(0).array().square();
+  const SurfaceFields fields = view.fields(0, x);
+  view.set_ranges({&fields});
+  const auto state = view.state("s", x, fields);
+  const auto document = view.document("a title", {});
+  REQUIRE(document["fields"].size() == 2);  // no gap, no difference from a finest level
+  CHECK(document["fields"][0]["low"].get<double>() == -document["fields"][0]["high"].get<double>());
+  CHECK(document["fields"][1]["low"] == 1.0);
+  CHECK(document["rounding"].get<double>() == position_rounding(x));
+  CHECK(blocks.at(state["x"]).size() == 24 + 6 * 25);
+  CHECK(blocks.at(state["fields"]["stretch"]).size() == 8 + 25);
+  CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
+}
