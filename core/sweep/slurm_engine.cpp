@@ -15,10 +15,6 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr int exit_cancelled = 130;
-
-fs::path jobs_file(const SweepFolder& folder) { return folder.slurm() / "jobs.json"; }
-
 /// "0-3,7": the way that sbatch takes indices.
 std::string ranges(const std::vector<std::size_t>& sorted) {
   std::string text;
@@ -77,7 +73,7 @@ bool in_queue(const SlurmJobs& jobs) {
 }  // namespace
 
 std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
-  const Json json = Json::parse(text_of_file(jobs_file(folder)), nullptr, false);
+  const Json json = Json::parse(text_of_file(folder.jobs()), nullptr, false);
   if (!json.is_object()) return std::nullopt;
   return SlurmJobs{json.value("array", ""), json.value("collector", "")};
 }
@@ -123,7 +119,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
   SlurmJobs jobs;
   const auto remember = [&] {
-    write_atomically(jobs_file(folder),
+    write_atomically(folder.jobs(),
                      Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
   };
   jobs.array = submit_script(slurm / "job.sh", options.sbatch);
@@ -183,34 +179,6 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
   const Said said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
   if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
-}
-
-int run_task(const SweepFolder& folder, int index, int threads, bool report,
-             const std::function<bool()>& stop) {
-  const Json sweep = folder.read();
-  if (sweep.is_null() || index < 0 || index >= int(sweep["runs"].size()))
-    throw std::runtime_error(folder.path().string() + ": sweep.json has no run " + std::to_string(index));
-  const RunFiles files = folder.files(sweep["runs"][index]["folder"]);
-  // A node that Slurm takes for dead may still be at it while the task is begun again elsewhere.
-  FileLock lock(files.lock());
-  while (!lock.acquire(1))
-    if (stop()) return exit_cancelled;
-  if (const RunStatus before = settled(files, read_status(files)); before.has_results()) {
-    write_status(files, before);
-    return before.exit_code;
-  }
-  RunProcess run(files, threads, report);
-  for (bool stopped = false; !run.ended();) {
-    if (stop() && !stopped) stopped = true, run.stop();
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return run.status().exit_code;
-}
-
-void collect_tasks(const SweepFolder& folder) {
-  folder.settle();
-  std::error_code ignored;
-  fs::remove(jobs_file(folder), ignored);
 }
 
 }  // namespace drape

@@ -14,6 +14,7 @@ class SweepFolder {
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path slurm() const { return path_ / "slurm"; }
+  std::filesystem::path jobs() const { return slurm() / "jobs.json"; }  ///< those in Slurm's queue
   RunFiles files(const std::string& folder) const { return {path_ / folder}; }
 
   /// Makes the folder ready for a sweep: refuses, by std::runtime_error, one that holds something else, runs
