@@ -1,5 +1,9 @@
 #include "core/report/runs_report.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
 #include "core/mesh/file.h"
 #include "core/report/embedded.h"
 #include "core/report/html.h"
