@@ -29,7 +29,7 @@ std::string random_token() {
 }
 
 /// By a provider, as the library would compress a plain body at length.
-void send(Response& response, std::shared_ptr<const std::string> body, const char* type) {
+void send(Response& response, const std::shared_ptr<const std::string>& body, const char* type) {
   const std::size_t size = body->size();
   response.set_content_provider(size, type,
                                 [body](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
@@ -64,7 +64,7 @@ struct LiveServer::Impl {
   }
 };
 
-LiveServer::LiveServer(int port, LiveAnswers answers) : impl_(std::make_unique<Impl>()) {
+LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_unique<Impl>()) {
   httplib::Server& server = impl_->server;
   // The library's own choice would let two programs listen on one port.
   server.set_socket_options([](socket_t socket) {
@@ -103,8 +103,8 @@ LiveServer::LiveServer(int port, LiveAnswers answers) : impl_(std::make_unique<I
     }
   });
   server.Get(base + "block/([a-zA-Z0-9_-]+)", [answers](const Request& request, Response& response) {
-    if (auto block = answers.block(request.matches[1]))
-      send(response, std::move(block), "application/octet-stream");
+    if (const auto block = answers.block(request.matches[1]))
+      send(response, block, "application/octet-stream");
     else
       refuse(response, 404, "This state has been replaced by a newer one.");
   });

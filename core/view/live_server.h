@@ -22,7 +22,7 @@ class LiveServer {
  public:
   /// Listens from now on; port 0 takes any that is free. Throws std::runtime_error where the port cannot be
   /// had.
-  LiveServer(int port, LiveAnswers answers);
+  LiveServer(int port, const LiveAnswers& answers);
   ~LiveServer();
 
   const std::string& url() const { return url_; }
