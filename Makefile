@@ -6,6 +6,7 @@
 # make test     build and run every test
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
+# make pictures the README's pictures, from the run that `make bench` has left in results/bench_sphere
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
 # make clean    remove what was built
@@ -18,7 +19,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 test data bench format fix-format lint clean
+.PHONY: all setup configure build demo table1 test data bench pictures format fix-format lint clean
 all: build
 
 setup:
@@ -47,8 +48,14 @@ data: configure
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
-	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs,newton --out results/bench_sphere --overwrite
+	-$(BUILD)/bin/drape run configs/sphere.yaml --out results/bench_sphere --overwrite
 	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square results/bench_sphere
+
+pictures: build
+	@tests/browser/install $(BUILD)/tests/browser
+	DRAPE_BIN=$(BUILD)/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser \
+	  node docs/pictures/make.mjs results/bench_sphere/report.html
+	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp results/bench_sphere/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
 
 format: setup
 	@clang-format --dry-run -Werror $(SOURCES)
