@@ -10,6 +10,7 @@
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
+#include "core/experiment/run_folder.h"
 #include "core/experiment/runner.h"
 #include "core/experiment/start_repair.h"
 #include "core/numerics/parallel.h"
@@ -212,9 +213,7 @@ int reference_into(const std::filesystem::path& folder, const Registry& registry
     std::ifstream in(file, std::ios::binary);
     if (!in) continue;
     const std::string page(std::istreambuf_iterator<char>(in), {});
-    in.close();
-    if (!(std::ofstream(file, std::ios::binary) << with_parameters(page, *entry)).flush())
-      throw std::runtime_error(file.string() + ": cannot be written");
+    write_atomically(file, with_parameters(page, *entry));
     ++pages;
   }
   if (pages == 0)
