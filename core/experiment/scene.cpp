@@ -69,7 +69,36 @@ class Noise {
   } waves_[8];
 };
 
-Positions make_start(const Positions& rest, const std::vector<char>& fixed, const StartParameters& s) {
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
+      return mesh.vertices;
+    errors.push_back(
+        {e.place_of("start"), "\"start\": " + file +
+                                  " has other vertices or triangles than the coarsest level; take a "
+                                  "mesh like rest/l0.ply of a run's folder"});
+  } catch (const std::exception& problem) {
+    errors.push_back({e.place_of("start"), problem.what()});
+  }
+  return coarsest.rest.vertices;
+}
+
+/// The shape that the start moves, on every level: the rest's, or that of the file.
+std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels)
+    shapes.push_back(file.empty()       ? level.rest.vertices
+                     : level.index == 0 ? read_start(e, level, errors)
+                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+  return shapes;
+}
+
+/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+Positions make_start(const Positions& rest, const Positions& shape, const std::vector<char>& fixed,
+                     const StartParameters& s) {
   const double degree = M_PI / 180;
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(s.rotate.z() * degree, Eigen::Vector3d::UnitZ()) *
                                 Eigen::AngleAxisd(s.rotate.y() * degree, Eigen::Vector3d::UnitY()) *
@@ -78,7 +107,7 @@ Positions make_start(const Positions& rest, const std::vector<char>& fixed, cons
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    Eigen::Vector3d p = rest.row(i).transpose().cwiseProduct(s.scale);
+    Eigen::Vector3d p = shape.row(i).transpose().cwiseProduct(s.scale);
     if (s.perturbation > 0 && !fixed[i]) p.z() += s.perturbation * noise.at(rest(i, 0), rest(i, 1));
     x.row(i) = (turn * p + s.translate).transpose();
   }
@@ -160,6 +189,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
     errors.push_back({e.place_of("cloth"), error.what()});
     return nullptr;
   }
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
+  if (!errors.empty()) return nullptr;
   const ConfigNode* pins = e.source.find("pins");
   for (const Level& level : scene->hierarchy.levels) {
     std::vector<char> fixed(level.vertex_count(), 0);
@@ -181,7 +212,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
                                                       std::to_string(level.vertex_count() - 1)});
     }
     if (!errors.empty()) return nullptr;
-    Positions start = make_start(level.rest.vertices, fixed, p.start);
+    Positions start = make_start(level.rest.vertices, shapes[level.index], fixed, p.start);
     for (std::size_t k = 0; k < p.pins.size(); ++k)
       if (p.pins[k].move)
         for (int v : held[k]) start.row(v) = level.rest.vertices.row(v) + p.pins[k].move->transpose();
