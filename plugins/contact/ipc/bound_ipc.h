@@ -15,7 +15,7 @@ struct Candidates {
 };
 
 /// Contact `ipc` of one level.
-class BoundIpc final : public BoundContact {
+class BoundIpc final : public BoundContact, public MovableObstacles {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
            const Material& material);
@@ -25,6 +25,9 @@ class BoundIpc final : public BoundContact {
   std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override;
   std::vector<Touch> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
+
+  StepLimit max_move(const BoundContact& before, const Positions& x) const override;
+  void carry(const BoundContact& before, const Positions& x, Positions& anchors) const override;
 
  private:
   /// Numbers of pairs, of triangles whose boxes overlap and of primitives that may come near.
@@ -42,6 +45,7 @@ class BoundIpc final : public BoundContact {
   BarrierParameters barrier_;
   std::shared_ptr<const Obstacles> obstacles_;
   Surface cloth_;
+  BroadPhaseKind broad_phase_;
   SweptBoxes obstacle_boxes_;
   std::unique_ptr<BroadPhase> obstacle_tree_;
   std::vector<std::array<int, 4>> close_at_rest_;  // self pairs that rest within the range, in order
