@@ -37,9 +37,9 @@ double bent_advance(const Widest& widest, const Width& width, double kept, doubl
   return t;
 }
 
-/// The two looks at a way that is shortened where it must be: as a whole, it may use up all but a
+/// The two looks at a way that is shortened where it must be: as a whole, it may use up all but
 /// `kept_of_whole` of what a shortened one keeps. So a way that ends where this said is not shortened again.
-inline constexpr double kept_of_whole = 0.5;
+inline constexpr double kept_of_whole = 0.1;
 inline constexpr int rounds_of_whole = 4096, rounds_of_part = 256;
 
 }  // namespace drape

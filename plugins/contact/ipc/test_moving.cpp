@@ -165,6 +165,22 @@ TEST_CASE("ipc: no obstacle passes through the cloth, however it moves; what was
   CHECK(barely > 0.5 * cut);
 }
 
+TEST_CASE("ipc: an edge that is highest between two places does not pass through the cloth there") {
+  const Level level = square(5, 0.2);
+  const Positions& x = level.rest.vertices;
+  const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
+  for (const bool passes : {true, false}) {
+    Bodies from = {box({0.1, 0.1, 0.1}, {0, 0, -apex + (passes ? -2e-5 : 0.5 * lower)})}, to = from;
+    from[0].rotate.y() = 43;
+    to[0].rotate.y() = 47;
+    REQUIRE(bound(to, level)->intersections(x).empty());
+    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    CHECK(fraction > 0.1);
+    CHECK((fraction == 1) == passes);
+    CHECK(fraction < (passes ? 2 : 0.2));
+  }
+}
+
 TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn") {
   const Level level = square(5, 0.2);
   const Positions& x = level.rest.vertices;

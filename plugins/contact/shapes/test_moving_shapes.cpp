@@ -149,6 +149,25 @@ TEST_CASE("shapes: no solid passes through the cloth, however it moves; what was
   CHECK(barely > 0.7 * cut);
 }
 
+TEST_CASE("shapes: an edge that is highest between two places does not pass through the cloth there") {
+  const Level level = square(5, 0.2);
+  const Positions& x = level.rest.vertices;
+  const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
+  for (const bool passes : {true, false}) {
+    ShapeParameters from = level_with(SolidKind::box, 0);
+    from.size.setConstant(0.1);
+    from.centre.z() = -apex + (passes ? -2e-5 : 0.5 * lower);
+    from.rotate.y() = 43;
+    ShapeParameters to = from;
+    to.rotate.y() = 47;
+    REQUIRE(bound(to, level)->intersections(x).empty());
+    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    CHECK(fraction > 0.1);
+    CHECK((fraction == 1) == passes);
+    CHECK(fraction < (passes ? 2 : 0.2));
+  }
+}
+
 TEST_CASE("shapes: one that becomes another one is refused by name") {
   const Level level = square(3, 0.2);
   const auto before = bound(level_with(SolidKind::box, 1), level);
