@@ -6,6 +6,7 @@
 
 #include "core/contact/bent_advance.h"
 #include "core/contact/pair_geometry.h"
+#include "core/mesh/turn.h"
 #include "core/numerics/parallel.h"
 
 namespace drape {
@@ -13,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degree = M_PI / 180, longest_turn = 0.1, shortest_leg = 1e-6;
-constexpr long most_pairs = 2'000'000;  // looked at at once
+constexpr double degree = M_PI / 180, longest_turn = 0.1;
+constexpr long many_pairs = 100'000;  // on one leg: fewer come near on shorter ones, most often
 
 template <class T>
 T between(const T& a, const T& b, double t) {
@@ -67,9 +68,15 @@ class PairOnLeg {
 
  private:
   PairPositions at(double t) const {
+    PairPositions now = start_;
+    if (t == 0) return now;
+    if (t == 1) {
+      for (int k = 0; k < 4; ++k)
+        if (const int v = pair_.vertices[k] - cloth_count_; v >= 0) now.col(k) = leg_.to.row(v);
+      return now;
+    }
     const Eigen::Matrix3d linear = leg_.linear(body_, t);
     const Vector3d translate = leg_.translate(body_, t);
-    PairPositions now = start_;
     for (int k = 0; k < 4; ++k)
       if (const int v = pair_.vertices[k] - cloth_count_; v >= 0)
         now.col(k) = linear * between<Vector3d>(leg_.own_from.row(v), leg_.own_to.row(v), t) + translate;
@@ -109,7 +116,9 @@ void leave_moving(AdjacencyList& rows, const Leg& leg, const Obstacles& obstacle
 }  // namespace
 
 Eigen::Matrix3d Leg::linear(int body, double time) const {
-  return between(bodies[body].from, bodies[body].to, time).linear();
+  const Body& b = bodies[body];
+  if (b.from.rotate == b.to.rotate) return between(b.from.scale, b.to.scale, time) * b.turn;
+  return between(b.from, b.to, time).linear();
 }
 
 Vector3d Leg::translate(int body, double time) const {
@@ -170,6 +179,7 @@ Leg ObstacleWay::leg(double begin, double end) const {
     const Form &from = before_.bodies[i].form, &to = after_.bodies[i].form;
     body.from = between(from.pose, to.pose, begin);
     body.to = between(from.pose, to.pose, end);
+    body.turn = turned(body.from.rotate);
     const auto own_at = [&](double t) {
       if (from.frames == to.frames && from.stretch == to.stretch)
         return from.own_places(between<double>(from.frame, to.frame, t));
@@ -203,13 +213,13 @@ StepLimit ObstacleWay::advance(const Surface& cloth, const Positions& x, double 
   cloth_tree->update(cloth_boxes.triangles);
   AdjacencyList rows;
   std::vector<ContactPair> pairs;
+  long limit = many_pairs;
   for (double time = 0, length = 1; time < 1;) {
     const double end = leg_end(time, std::min(1.0, time + length));
     const Leg leg = this->leg(time, end);
     boxes.update(after_.surface, leg.from, leg.to, 0.5 * range + leg.off_chord);
     tree->update(boxes.triangles);
     pairs.clear();
-    const long limit = end - time > shortest_leg ? most_pairs : std::numeric_limits<long>::max();
     bool few = cloth_tree->overlaps(*tree, limit, rows);
     if (few) {
       leave_moving(rows, leg, after_);
@@ -218,6 +228,7 @@ StepLimit ObstacleWay::advance(const Surface& cloth, const Positions& x, double 
     }
     if (!few) {
       length = (end - time) / 4;
+      limit *= 2;
       continue;
     }
     std::vector<double> parts(pairs.size());
@@ -232,6 +243,7 @@ StepLimit ObstacleWay::advance(const Surface& cloth, const Positions& x, double 
     if (least != parts.end() && *least < 1)
       return {between<double>(time, end, *least),
               name_of(pairs[least - parts.begin()], after_, static_cast<int>(x.rows()))};
+    length = 2 * (end - time);
     time = end;
   }
   return {};

@@ -14,6 +14,7 @@ struct Leg {
   struct Body {
     bool moves = false;
     Pose from, to;
+    Eigen::Matrix3d turn;  ///< of `from`
   };
   std::vector<Body> bodies;
   Positions own_from, own_to;  ///< of all bodies
