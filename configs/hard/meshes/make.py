@@ -110,5 +110,16 @@ def layers(n=10, columns=31, rows=6, length=0.5, width=0.08, gap=0.004):
     write("strip_folded", folded, triangles)
 
 
-for make in (valence_3, valence_20, huge_and_tiny, faulty, needle, layers):
+def sleeve(around=24, along=13, radius=0.06, length=0.4):
+    """A tube about the z axis, open at both ends."""
+    at = lambda i, j: j * around + i % around
+    vertices = [(radius * cos(2 * pi * i / around), radius * sin(2 * pi * i / around), length * j / (along - 1)) for j in range(along) for i in range(around)]
+    triangles = []
+    for j in range(along - 1):
+        for i in range(around):
+            triangles += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    write("sleeve", vertices, triangles)
+
+
+for make in (valence_3, valence_20, huge_and_tiny, faulty, needle, layers, sleeve):
     make()
