@@ -34,39 +34,43 @@ inline drape::TriangleMesh sphere_mesh(double radius, int splits) {
   return mesh;
 }
 
-/// Two discs about the z axis, joined at their rims: `rings` rings of 6 k vertices on either side, thick by
-/// 2 · `bulge` in the middle.
-inline drape::TriangleMesh cushion_mesh(double radius, int rings, double bulge) {
-  const int inner = 1 + 3 * rings * (rings - 1), rim = 6 * rings;
+/// Two discs about the z axis, joined at their rims, of `rings` rings around a vertex in the middle, thick by
+/// 2 · `bulge` there. Vertex 1 + j + meridians · (k - 1) is on ring k at the angle 2π j / meridians of the
+/// upper disc, the rim being the last ring; the lower disc's inner vertices follow in the same order.
+/// Diagonals end inwards at odd meridians, so that every meridian is a mirror when their number is even.
+inline drape::TriangleMesh cushion_mesh(double radius, int meridians, int rings, double bulge) {
+  const int inner = 1 + meridians * (rings - 1), all = inner + meridians;
   drape::TriangleMesh mesh;
-  mesh.vertices.resize(2 * inner + rim, 3);  // upper disc with the rim, then the lower one's inside
-  mesh.triangles.resize(2 * 6 * rings * rings, 3);
-  const auto start = [](int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); };
-  const auto below = [&](int v) { return v < inner ? inner + rim + v : v; };
+  mesh.vertices.resize(all + inner, 3);
+  mesh.triangles.resize(2 * meridians * (2 * rings - 1), 3);
+  mesh.vertices.row(0) << 0, 0, bulge;
+  for (int k = 1; k <= rings; ++k)
+    for (int j = 0; j < meridians; ++j) {
+      const double r = static_cast<double>(k) / rings, angle = 2 * M_PI * j / meridians;
+      mesh.vertices.row(1 + j + meridians * (k - 1)) << radius * r * std::cos(angle),
+          radius * r * std::sin(angle), bulge * (1 - r * r);
+    }
+  for (int v = 0; v < inner; ++v)
+    mesh.vertices.row(all + v) = mesh.vertices.row(v).cwiseProduct(Eigen::RowVector3d(1, 1, -1));
+  const auto at = [&](int k, int j) { return k == 0 ? 0 : 1 + j % meridians + meridians * (k - 1); };
+  const auto below = [&](int v) { return v < inner ? all + v : v; };
   Eigen::Index next = 0;
   const auto add = [&](int a, int b, int c) {
     mesh.triangles.row(next++) << a, b, c;
     mesh.triangles.row(next++) << below(a), below(c), below(b);
   };
-  for (int k = 0; k <= rings; ++k) {
-    const int count = std::max(1, 6 * k);
-    for (int i = 0; i < count; ++i) {
-      const double r = radius * k / rings, angle = 2 * M_PI * i / count;
-      mesh.vertices.row(start(k) + i) << r * std::cos(angle), r * std::sin(angle),
-          bulge * (1 - r * r / (radius * radius));
+  for (int j = 0; j < meridians; ++j) {
+    add(0, at(1, j), at(1, j + 1));
+    for (int k = 1; k < rings; ++k) {
+      const int in = at(k, j), in_next = at(k, j + 1), out = at(k + 1, j), out_next = at(k + 1, j + 1);
+      if (j % 2 == 0) {
+        add(in, out, in_next);
+        add(in_next, out, out_next);
+      } else {
+        add(in, out, out_next);
+        add(in, out_next, in_next);
+      }
     }
   }
-  for (int k = 1; k <= rings; ++k)
-    for (int side = 0; side < 6; ++side)
-      for (int i = 0; i < k; ++i) {
-        const auto outer = [&](int j) { return start(k) + (side * k + j) % (6 * k); };
-        const auto within = [&](int j) {
-          return k == 1 ? 0 : start(k - 1) + (side * (k - 1) + j) % (6 * (k - 1));
-        };
-        add(outer(i), outer(i + 1), within(i));
-        if (i + 1 < k) add(within(i), outer(i + 1), within(i + 1));
-      }
-  for (int v = 0; v < inner; ++v)
-    mesh.vertices.row(below(v)) = mesh.vertices.row(v).cwiseProduct(Eigen::RowVector3d(1, 1, -1));
   return mesh;
 }
