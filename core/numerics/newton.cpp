@@ -72,6 +72,8 @@ constexpr double no_fresh_direction = 2;
 constexpr double energy_noise = 1e-12;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
+/// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
+constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
 
@@ -96,6 +98,9 @@ class Newton {
     result_.x = std::move(x);
     result_.level = model_.level().index;
     free_count_ = static_cast<double>(std::count(model_.fixed().begin(), model_.fixed().end(), 0));
+    begun_at_ = middle();
+    const Positions& rest = model_.level().rest.vertices;
+    diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
   LevelResult run() {
@@ -115,12 +120,26 @@ class Newton {
         return finish(Outcome::refined_early,
                       "refined on request; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
+      const double gone = (middle() - begun_at_).norm() / diagonal_;
+      if (gone > lost_after)
+        return finish(Outcome::infeasible,
+                      "nothing holds the cloth: it has moved on by " + brief(gone) +
+                          " of its diagonals and does not come to rest; pin it, put something under it, or "
+                          "raise the friction");
     }
   }
 
  private:
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
+
+  /// Mean of the free vertices.
+  Eigen::RowVector3d middle() const {
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (Eigen::Index i = 0; i < result_.x.rows(); ++i)
+      if (!model_.fixed()[i]) sum += result_.x.row(i);
+    return sum / std::max(free_count_, 1.0);
+  }
 
   bool converged() {
     if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
@@ -399,6 +418,8 @@ class Newton {
   StepLimit limit_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
+  Eigen::RowVector3d begun_at_;
+  double diagonal_ = 1;
   double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
   int share_ = std::size(shares) - 1;
   double decrements_[3] = {};

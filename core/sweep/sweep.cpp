@@ -10,6 +10,7 @@
 #include "core/mesh/io.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/words.h"
+#include "core/sweep/experiment_files.h"
 #include "core/sweep/variations.h"
 
 namespace drape {
@@ -57,15 +58,12 @@ class Reader {
     const std::vector<Setting> common = settings_of(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
     const std::size_t before = errors_.size();
-    if (p.base.empty()) return sweep_;
-    const ConfigNode base = read_yaml(p.base, errors_);
-    if (errors_.size() > before) {
-      errors_[before].message +=
-          " (the sweep's \"base\", named at " + source_.find("base")->where.text() + ")";
-      return sweep_;
-    }
-    for (const Variation& variation : variations) add_variation(base, common, variation);
-    list_faults(variations.size());
+    const std::vector<ExperimentSource> experiments = experiment_sources(p, source_, errors_);
+    if (errors_.size() > before) return sweep_;
+    for (const ExperimentSource& experiment : experiments)
+      for (const Variation& variation : variations)
+        add_variation(experiment.root, common, labelled(variation, experiment.label));
+    list_faults(experiments.size() * variations.size());
     return sweep_;
   }
 
@@ -86,11 +84,20 @@ class Reader {
       errors_.push_back({place_of("seeds"), "\"seeds\" names one of them twice"});
   }
 
+  Variation labelled(Variation variation, const std::string& experiment) const {
+    if (experiment.empty()) return variation;
+    const bool alone = sweep_.parameters.ablation.kind == NodeKind::null;
+    variation.name = alone ? experiment : experiment + ", " + variation.name;
+    variation.folder = folder_name(variation.name);
+    return variation;
+  }
+
   void add_variation(ConfigNode source, const std::vector<Setting>& common, const Variation& variation) {
     const SweepParameters& p = sweep_.parameters;
     ConfigErrors faults;
     SweepRun run;
     run.name = variation.name;
+    run.expect = variation.expect;
     run.settings = nlohmann::ordered_json::object();
     for (const auto* settings : {&common, &variation.settings})
       for (const Setting& setting : *settings) {
