@@ -79,6 +79,8 @@ constexpr double held_up = 1e-3;
 constexpr int most_held_up = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
+/// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
+constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
 
@@ -105,6 +107,9 @@ class Newton {
     result_.x = std::move(x);
     result_.level = model_.level().index;
     take_positions();
+    begun_at_ = middle();
+    const Positions& rest = model_.level().rest.vertices;
+    diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
   LevelResult run() {
@@ -134,12 +139,26 @@ class Newton {
                       "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
                           "; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
+      const double gone = (middle() - begun_at_).norm() / diagonal_;
+      if (gone > lost_after)
+        return finish(Outcome::infeasible,
+                      "nothing holds the cloth: it has moved on by " + brief(gone) +
+                          " of its diagonals and does not come to rest; pin it, put something under it, or "
+                          "raise the friction");
     }
   }
 
  private:
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
+
+  /// Mean of the free vertices.
+  Eigen::RowVector3d middle() const {
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (Eigen::Index i = 0; i < result_.x.rows(); ++i)
+      if (!fixed_[i]) sum += result_.x.row(i);
+    return sum / std::max(free_count_, 1.0);
+  }
 
   bool converged() {
     if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
@@ -168,6 +187,7 @@ class Newton {
     const BoundContacts before = model_.contacts();
     limit_ = conditions_->advance(result_.level, result_.x);
     if (begins) changed_at_ = {result_.steps, result_.iterations, clock_.seconds()};
+    begun_at_ = middle();
     times_held_up_ = settled && limit_.fraction < held_up ? times_held_up_ + 1 : 0;
     f_.model_changed(before, result_.x);
     age_ = p_.refresh;
@@ -527,6 +547,8 @@ class Newton {
   StepLimit limit_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
+  Eigen::RowVector3d begun_at_;
+  double diagonal_ = 1;
   double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
   int share_ = std::size(shares) - 1;
   double decrements_[3] = {};

@@ -220,3 +220,36 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
     REQUIRE(row.iteration < 10);
   }
 }
+
+TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") {
+  // Constant forces, on a cloth without pins: no equilibrium, and no end to its fall.
+  class Weight : public Wells {
+   public:
+    using Wells::Wells;
+    std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+      return std::make_unique<Weight>(*this);
+    }
+    double value(const Positions& x) const override { return x.col(2).sum(); }
+    double add_gradient(const Positions& x, Positions& g) const override {
+      g.col(2).array() += 1;
+      return value(x);
+    }
+    void add_hessian(const Positions&, Projection, BlockSink& sink) const override {
+      const double zero[9] = {};
+      for (int i = 0; i < stencils().rows(); ++i) sink.add(i, 0, 0, zero);
+    }
+  };
+  for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+    Case c;
+    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(c.centres, 1, 0)}},
+                           std::vector<char>(c.level.vertex_count(), 0));
+    PlainObjective objective(model);
+    NewtonParameters p;
+    p.form = form;
+    const LevelResult r = minimise(objective, c.level.rest.vertices, p, Stopwatch(), c.observer);
+    CAPTURE(int(form), r.steps);
+    CHECK(r.outcome == Outcome::infeasible);
+    CHECK(r.message.find("nothing holds the cloth: it has moved on by ") == 0);
+    CHECK(r.steps < 100);
+  }
+}

@@ -46,9 +46,10 @@ struct TwoLevels {
   Positions target(const Positions& x) const { return hierarchy.prolongations[0] * x; }
   Positions midpoint(const Positions& x) const { return hierarchy.midpoints[0] * x; }
 
-  Refined refine(const Positions& x) const {
+  Refined refine(const Positions& x) const { return refine(x, hierarchy.prolongations[0]); }
+  Refined refine(const Positions& x, const ProlongationMatrix& weights) const {
     Observer silent;
-    return refine_safely(problem(), 0, x, hierarchy.prolongations[0], Stopwatch(), silent);
+    return refine_safely(problem(), 0, x, weights, Stopwatch(), silent);
   }
   std::size_t intersections(int level, const Positions& x) const {
     std::size_t count = 0;
@@ -185,6 +186,18 @@ TEST_CASE("A stretched disc comes to be within its strain limit, though its bord
   CHECK(largest_distance(refined.x, cloth.target(x)) < 2e-3);
   CHECK(largest_distance(refined.x, cloth.target(x)) <
         0.5 * largest_distance(cloth.midpoint(x), cloth.target(x)));
+}
+
+TEST_CASE(
+    "Where the finer rest shape is another split, edge midpoints are drawn back into the strain limit") {
+  const TwoLevels cloth(grid({0.6, 0.6}, 7, 7, Diagonals::criss_cross), {},
+                        {"{type: strain_limit, limit: 1.06}"});
+  const Positions& x = cloth.starts[0];
+  REQUIRE(cloth.beyond_limit(1, cloth.midpoint(x)) > 100);  // the target itself is beyond, and stays so
+  const Refined refined = cloth.refine(x, cloth.hierarchy.midpoints[0]);
+  CHECK(refined.fault.empty());
+  CHECK(cloth.beyond_limit(1, refined.x) == 0);
+  CHECK(largest_distance(refined.x, cloth.midpoint(x)) < 0.03);
 }
 
 TEST_CASE("Strain limit, obstacle and self-contact at once") {
