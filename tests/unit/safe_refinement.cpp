@@ -1,5 +1,6 @@
 #include "core/numerics/safe_refinement.h"
 
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -27,7 +28,8 @@ struct TwoLevels {
       models_of_contact.push_back(make_plugin_from<ContactModel>(contact));
     for (const Level& level : hierarchy.levels) {
       std::vector<char> fixed(level.vertex_count(), 0);
-      for (const int v : pins) fixed[v] = 1;
+      for (const int v : pins)
+        if (v < level.vertex_count()) fixed[v] = 1;
       models.push_back(std::make_unique<LevelModel>(level, Material(), own, fixed, models_of_contact));
       starts.push_back(level.rest.vertices);
     }
@@ -216,6 +218,25 @@ TEST_CASE("Triangles that cannot be within the strain limit are named") {
   const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
   const std::string first = to_string(limit.beyond(refined.x)[0], 1.1);
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
+}
+
+TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, within its strain limit") {
+  const TriangleMesh sheet = grid({1, 1}, 9, 9, Diagonals::one_way);
+  const int coarse_vertices = static_cast<int>(sheet.vertices.rows());
+  // The middle of the edge from the pinned corner, which has no vertex on the coarse level.
+  const Hierarchy two = Hierarchy::of(sheet, *make_plugin_from<Refiner>("loop"), 2);
+  int middle = coarse_vertices;
+  while (two.levels[1].rest.vertices.row(middle) != Eigen::RowVector3d(1.0 / 16, 0, 0)) ++middle;
+  for (const double degrees : {10.0, 40.0, 70.0}) {
+    const TwoLevels cloth(sheet, {}, {"{type: strain_limit, limit: 1.0608}"}, {0, middle});
+    const double angle = degrees * M_PI / 180;
+    const Positions turned = sheet.vertices * Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).matrix();
+    const Refined refined = cloth.refine(turned);
+    CAPTURE(degrees, refined.fault, refined.iterations);
+    CHECK(refined.fault.empty());
+    CHECK(cloth.beyond_limit(1, refined.x) == 0);
+    CHECK(refined.x.row(middle) == cloth.starts[1].row(middle));
+  }
 }
 
 TEST_CASE("A pin that cannot reach its place is told, with what is in its way") {
