@@ -65,6 +65,7 @@ class PullToTarget : public Objective {
 
   double residual_scale(const Positions&, const Positions&) const override { return scale_; }
   bool is_proxy() const override { return false; }
+  bool brings_held_vertices() const override { return false; }
 
  protected:
   double smooth_value(const Positions& y) override {
@@ -128,16 +129,15 @@ class Quiet : public Observer {
   Observer& observer_;
 };
 
-/// Moves fixed vertices to where they are held, as far as nothing is in the way; what is, otherwise.
-std::string move_pins(const LevelModel& model, const Positions& start, Positions& y) {
+/// Moves held vertices to their places as far as nothing is in the way; the level's own solve goes on with
+/// it.
+void move_pins(const LevelModel& model, Positions& y) {
   Positions placed = y;
-  for (Eigen::Index i = 0; i < y.rows(); ++i)
-    if (model.fixed()[i]) placed.row(i) = start.row(i);
-  if (placed == y) return "";
+  for (const HeldVertex& h : model.held()) placed.row(h.vertex) = h.place.transpose();
+  if (placed == y) return;
   ActiveContacts contacts(model.contacts());
   const StepLimit limit = contacts.max_step(y, placed);
-  y += limit.fraction * (placed - y);
-  return limit.fraction < 1 ? "a pin cannot reach its place: " + limit.by : "";
+  y = limit.fraction == 1 ? placed : Positions(y + limit.fraction * (placed - y));
 }
 
 std::string name_outside(const LevelModel& model, const Positions& y) {
@@ -166,10 +166,10 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     return refined;
   }
   refined.x = problem.hierarchy.midpoints[level] * x;
-  refined.fault = move_pins(model, problem.starts[level + 1], refined.x);
+  move_pins(model, refined.x);
   Positions target = problem.carry_up(weights, level, x);
   const bool there = target == refined.x && name_outside(model, target).empty();
-  if (refined.fault.empty() && !there) {
+  if (!there) {
     PullToTarget objective(model, refined.x, std::move(target));
     NewtonParameters newton;
     newton.form = NewtonForm::statics;

@@ -76,9 +76,8 @@ struct Case {
   Silent observer;
 
   LevelResult solve(const NewtonParameters& p, double width = 0, double k = 10) {
-    std::vector<char> fixed(level.vertex_count(), 0);
-    fixed[0] = 1;
-    const LevelModel model(level, Material(), {{"wells", std::make_shared<Wells>(centres, k, width)}}, fixed);
+    const LevelModel model(level, Material(), {{"wells", std::make_shared<Wells>(centres, k, width)}},
+                           {{0, level.rest.vertices.row(0), 0}});
     PlainObjective objective(model);
     return minimise(objective, level.rest.vertices, p, Stopwatch(), observer);
   }
@@ -186,7 +185,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
 TEST_CASE("Forces that are not numbers are no equilibrium") {
   Case c;
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
-                         std::vector<char>(c.level.vertex_count(), 0));
+                         {});
   PlainObjective objective(model);
   const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), Stopwatch(), c.observer);
   REQUIRE(r.outcome == Outcome::infeasible);
