@@ -22,10 +22,15 @@ class PullToTarget : public Objective {
   PullToTarget(const LevelModel& model, const Positions& from, Positions target)
       : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
     contacts().leave_out_friction();
+    take_scale(from);
     divide(from);
-    Positions g;
-    smooth_gradient(from, g);
-    scale_ = std::max(free_norm(g, model.fixed()), std::numeric_limits<double>::min());
+  }
+
+  /// Lets go of the target by so much, for what the pull keeps outside its limits: beside a vertex that is
+  /// pinned on this level alone, the target is where the coarse cloth was, and too far.
+  void loosen(const Positions& y) {
+    looseness_ *= 10;
+    take_scale(y);
   }
 
   /// Sorts the triangles at y into F and the others; the number of others.
@@ -57,10 +62,6 @@ class PullToTarget : public Objective {
     }
     return count;
   }
-
-  /// The target may itself be beyond the limits everywhere, where the finer rest shape is not the midpoint
-  /// split of the coarser one: what is left of the pull then gives way.
-  void weaken() { share_ *= 0.1; }
 
   double residual_scale(const Positions&, const Positions&) const override { return scale_; }
   bool is_proxy() const override { return false; }
@@ -95,7 +96,13 @@ class PullToTarget : public Objective {
   }
 
  private:
-  double weight(Eigen::Index i) const { return share_ * model().masses()[i] / (pull * pull); }
+  double weight(Eigen::Index i) const { return model().masses()[i] / (pull * pull * looseness_); }
+
+  void take_scale(const Positions& y) {
+    Positions g;
+    smooth_gradient(y, g);
+    scale_ = std::max(free_norm(g, model().fixed()), std::numeric_limits<double>::min());
+  }
 
   /// Without limits there is nothing between vertices but contact.
   static std::shared_ptr<const BlockPattern> pattern_for(const LevelModel& model) {
@@ -109,7 +116,7 @@ class PullToTarget : public Objective {
   std::vector<std::unique_ptr<BoundEnergy>> inside_limits_;
   std::unique_ptr<BoundEnergy> penalty_;
   std::unique_ptr<BlockSlots> slots_;
-  double scale_ = 1, share_ = 1;
+  double scale_ = 1, looseness_ = 1;
 };
 
 /// Passes on nothing but the wish to stop.
@@ -177,9 +184,8 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       refined.iterations += result.iterations;
       const int left = objective.divide(refined.x);
       if (left == 0 || result.outcome == Outcome::cancelled) break;
-      if (left == outside && result.iterations == 0) break;
+      if (left >= outside || result.iterations == 0) objective.loosen(refined.x);
       outside = left;
-      objective.weaken();
     }
     refined.fault = name_outside(model, refined.x);
     if (!refined.fault.empty())
