@@ -40,8 +40,9 @@ struct ClothParameters {
   static void declare(Declaration<ClothParameters>& d);
 };
 
-/// Where the cloth starts: rest → scaled → rotated → moved.
+/// Where the cloth starts: rest, or the file's shape → scaled → rotated → moved.
 struct StartParameters {
+  std::string file;
   Eigen::Vector3d scale{1, 1, 1};
   Eigen::Vector3d rotate{0, 0, 0};
   Eigen::Vector3d translate{0, 0, 0};

@@ -70,6 +70,7 @@ class Noise {
   } waves_[8];
 };
 
+<<<<<<< HEAD
 /// Held vertices in their places, others where the start puts them, with its noise.
 Positions make_start(const Positions& rest, const std::vector<HeldVertex>& held, const StartParameters& s) {
   const Noise noise(s.perturbation_wavelength, s.seed);
@@ -77,6 +78,49 @@ Positions make_start(const Positions& rest, const std::vector<HeldVertex>& held,
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const double across = s.perturbation > 0 ? s.perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
     x.row(i) = s.place(rest.row(i), across).transpose();
+=======
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
+      return mesh.vertices;
+    errors.push_back(
+        {e.place_of("start"), "\"start\": " + file +
+                                  " has other vertices or triangles than the coarsest level; take a "
+                                  "mesh like rest/l0.ply of a run's folder"});
+  } catch (const std::exception& problem) {
+    errors.push_back({e.place_of("start"), problem.what()});
+  }
+  return coarsest.rest.vertices;
+}
+
+/// The shape that the start moves, on every level: the rest's, or that of the file.
+std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels)
+    shapes.push_back(file.empty()       ? level.rest.vertices
+                     : level.index == 0 ? read_start(e, level, errors)
+                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+  return shapes;
+}
+
+/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+Positions make_start(const Positions& rest, const Positions& shape, const std::vector<char>& fixed,
+                     const StartParameters& s) {
+  const double degree = M_PI / 180;
+  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(s.rotate.z() * degree, Eigen::Vector3d::UnitZ()) *
+                                Eigen::AngleAxisd(s.rotate.y() * degree, Eigen::Vector3d::UnitY()) *
+                                Eigen::AngleAxisd(s.rotate.x() * degree, Eigen::Vector3d::UnitX()))
+                                   .toRotationMatrix();
+  const Noise noise(s.perturbation_wavelength, s.seed);
+  Positions x(rest.rows(), 3);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    Eigen::Vector3d p = shape.row(i).transpose().cwiseProduct(s.scale);
+    if (s.perturbation > 0 && !fixed[i]) p.z() += s.perturbation * noise.at(rest(i, 0), rest(i, 1));
+    x.row(i) = (turn * p + s.translate).transpose();
+>>>>>>> hard
   }
   for (const HeldVertex& h : held) x.row(h.vertex) = h.place.transpose();
   return x;
@@ -133,12 +177,16 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   }
   const Level& coarsest = scene->hierarchy.levels[0];
   check_places(e, coarsest, errors);
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
   if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
-    std::vector<HeldVertex> held = held_vertices(p, level, coarsest);
-    scene->starts.push_back(make_start(level.rest.vertices, held, p.start));
+    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
+    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
           std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));

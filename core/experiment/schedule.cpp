@@ -247,7 +247,8 @@ Moment Schedule::moment(const std::vector<double>& numbers, std::vector<std::str
 
 LevelModel Schedule::model_under(const Moment& m, int level) const {
   const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
-  return {own,        m.parameters.material,     m.energies, held_vertices(m.parameters, own, coarsest),
+  return {own,        m.parameters.material,
+          m.energies, held_vertices(m.parameters, own, coarsest, scene_.starts[level]),
           m.contacts, scene_.models[level].get()};
 }
 
