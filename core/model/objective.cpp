@@ -26,8 +26,16 @@ double Objective::value(const Positions& x) {
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> local = contacts_.energies(x);
-  if (local.empty() && limits_.empty()) return smooth;
+  smooth_alone_ = local.empty() && limits_.empty();
+  if (smooth_alone_) return smooth;
   return sum_.add(smooth, limits_, local, x, projection);
+}
+
+std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {
+  const std::shared_ptr<const BlockPattern> smooth = smooth_matrix(x, Projection::none).pattern;
+  const std::shared_ptr<const BlockPattern>& whole = sum_.restore(smooth, std::move(memory.room));
+  smooth_alone_ = memory.smooth_alone;
+  return smooth_alone_ ? smooth : whole;
 }
 
 StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {

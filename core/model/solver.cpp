@@ -1,5 +1,7 @@
 #include "core/model/solver.h"
 
+#include "core/numerics/newton_state.h"
+
 namespace drape {
 
 Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const {
@@ -8,6 +10,10 @@ Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const 
   for (Eigen::Index i = 0; i < y.rows(); ++i)
     if (fixed[i]) y.row(i) = starts[level + 1].row(i);
   return y;
+}
+
+std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer& observer) const {
+  return resume(problem, MethodState(), observer);
 }
 
 const char* to_string(Outcome outcome) {

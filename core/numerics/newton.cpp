@@ -84,34 +84,37 @@ std::string brief(double value) {
 /// The state of one minimisation; each member function is one phase of an iteration.
 class Newton {
  public:
-  Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const Stopwatch& clock,
-         Observer& observer, bool finer_follows)
+  Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const LevelRun& run)
       : f_(objective),
         model_(objective.model()),
         p_(parameters),
-        clock_(clock),
-        observer_(observer),
-        finer_follows_(finer_follows),
+        run_(run),
+        observer_(run.observer),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
+    result_.seconds_by_phase = run.spent;
+    for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     free_count_ = static_cast<double>(std::count(model_.fixed().begin(), model_.fixed().end(), 0));
   }
 
   LevelResult run() {
-    f_.contacts().begin_step(result_.x);
-    evaluate();
-    if (std::isfinite(energy_)) update_residual();
-    if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual))
+    if (run_.from)
+      restore(*run_.from);
+    else if (!begin())
       return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
-    while (true) {
-      if (converged()) return finish(Outcome::converged, "");
-      if (result_.steps == p_.max_steps)
-        return finish(Outcome::out_of_steps,
-                      "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
-                          "; force residual " + brief(result_.force_residual));
+    for (bool step_begun = run_.from != nullptr;; step_begun = false) {
+      if (!step_begun) {
+        if (converged()) return finish(Outcome::converged, "");
+        if (result_.steps == p_.max_steps)
+          return finish(Outcome::out_of_steps,
+                        "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
+                            "; force residual " + brief(result_.force_residual));
+        begin_step();
+      }
+      if (observer_.checkpoint_due()) observer_.checkpoint(state());
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
-      if (finer_follows_ && observer_.refine_requested())
+      if (run_.finer_follows && observer_.refine_requested())
         return finish(Outcome::refined_early,
                       "refined on request; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
@@ -119,6 +122,59 @@ class Newton {
   }
 
  private:
+  /// False where the start has no finite energy and forces.
+  bool begin() {
+    f_.contacts().begin_step(result_.x);
+    evaluate();
+    if (std::isfinite(energy_)) update_residual();
+    return std::isfinite(energy_) && std::isfinite(result_.force_residual);
+  }
+
+  /// After begin_step.
+  NewtonState state() const {
+    NewtonState s;
+    s.so_far = result_;
+    s.so_far.seconds += watch_.seconds();
+    s.step_size = h_;
+    s.step_length = alpha_;
+    s.residual_scale = scale_;
+    s.projection_share = share_;
+    std::copy_n(decrements_, 3, s.decrements.begin());
+    s.held_by = limit_.by;
+    s.contacts = f_.contacts().memory();
+    s.pattern = f_.pattern_memory();
+    s.analysis = cholesky_.analysis();
+    s.factor_age = age_;
+    if (cholesky_.has_factor() && age_ < p_.refresh) {
+      s.factor_shift = factor_shift_;
+      s.factor_values = factored_->values;
+    }
+    return s;
+  }
+
+  void restore(const NewtonState& s) {
+    result_ = s.so_far;
+    h_ = s.step_size;
+    alpha_ = s.step_length;
+    scale_ = s.residual_scale;
+    share_ = s.projection_share;
+    std::copy_n(s.decrements.begin(), 3, decrements_);
+    limit_.by = s.held_by;
+    age_ = s.factor_age;
+    origin_ = result_.x;
+    f_.contacts().restore(s.contacts, origin_);
+    evaluate();
+    if (s.analysis.count == 0) return;
+    BlockMatrix matrix(f_.restore(s.pattern, origin_));
+    cholesky_.restore(matrix.pattern, s.analysis);
+    if (s.factor_values.empty()) return;
+    matrix.values = s.factor_values;
+    cholesky_.factorise(matrix, s.factor_shift * model_.masses());
+    kept_ = std::move(matrix);
+    factored_ = &kept_;
+    factor_shift_ = s.factor_shift;
+  }
+
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
@@ -150,12 +206,15 @@ class Newton {
     energy_ = f_.gradient(result_.x, g_);
   }
 
-  /// One implicit step. False when no descent was found.
-  bool step() {
+  void begin_step() {
     origin_ = result_.x;
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
     if (had_friction || f_.contacts().has_friction()) evaluate();
+  }
+
+  /// One implicit step, once begun. False when no descent was found.
+  bool step() {
     fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
@@ -297,7 +356,9 @@ class Newton {
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
     result_.flops += cholesky_.flops();
-    return cholesky_.factorise(matrix, (inverse_h2() + added_mass_ + extra_shift) * model_.masses());
+    factored_ = &matrix;
+    factor_shift_ = inverse_h2() + added_mass_ + extra_shift;
+    return cholesky_.factorise(matrix, factor_shift_ * model_.masses());
   }
 
   /// Backtracks along the direction, from where limits and contact let it, until the energy has decreased
@@ -366,7 +427,7 @@ class Newton {
     row.force_residual = result_.force_residual;
     row.step_length = alpha_;
     row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
-    row.seconds = clock_.seconds();
+    row.seconds = run_.clock.seconds();
     row.flops = result_.flops;
     observer_.iteration(row, result_.x);
   }
@@ -374,7 +435,7 @@ class Newton {
   LevelResult finish(Outcome outcome, std::string message) {
     result_.outcome = outcome;
     result_.message = std::move(message);
-    result_.seconds = watch_.seconds();
+    result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
@@ -388,12 +449,14 @@ class Newton {
   Objective& f_;
   const LevelModel& model_;
   const NewtonParameters& p_;
-  const Stopwatch& clock_;
-  Stopwatch watch_;
+  const LevelRun& run_;
+  const Stopwatch watch_;
   Observer& observer_;
-  const bool finer_follows_;
 
   BlockCholesky cholesky_;
+  const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of
+  BlockMatrix kept_;
+  double factor_shift_ = 0;
   LevelResult result_;
   std::string message_;
   StepLimit limit_;
@@ -409,8 +472,8 @@ class Newton {
 }  // namespace
 
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer, bool finer_follows) {
-  return Newton(objective, std::move(x), parameters, clock, observer, finer_follows).run();
+                     const LevelRun& run) {
+  return Newton(objective, std::move(x), parameters, run).run();
 }
 
 }  // namespace drape

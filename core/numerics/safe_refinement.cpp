@@ -117,18 +117,6 @@ class Quiet : public Observer {
   Observer& observer_;
 };
 
-/// Moves fixed vertices to where they are held, as far as nothing is in the way; what is, otherwise.
-std::string move_pins(const LevelModel& model, const Positions& start, Positions& y) {
-  Positions placed = y;
-  for (Eigen::Index i = 0; i < y.rows(); ++i)
-    if (model.fixed()[i]) placed.row(i) = start.row(i);
-  if (placed == y) return "";
-  ActiveContacts contacts(model.contacts());
-  const StepLimit limit = contacts.max_step(y, placed);
-  y += limit.fraction * (placed - y);
-  return limit.fraction < 1 ? "a pin cannot reach its place: " + limit.by : "";
-}
-
 std::string name_outside(const LevelModel& model, const Positions& y) {
   constexpr std::size_t most_named = 5;
   std::string text;
@@ -144,6 +132,17 @@ std::string name_outside(const LevelModel& model, const Positions& y) {
 
 }  // namespace
 
+std::string place_fixed(const LevelModel& model, const Positions& start, Positions& y) {
+  Positions placed = y;
+  for (Eigen::Index i = 0; i < y.rows(); ++i)
+    if (model.fixed()[i]) placed.row(i) = start.row(i);
+  if (placed == y) return "";
+  ActiveContacts contacts(model.contacts());
+  const StepLimit limit = contacts.max_step(y, placed);
+  y += limit.fraction * (placed - y);
+  return limit.fraction < 1 ? "a pin cannot reach its place: " + limit.by : "";
+}
+
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
   const Stopwatch watch;
@@ -155,7 +154,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     return refined;
   }
   refined.x = problem.hierarchy.midpoints[level] * x;
-  refined.fault = move_pins(model, problem.starts[level + 1], refined.x);
+  refined.fault = place_fixed(model, problem.starts[level + 1], refined.x);
   Positions target = problem.carry_up(weights, level, x);
   const bool there = target == refined.x && name_outside(model, target).empty();
   if (refined.fault.empty() && !there) {
@@ -168,15 +167,16 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     Quiet quiet(observer);
     int outside = objective.divide(refined.x);
     for (int round = 0; round < most_rounds; ++round) {
-      LevelResult result = minimise(objective, std::move(refined.x), newton, clock, quiet);
+      LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, quiet});
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
       const int left = objective.divide(refined.x);
-      if (left == 0 || result.outcome == Outcome::cancelled) break;
+      refined.cut_short = result.outcome == Outcome::cancelled;
+      if (left == 0 || refined.cut_short) break;
       if (left == outside && result.iterations == 0) break;
       outside = left;
     }
-    refined.fault = name_outside(model, refined.x);
+    if (!refined.cut_short) refined.fault = name_outside(model, refined.x);
     if (!refined.fault.empty())
       refined.fault = "the refined state is beyond the strain limit: " + refined.fault;
   }

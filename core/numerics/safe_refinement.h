@@ -10,7 +10,8 @@ namespace drape {
 /// A state carried to the next finer level.
 struct Refined {
   Positions x;
-  std::string fault;  ///< why it is not allowed there, naming primitives; empty if it is
+  std::string fault;       ///< why it is not allowed there, naming primitives; empty if it is
+  bool cut_short = false;  ///< stopped on the way, on request
   int iterations = 0;
   double seconds = 0;
 };
@@ -22,5 +23,9 @@ struct Refined {
 /// F the triangles within their limit (PCS section 4.3).
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer);
+
+/// Moves the fixed vertices of y to their places in `start`, as far as nothing is in the way; what is,
+/// otherwise.
+std::string place_fixed(const LevelModel& model, const Positions& start, Positions& y);
 
 }  // namespace drape

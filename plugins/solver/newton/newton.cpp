@@ -5,7 +5,7 @@
 namespace drape {
 
 /// Each level on its own, from the scene's start, under its own energy (docs/method.md, section 3).
-class NewtonSolver : public Solver {
+class NewtonSolver : public ResumableSolver {
  public:
   struct Parameters {
     NewtonParameters newton;
@@ -15,14 +15,16 @@ class NewtonSolver : public Solver {
   };
   explicit NewtonSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
-    const Stopwatch clock;
-    std::vector<LevelResult> results;
-    for (int l = 0; l <= problem.finest(); ++l) {
-      observer.level_started(l);
+  std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
+                                  Observer& observer) const override {
+    const Stopwatch clock(from.seconds);
+    std::vector<LevelResult> results = from.finished;
+    for (int l = from.level; l <= problem.finest(); ++l) {
+      const NewtonState* state = from.of(l);
+      if (!state) observer.level_started(l);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(
-          minimise(objective, problem.starts[l], p_.newton, clock, observer, l < problem.finest()));
+      results.push_back(minimise(objective, problem.starts[l], p_.newton,
+                                 {clock, observer, l < problem.finest(), {}, state}));
       results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
