@@ -111,7 +111,8 @@ std::vector<int> pinned_by(const PinParameters& pin, const Level& level) {
   return held;
 }
 
-/// Contact keeps apart what is apart: a start that touches is refused, and says where.
+}  // namespace
+
 void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
                            ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
@@ -126,8 +127,6 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
                                     " more pairs; move the start or the obstacle so that they are apart"});
   }
 }
-
-}  // namespace
 
 Location Experiment::place_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);
