@@ -178,6 +178,22 @@ TEST_CASE("So has one of the static form, with every projection made in full") {
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
 }
 
+TEST_CASE("So has one whose conditions change, with a pin that is dragged into an obstacle") {
+  const Scratch folder;
+  write_sheets(folder);
+  const std::string one = text_of(folder / "e.yaml");
+  folder.write("e.yaml", one + R"(
+pins: [{region: vertices, vertices: [14], move: [-0.2, -0.2, 0.1015]}]
+schedule:
+  steps: 3
+  keys:
+    - {set: pins.0.move, at: [0, 1], to: [[-0.2, -0.2, 0.1015], [-0.2, -0.2, 0.06]]}
+    - {set: material.bending_modulus, at: [0, 1], between: log, to: [1e5, 1e4]}
+)");
+  const Overrides shorter = some_steps({{"levels", "2"}, {"newton.max_steps", "30"}});
+  CHECK(check_in_parts(experiment_in(folder / "e.yaml", shorter), folder.path) > 40);
+}
+
 namespace {
 
 /// A run of the sheets in its folder `out`, with a checkpoint at every step.
