@@ -4,6 +4,7 @@
 #include "core/mesh/generate.h"
 #include "core/mesh/intersections.h"
 #include "core/mesh/io.h"
+#include "core/numerics/parallel.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_way.h"
 #include "tests/support/command.h"
@@ -262,6 +263,51 @@ TEST_CASE("ipc: a sequence of meshes, linear in between, none of whose forms pas
   CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("exclude each other"));
 }
 
+TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of threads") {
+  const Level level = square(41, 0.4);
+  Positions x = wavy(level, 0.01);
+  Bodies from = {box({0.2, 0.2, 0.1}, {0, 0, -0.5}), box({0.05, 0.05, 0.1}, {0.1, 0, -0.12})}, to;
+  from[1].name = "mover";
+  ObstacleParameters ball;
+  ball.name = "ball";
+  ball.shape = "sphere";
+  ball.radius = 0.05;
+  ball.subdivisions = 3;
+  ball.translate = {-0.1, 0, -0.2};
+  from.push_back(ball);
+  // The first and the last touch almost, and stay.
+  from[0].translate.z() = x.col(2).minCoeff() - 0.05 - 1e-5;
+  const double up = max_move(*bound({ball}, level),
+                             *bound(
+                                 [&] {
+                                   Bodies high = {ball};
+                                   high[0].translate.z() += 0.3;
+                                   return high;
+                                 }(),
+                                 level),
+                             x)
+                        .fraction;
+  from[2].translate.z() += 0.3 * up;
+  to = from;
+  to[1].translate += Vector(0.02, 0.01, 0.3);
+  to[1].rotate = {20, 10, 40};
+  std::vector<double> fractions;
+  for (const int threads : {1, 2, 3}) {
+    set_thread_count(threads);
+    const StepLimit limit = max_move(*bound(from, level), *bound(to, level), x);
+    CHECK_THAT(limit.by, Catch::Contains("mover"));
+    fractions.push_back(limit.fraction);
+  }
+  set_thread_count(0);
+  CHECK(fractions[0] > 0.1);
+  CHECK(fractions[0] < 0.9);
+  CHECK(fractions[1] == fractions[0]);
+  CHECK(fractions[2] == fractions[0]);
+  to = from;
+  to[1].translate.z() -= 1;
+  CHECK(max_move(*bound(from, level), *bound(to, level), x).fraction == 1);
+}
+
 TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
   const Level level = square(3, 0.2);
   ObstacleParameters ball;
@@ -301,6 +347,18 @@ TEST_CASE("ipc: anchors of what is touched are carried along") {
     }
   }
   CHECK(carried >= 10);
+  // So a plate that slides below the cloth drags it by μ times the normal force.
+  to = from;
+  to[0].translate.x() += 0.01;
+  anchors = x;
+  const auto slid = bound(to, level, 0.3);
+  dynamic_cast<const MovableObstacles&>(*slid).carry(*before, x, anchors);
+  const auto set = slid->sweep(x, x)->build(x);
+  Positions push = Positions::Zero(x.rows(), 3), drag = push;
+  set->add_gradient(x, push);
+  set->friction(anchors)->add_gradient(x, drag);
+  CHECK(-push.col(2).sum() > 0);
+  CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
   // Without friction there is nothing to carry.
   anchors = x;
   dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, anchors);
