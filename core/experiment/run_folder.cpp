@@ -8,9 +8,9 @@ namespace drape {
 namespace {
 
 // What a run writes; the only names that --overwrite may remove.
-constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv", "log.jsonl",
-                                     "levels",      "fields",       "rest",         "pictures",  "obstacles",
-                                     "frames",      "errors.csv",   "reference.ply"};
+constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",   "steps.csv", "log.jsonl",
+                                     "levels",      "fields",       "rest",          "pictures",  "obstacles",
+                                     "frames",      "errors.csv",   "reference.ply", "start.ply"};
 
 }  // namespace
 

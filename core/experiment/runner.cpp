@@ -6,6 +6,7 @@
 #include "core/experiment/progress.h"
 #include "core/experiment/recorder.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/io.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 
@@ -77,6 +78,7 @@ ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
   if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
   if (!experiment.parameters.reference.file.empty())
     set_path(config, "reference.file", "reference.ply", none);
   return config;
@@ -88,6 +90,8 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   require_methods(experiment, options.methods);
   const RunFolder folder(options.out, options.overwrite);
   folder.write_text("config.yaml", to_yaml(saved_config(experiment)));
+  if (!experiment.parameters.start.file.empty())
+    write_ply(folder.file("start.ply"), read_mesh(experiment.parameters.start.file));
   Recorder recorder(folder, experiment, scene);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.quiet);

@@ -76,6 +76,9 @@ class MovableObstacles {
   virtual void carry(const BoundContact& before, const Positions& x, Positions& anchors) const = 0;
 };
 
+/// The contacts of one level, which may be shared by its models under different conditions.
+using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
+
 /// A kind of contact, made by name from its parameters.
 class ContactModel {
  public:

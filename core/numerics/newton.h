@@ -36,8 +36,11 @@ struct NewtonParameters {
 /// Minimises the objective from x, where fixed vertices stay, step by implicit step
 ///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x),
 /// with a filtered line search. `clock` is the method's, for the rows that the observer gets. Where a finer
-/// level follows, the observer may ask for it early.
+/// level follows, the observer may ask for it early. Conditions that have begun on the level are gone through
+/// to the last. Ends `infeasible`, the rest of the cloth at equilibrium, where held vertices or obstacles
+/// cannot reach their places.
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer, bool finer_follows = false);
+                     const Stopwatch& clock, Observer& observer, bool finer_follows = false,
+                     Conditions* conditions = nullptr);
 
 }  // namespace drape

@@ -12,11 +12,13 @@ std::vector<LevelResult> solve_progressively(
   std::vector<LevelResult> results;
   Refined start;
   start.x = problem.starts[0];
+  if (problem.conditions) problem.conditions->begin(0, true);
   for (int l = 0; l <= problem.finest(); ++l) {
     observer.level_started(l);
     LevelResult result;
     if (start.fault.empty()) {
-      result = minimise(*objective(l), std::move(start.x), newton, clock, observer, l < problem.finest());
+      result = minimise(*objective(l), std::move(start.x), newton, clock, observer, l < problem.finest(),
+                        problem.conditions);
     } else {
       result.x = std::move(start.x);
       result.outcome = Outcome::infeasible;
@@ -31,8 +33,9 @@ std::vector<LevelResult> solve_progressively(
     results.push_back(std::move(result));
     observer.level_finished(results.back());
     if (results.back().outcome == Outcome::cancelled || !start.fault.empty()) break;
-    if (l < problem.finest())
-      start = refine_safely(problem, l, results.back().x, weights[l], clock, observer);
+    if (l == problem.finest()) break;
+    if (problem.conditions) problem.conditions->begin(l + 1, false);
+    start = refine_safely(problem, l, results.back().x, weights[l], clock, observer);
   }
   return results;
 }

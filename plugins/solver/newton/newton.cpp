@@ -20,9 +20,10 @@ class NewtonSolver : public Solver {
     std::vector<LevelResult> results;
     for (int l = 0; l <= problem.finest(); ++l) {
       observer.level_started(l);
+      if (problem.conditions) problem.conditions->begin(l, true);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(
-          minimise(objective, problem.starts[l], p_.newton, clock, observer, l < problem.finest()));
+      results.push_back(minimise(objective, problem.starts[l], p_.newton, clock, observer,
+                                 l < problem.finest(), problem.conditions));
       results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
