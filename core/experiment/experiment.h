@@ -187,4 +187,8 @@ enum class TouchingStart { refused, kept };
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
                                    TouchingStart touching = TouchingStart::refused);
 
+/// Contact keeps apart what is apart: a start that touches something is refused, and says where.
+void refuse_touching_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
+                           ConfigErrors& errors);
+
 }  // namespace drape

@@ -70,15 +70,6 @@ class Noise {
   } waves_[8];
 };
 
-<<<<<<< HEAD
-/// Held vertices in their places, others where the start puts them, with its noise.
-Positions make_start(const Positions& rest, const std::vector<HeldVertex>& held, const StartParameters& s) {
-  const Noise noise(s.perturbation_wavelength, s.seed);
-  Positions x(rest.rows(), 3);
-  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    const double across = s.perturbation > 0 ? s.perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
-    x.row(i) = s.place(rest.row(i), across).transpose();
-=======
 Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
   const std::string& file = e.parameters.start.file;
   try {
@@ -107,26 +98,19 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
 }
 
 /// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
-Positions make_start(const Positions& rest, const Positions& shape, const std::vector<char>& fixed,
-                     const StartParameters& s) {
-  const double degree = M_PI / 180;
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(s.rotate.z() * degree, Eigen::Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(s.rotate.y() * degree, Eigen::Vector3d::UnitY()) *
-                                Eigen::AngleAxisd(s.rotate.x() * degree, Eigen::Vector3d::UnitX()))
-                                   .toRotationMatrix();
+Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
+                     double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    Eigen::Vector3d p = shape.row(i).transpose().cwiseProduct(s.scale);
-    if (s.perturbation > 0 && !fixed[i]) p.z() += s.perturbation * noise.at(rest(i, 0), rest(i, 1));
-    x.row(i) = (turn * p + s.translate).transpose();
->>>>>>> hard
+    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    x.row(i) = s.place(shape.row(i), across).transpose();
   }
-  for (const HeldVertex& h : held) x.row(h.vertex) = h.place.transpose();
   return x;
 }
 
-/// Contact keeps apart what is apart: a start that touches is refused, and says where.
+}  // namespace
+
 void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
                            ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
@@ -141,8 +125,6 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
                                     " more pairs; move the start or the obstacle so that they are apart"});
   }
 }
-
-}  // namespace
 
 Location Experiment::place_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);

@@ -111,7 +111,7 @@ struct Falling {
 
   LevelResult solve(const NewtonParameters& p, double height) {
     PlainObjective objective(model);
-    return minimise(objective, at(level, 0, height), p, Stopwatch(), rows);
+    return minimise(objective, at(level, 0, height), p, {Stopwatch(), rows});
   }
 };
 
@@ -313,7 +313,8 @@ TEST_CASE("A level is converged with the friction of where it ends, however long
   p.form = NewtonForm::statics;
   p.iterations_per_step = 20;
   PlainObjective objective(falling.model);
-  const LevelResult r = minimise(objective, at(falling.level, 0, 0.9 * range), p, Stopwatch(), falling.rows);
+  const LevelResult r =
+      minimise(objective, at(falling.level, 0, 0.9 * range), p, {Stopwatch(), falling.rows});
   CAPTURE(r.message);
   REQUIRE(r.outcome == Outcome::converged);
   Positions g;
