@@ -241,8 +241,7 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
   };
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     Case c;
-    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(c.centres, 1, 0)}},
-                           std::vector<char>(c.level.vertex_count(), 0));
+    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(c.centres, 1, 0)}}, {});
     PlainObjective objective(model);
     NewtonParameters p;
     p.form = form;

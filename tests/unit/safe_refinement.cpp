@@ -231,7 +231,6 @@ TEST_CASE("Triangles that cannot be within the strain limit are named") {
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
 }
 
-<<<<<<< HEAD
 TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, within its strain limit") {
   const TriangleMesh sheet = grid({1, 1}, 9, 9, Diagonals::one_way);
   const int coarse_vertices = static_cast<int>(sheet.vertices.rows());
@@ -251,10 +250,7 @@ TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, w
   }
 }
 
-TEST_CASE("A pin that cannot reach its place is told, with what is in its way") {
-=======
 TEST_CASE("A pin that cannot reach its place goes there as far as nothing is in its way") {
->>>>>>> main
   TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {ball}, {}, {12});
   for (Positions& start : cloth.starts) start.rowwise() += Eigen::RowVector3d(-0.2, -0.2, 0.31);
   const Positions x = cloth.starts[0];
