@@ -238,9 +238,11 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
         p.iterations_per_step = iterations;
         p.form = form;
         p.decrement_tolerance = 1e-7;
+        std::vector<char> fixed(c.level.vertex_count(), 0);
+        fixed[0] = 1;
         const Positions centres = c.level.rest.vertices.array() + 0.05;
         const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
-                               std::vector<char>(c.level.vertex_count(), 0));
+                               fixed);
         Keeping whole;
         PlainObjective first(model);
         const LevelResult expected =
