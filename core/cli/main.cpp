@@ -21,6 +21,7 @@
 #include "core/report/compare.h"
 #include "core/report/report.h"
 #include "core/report/run_set.h"
+#include "core/report/run_table.h"
 #include "core/report/runs_report.h"
 #include "core/report/tables.h"
 #include "core/sweep/sweep.h"
@@ -406,7 +407,8 @@ int main_checked(int argc, char** argv) {
   CLI::App* describe_command =
       app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
   describe_command->add_option("plugin", plugin, "name of the plugin")->required();
-  std::vector<std::string> report_folders, compared, bounds;
+  std::vector<std::string> report_folders, compared, bounds, columns;
+  TableFormat format = TableFormat::markdown;
   CLI::App* report_command =
       app.add_subcommand("report", "write the report of a run again, or one of several runs or of a sweep");
   report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
@@ -418,6 +420,16 @@ int main_checked(int argc, char** argv) {
       ->add_option("--bound", bounds,
                    "exit with 1 when a figure is more than so many times what it was; may be repeated")
       ->type_name("KEY=RATIO")
+      ->allow_extra_args(false);
+  CLI::App* table_command = app.add_subcommand(
+      "table",
+      "print one table of runs and sweeps, a row a method of each; exits with 1 where one does not pass");
+  table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
+  table_command->add_option("--format", format, "md, csv or json")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
+          {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}}));
+  table_command->add_option("--columns", columns, "only these, in this order, as in run,outcome,energy")
+      ->delimiter(',')
       ->allow_extra_args(false);
   CLI::App* table1_command =
       app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
@@ -452,6 +464,11 @@ int main_checked(int argc, char** argv) {
     const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
     std::cout << comparison.text();
     return comparison.broken() ? exit_bound_broken : 0;
+  }
+  if (*table_command) {
+    const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
+    std::cout << table_text(rows, columns, format);
+    return all_pass(rows) ? 0 : exit_not_converged;
   }
   if (*table1_command) {
     std::cout << table1_text(read_run(run_folder));

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "core/experiment/machine.h"
+#include "core/report/run_table.h"
 #include "core/sweep/local_engine.h"
 #include "core/sweep/memory.h"
 #include "core/sweep/slurm_engine.h"
@@ -14,6 +15,11 @@ namespace drape {
 namespace {
 
 constexpr int exit_bad_input = 2;
+
+/// 0 if every run ended as it is expected to, else 1.
+int exit_code_of(const SweepFolder& folder) {
+  return all_pass(table_rows(read_runs({folder.path()}))) ? 0 : 1;
+}
 
 /// What would be run, without a trace of it on disk.
 void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
@@ -43,6 +49,8 @@ SweepCommand::SweepCommand(CLI::App& app)
       ->check(positive_integer);
   sweep_->add_option("--memory-limit", memory_limit_, "GB: of all runs together; with slurm, of each")
       ->check(CLI::PositiveNumber);
+  sweep_->add_option("--most-levels", most_levels_, "of every run; an experiment that has fewer keeps them")
+      ->check(positive_integer);
   sweep_->add_flag("--dry-run", dry_run_, "check everything and list the runs, without running any");
   sweep_->add_flag("--retry-failed", retry_failed_, "run those again that failed");
   sweep_->add_flag("--report", report_, "write every run's report.html and its pictures");
@@ -73,7 +81,7 @@ void SweepCommand::check_options(int threads) const {
 
 int SweepCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
   ConfigErrors errors;
-  const std::optional<Sweep> sweep = read_sweep(config_, registry, errors);
+  const std::optional<Sweep> sweep = read_sweep(config_, registry, errors, most_levels_);
   for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
   if (!sweep) return exit_bad_input;
   const int threads = threads_ ? threads_ : sweep->parameters.threads;
@@ -96,6 +104,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
   options.workers = workers_ ? workers_ : core_count() / options.threads;
   options.memory_limit = memory_limit_ * 1e9;
   options.report = report_;
+  options.time_limit = sweep.parameters.time_limit.value_or(0);
   options.stop = [&] { return stop_signal() != 0; };
   folder.prepare(sweep, options.threads);
   run_locally(sweep, folder, folder.missing(sweep, retry_failed_), options);
@@ -105,7 +114,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
     std::cerr << "stopped on request; the same command goes on with what is missing\n";
     return 128 + stop_signal();
   }
-  return exit_code_of(json);
+  return exit_code_of(folder);
 }
 
 int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
@@ -142,7 +151,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
   }
   const auto json = folder.settle();
   std::cout << list_of_runs(json);
-  return exit_code_of(json);
+  return exit_code_of(folder);
 }
 
 int SweepCommand::run_job(const std::function<int()>& stop_signal) const {

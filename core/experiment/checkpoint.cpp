@@ -10,9 +10,25 @@ namespace drape {
 // What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
 
 template <class A>
+void fields(A& a, ConditionsState& s) {
+  a(s.change, s.numbers);
+}
+
+template <class A>
+void fields(A& a, HardPositions::Memory& m) {
+  a(m.missing, m.stiffness, m.best, m.idle, m.given_up, m.pulled);
+}
+
+template <class A>
+void fields(A& a, ChangeBegun& c) {
+  a(c.steps, c.iterations, c.seconds);
+}
+
+template <class A>
 void fields(A& a, LevelResult& r) {
   a(r.level, r.outcome, r.message, r.x, r.dead_end, r.afresh, r.steps, r.iterations, r.factorisations,
-    r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap);
+    r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap,
+    r.conditions);
 }
 
 template <class A>
@@ -33,7 +49,8 @@ void fields(A& a, BlockCholesky::Analysis& m) {
 template <class A>
 void fields(A& a, NewtonState& s) {
   a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift, s.factor_values);
+    s.positions, s.changed_at, s.times_held_up, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age,
+    s.factor_shift, s.factor_values);
 }
 
 template <class A>
@@ -81,7 +98,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

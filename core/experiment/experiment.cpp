@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/experiment/schedule.h"
 #include "core/experiment/yaml_file.h"
 #include "core/plugin/make.h"
 
@@ -45,6 +46,11 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
+  d.add("file", &StartParameters::file)
+      .path()
+      .meaning(
+          "a mesh with the coarsest level's triangles, in place of the rest shape; split at midpoints on "
+          "finer levels");
   d.add("scale", &StartParameters::scale).meaning("factors on the rest shape's x, y, z");
   d.add("rotate", &StartParameters::rotate).unit("°").meaning("then turned about x, y, z, in this order");
   d.add("translate", &StartParameters::translate).unit("m").meaning("then moved");
@@ -59,20 +65,44 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("seed", &StartParameters::seed).at_least(0).meaning("of the noise");
 }
 
-void PinParameters::declare(Declaration<PinParameters>& d) {
-  d.add("region", &PinParameters::region)
+namespace {
+
+/// The parameters that pins and handles share.
+template <class Place>
+void declare_place(Declaration<Place>& d) {
+  const auto member = [](auto PlaceParameters::*m) {
+    return static_cast<std::decay_t<decltype(std::declval<Place>().*m)> Place::*>(m);
+  };
+  d.add("region", member(&PlaceParameters::region))
       .choices({"nearest", "ball", "box", "border", "vertices"})
       .meaning(
-          "which vertices: the one nearest to `point`, those within `radius` of it, those in a box, the "
-          "border, or by index on the coarsest level");
-  d.add("point", &PinParameters::point).unit("m").meaning("of nearest and ball, in the rest shape");
-  d.add("radius", &PinParameters::radius).unit("m").at_least(0).meaning("of a ball");
-  d.add("lower", &PinParameters::lower).unit("m").meaning("corner of a box, in the rest shape");
-  d.add("upper", &PinParameters::upper).unit("m").meaning("opposite corner of a box");
-  d.add("vertices", &PinParameters::vertices).meaning("indices, from 0");
-  d.add("move", &PinParameters::move)
+          "which vertices: the one of the coarsest level nearest to `point`, those within `radius` of it, "
+          "those in a box, the border, or by index on the coarsest level");
+  d.add("point", member(&PlaceParameters::point)).unit("m").meaning("of nearest and ball, in the rest shape");
+  d.add("radius", member(&PlaceParameters::radius)).unit("m").at_least(0).meaning("of a ball");
+  d.add("lower", member(&PlaceParameters::lower)).unit("m").meaning("corner of a box, in the rest shape");
+  d.add("upper", member(&PlaceParameters::upper)).unit("m").meaning("opposite corner of a box");
+  d.add("vertices", member(&PlaceParameters::vertices)).meaning("indices, from 0");
+  d.add("move", member(&PlaceParameters::move))
       .unit("m")
-      .meaning("held at the rest place moved by this; without it, where the start puts them");
+      .meaning("to the rest place, after `turn`, moved by this; without both, to where the start puts them");
+  d.add("turn", member(&PlaceParameters::turn))
+      .unit("°")
+      .meaning("to the rest place turned about x, y, z, in this order, through `about`");
+  d.add("about", member(&PlaceParameters::about)).unit("m").meaning("centre of `turn`, in the rest shape");
+}
+
+}  // namespace
+
+void PinParameters::declare(Declaration<PinParameters>& d) { declare_place(d); }
+
+void HandleParameters::declare(Declaration<HandleParameters>& d) {
+  declare_place(d);
+  d.add("stiffness", &HandleParameters::stiffness)
+      .unit("1/s²")
+      .at_least(0)
+      .meaning("κ_B of the pull κ_B/2 m ‖x − x̃‖²; by default the number of the membrane modulus")
+      .source("supplement, section 4");
 }
 
 void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
@@ -98,7 +128,15 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .meaning("each 1→4 finer than the last");
   d.add_section("material", &ExperimentParameters::material).meaning("of the cloth");
   d.add_section("start", &ExperimentParameters::start).meaning("where the cloth starts");
-  d.add_sections("pins", &ExperimentParameters::pins).meaning("vertices held in place");
+  d.add_sections("pins", &ExperimentParameters::pins)
+      .meaning("vertices held in place (hard positions); what they hold they bring there");
+  d.add_sections("handles", &ExperimentParameters::handles)
+      .meaning("vertices pulled to places (soft positions)");
+  d.add_section("schedule", &ExperimentParameters::schedule)
+      .meaning(
+          "conditions that change while a level is solved that begins at the scene's start; later levels "
+          "have "
+          "the last ones");
   d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
   d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
   d.add_node("contact", &ExperimentParameters::contact)
@@ -306,12 +344,15 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors) {
   Experiment e;
   e.source = std::move(source);
+  e.registry = &registry;
+  set_first_keys(e.source);
   const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&e.parameters, e.source, errors);
   e.resolved = schema.write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
   Maker(registry, errors, e).make_all();
+  check_schedule(e, errors);
   // The common newton section is read once for itself and once in each method: say each fault once.
   std::set<std::string> said;
   ConfigErrors once;

@@ -40,26 +40,66 @@ struct ClothParameters {
   static void declare(Declaration<ClothParameters>& d);
 };
 
-/// Where the cloth starts: rest → scaled → rotated → moved.
+/// Where the cloth starts: rest, or the file's shape → scaled → rotated → moved.
 struct StartParameters {
+  std::string file;
   Eigen::Vector3d scale{1, 1, 1};
   Eigen::Vector3d rotate{0, 0, 0};
   Eigen::Vector3d translate{0, 0, 0};
   double perturbation = 0;
   double perturbation_wavelength = 0.25;
   int seed = 1;
+  /// Where a vertex with this rest place starts; `noise` is across the pattern [m].
+  Eigen::Vector3d place(const Eigen::Vector3d& rest, double noise = 0) const;
   static void declare(Declaration<StartParameters>& d);
 };
 
-/// Vertices held in place, by region of the rest shape, on every level.
-struct PinParameters {
+/// Which vertices, by a region of the rest shape that means the same on every level, and where they belong.
+struct PlaceParameters {
   std::string region = "nearest";
   Eigen::Vector3d point{0, 0, 0};
   double radius = 0;
   Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
   std::vector<int> vertices;
   std::optional<Eigen::Vector3d> move;
+  std::optional<Eigen::Vector3d> turn;
+  Eigen::Vector3d about{0, 0, 0};
+
+  bool moved() const { return move || turn; }
+  /// Of a vertex with this rest place: turned, then moved.
+  Eigen::Vector3d place(const Eigen::Vector3d& rest) const;
+};
+
+/// Hard positions: vertices held in place on every level.
+struct PinParameters : PlaceParameters {
   static void declare(Declaration<PinParameters>& d);
+};
+
+/// Soft positions: vertices pulled to places, as by a hand.
+struct HandleParameters : PlaceParameters {
+  std::optional<double> stiffness;
+  static void declare(Declaration<HandleParameters>& d);
+};
+
+/// How a keyed value goes from one key to the next.
+enum class Between { linear, log, jump };
+
+/// One parameter of the experiment over pseudo-time.
+struct KeyParameters {
+  std::string set;
+  std::vector<double> at;
+  ConfigNode to;
+  Between between = Between::linear;
+  static void declare(Declaration<KeyParameters>& d);
+};
+
+/// Conditions that change while a level is solved.
+struct ScheduleParameters {
+  double duration = 0;
+  int steps = 1;
+  bool settle = false;
+  std::vector<KeyParameters> keys;
+  static void declare(Declaration<ScheduleParameters>& d);
 };
 
 /// The state that the methods' errors are measured against, beside each method's own finest one.
@@ -83,6 +123,8 @@ struct ExperimentParameters {
   Material material;
   StartParameters start;
   std::vector<PinParameters> pins;
+  std::vector<HandleParameters> handles;
+  ScheduleParameters schedule;
   std::vector<ConfigNode> energies;
   ConfigNode refiner, contact;
   NewtonParameters newton;
@@ -104,6 +146,7 @@ struct Experiment {
   std::vector<std::shared_ptr<ContactModel>> contacts;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
+  const Registry* registry = nullptr;  ///< that the plugins are from; for those of a schedule's conditions
 
   /// Where a key of the file is set; without it, where the file begins.
   Location place_of(const std::string& key) const;
@@ -127,9 +170,11 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
 /// The levels, models and starts of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;
+  std::vector<NamedEnergy> energies;  ///< that the models were bound from, handles among them
   std::vector<std::unique_ptr<LevelModel>> models;
   std::vector<Positions> starts;
-  std::optional<Positions> reference;  ///< on the finest level, where the experiment names a file with it
+  std::optional<Positions> reference;    ///< on the finest level, where the experiment names a file with it
+  std::unique_ptr<Conditions> schedule;  ///< null where the experiment has none
 
   Problem problem() const;
 };

@@ -8,9 +8,10 @@ namespace drape {
 namespace {
 
 // What a run writes; the only names that --overwrite may remove.
-constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",   "steps.csv", "log.jsonl",
-                                     "levels",      "fields",       "rest",          "pictures",  "obstacles",
-                                     "frames",      "errors.csv",   "reference.ply", "checkpoint"};
+constexpr const char* own_names[] = {"config.yaml",   "results.json", "report.html", "steps.csv",
+                                     "log.jsonl",     "levels",       "fields",      "rest",
+                                     "pictures",      "obstacles",    "frames",      "errors.csv",
+                                     "reference.ply", "checkpoint",   "start.ply"};
 
 }  // namespace
 

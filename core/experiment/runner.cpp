@@ -7,6 +7,7 @@
 #include "core/experiment/recorder.h"
 #include "core/experiment/session.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/io.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 
@@ -97,6 +98,7 @@ ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
   if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
   if (!experiment.parameters.reference.file.empty())
     set_path(config, "reference.file", "reference.ply", none);
   return config;
@@ -180,6 +182,8 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   begun.first_level = options.first_level;
   if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
   folder.write_text("config.yaml", begun.config);
+  if (!experiment.parameters.start.file.empty())
+    write_ply(folder.file("start.ply"), read_mesh(experiment.parameters.start.file));
   Recorder recorder(folder, experiment, scene);
   if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
   begun.files = marks_of_files(config, folder.path());

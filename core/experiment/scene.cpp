@@ -1,9 +1,10 @@
-#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 
 #include "core/experiment/experiment.h"
+#include "core/experiment/places.h"
 #include "core/experiment/reference.h"
+#include "core/experiment/schedule.h"
 #include "core/mesh/check.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
@@ -69,46 +70,43 @@ class Noise {
   } waves_[8];
 };
 
-Positions make_start(const Positions& rest, const std::vector<char>& fixed, const StartParameters& s) {
-  const double degree = M_PI / 180;
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(s.rotate.z() * degree, Eigen::Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(s.rotate.y() * degree, Eigen::Vector3d::UnitY()) *
-                                Eigen::AngleAxisd(s.rotate.x() * degree, Eigen::Vector3d::UnitX()))
-                                   .toRotationMatrix();
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
+      return mesh.vertices;
+    errors.push_back(
+        {e.place_of("start"), "\"start\": " + file +
+                                  " has other vertices or triangles than the coarsest level; take a "
+                                  "mesh like rest/l0.ply of a run's folder"});
+  } catch (const std::exception& problem) {
+    errors.push_back({e.place_of("start"), problem.what()});
+  }
+  return coarsest.rest.vertices;
+}
+
+/// The shape that the start moves, on every level: the rest's, or that of the file.
+std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels)
+    shapes.push_back(file.empty()       ? level.rest.vertices
+                     : level.index == 0 ? read_start(e, level, errors)
+                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+  return shapes;
+}
+
+/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
+                     double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    Eigen::Vector3d p = rest.row(i).transpose().cwiseProduct(s.scale);
-    if (s.perturbation > 0 && !fixed[i]) p.z() += s.perturbation * noise.at(rest(i, 0), rest(i, 1));
-    x.row(i) = (turn * p + s.translate).transpose();
+    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    x.row(i) = s.place(shape.row(i), across).transpose();
   }
   return x;
-}
-
-/// The vertices of one pin.
-std::vector<int> pinned_by(const PinParameters& pin, const Level& level) {
-  const Positions& X = level.rest.vertices;
-  std::vector<int> held;
-  auto hold = [&](Eigen::Index i) { held.push_back(static_cast<int>(i)); };
-  if (pin.region == "nearest") {
-    Eigen::Index nearest = 0;
-    (X.rowwise() - pin.point.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
-    hold(nearest);
-  } else if (pin.region == "vertices") {
-    // Children of coarse vertices keep their index on every level.
-    for (int v : pin.vertices)
-      if (v >= 0 && v < X.rows()) hold(v);
-  } else {
-    for (Eigen::Index i = 0; i < X.rows(); ++i) {
-      const Eigen::Vector3d p = X.row(i);
-      const bool in_ball = (p - pin.point).norm() <= pin.radius * (1 + 1e-12);
-      const bool in_box =
-          (p.array() >= pin.lower.array() - 1e-12).all() && (p.array() <= pin.upper.array() + 1e-12).all();
-      if (pin.region == "border" ? level.topology.on_border[i] : pin.region == "ball" ? in_ball : in_box)
-        hold(i);
-    }
-  }
-  return held;
 }
 
 }  // namespace
@@ -134,7 +132,7 @@ Location Experiment::place_of(const std::string& key) const {
 }
 
 Problem Scene::problem() const {
-  Problem p{hierarchy, {}, starts};
+  Problem p{hierarchy, {}, starts, schedule.get()};
   for (const auto& model : models) p.models.push_back(model.get());
   return p;
 }
@@ -159,35 +157,21 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
     errors.push_back({e.place_of("cloth"), error.what()});
     return nullptr;
   }
-  const ConfigNode* pins = e.source.find("pins");
+  const Level& coarsest = scene->hierarchy.levels[0];
+  check_places(e, coarsest, errors);
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
+  if (!errors.empty()) return nullptr;
+  scene->energies = e.energies;
+  if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
-    std::vector<char> fixed(level.vertex_count(), 0);
-    std::vector<std::vector<int>> held;
-    for (std::size_t k = 0; k < p.pins.size(); ++k) {
-      held.push_back(pinned_by(p.pins[k], level));
-      for (int v : held.back()) fixed[v] = 1;
-      if (level.index > 0) continue;
-      const std::string pin = "pin " + std::to_string(k) + " (" + p.pins[k].region + ")";
-      const bool by_index = p.pins[k].region == "vertices";
-      if (by_index ? p.pins[k].vertices.empty() : held.back().empty())
-        errors.push_back(
-            {pins->items[k].where, pin + " holds no vertex of the coarsest level; " +
-                                       (by_index ? "list some under \"vertices\"" : "widen its region")});
-      for (int v : p.pins[k].vertices)
-        if (by_index && (v < 0 || v >= level.vertex_count()))
-          errors.push_back({pins->items[k].where, pin + " names vertex " + std::to_string(v) +
-                                                      ", but those of the coarsest level go from 0 to " +
-                                                      std::to_string(level.vertex_count() - 1)});
-    }
-    if (!errors.empty()) return nullptr;
-    Positions start = make_start(level.rest.vertices, fixed, p.start);
-    for (std::size_t k = 0; k < p.pins.size(); ++k)
-      if (p.pins[k].move)
-        for (int v : held[k]) start.row(v) = level.rest.vertices.row(v) + p.pins[k].move->transpose();
+    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
+    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
     scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
-          std::make_unique<LevelModel>(level, p.material, e.energies, std::move(fixed), e.contacts));
+          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));
     } catch (const std::exception& error) {
       errors.push_back({e.place_of("energies"), error.what()});
       return nullptr;
@@ -196,6 +180,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
       refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
+  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<Schedule>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;
 }

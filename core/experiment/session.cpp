@@ -184,18 +184,10 @@ void begin_from(const Experiment& experiment, Scene& scene, int level, const Pos
                 ConfigErrors& errors) {
   const LevelModel& model = *scene.models[level];
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
-  Positions y = x;
-  if (const std::string fault = place_fixed(model, scene.starts[level], y); !fault.empty())
-    errors.push_back({experiment.place_of("pins"), fault});
-  scene.starts[level] = y;
-  refuse_touching_start(experiment, model, y, errors);
-  for (std::size_t l = level + 1; l < scene.starts.size(); ++l) {
-    y = scene.hierarchy.midpoints[l - 1] * y;
-    const std::vector<char>& fixed = scene.models[l]->fixed();
-    for (Eigen::Index i = 0; i < y.rows(); ++i)
-      if (fixed[i]) y.row(i) = scene.starts[l].row(i);
-    scene.starts[l] = y;
-  }
+  scene.starts[level] = x;
+  refuse_touching_start(experiment, model, x, errors);
+  for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
+    scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
 }
 
 }  // namespace drape

@@ -60,8 +60,8 @@ SavedState saved_state(const std::filesystem::path& folder, const std::string& m
 void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level, ConfigErrors& errors);
 
 /// Lets the scene's methods begin at x on that level and, where they begin finer levels from the scene's
-/// start, at the same surface on these. Fixed vertices move to where the experiment holds them; what keeps
-/// them from there, and what the state touches, is appended to `errors`.
+/// start, at the same surface on these; held vertices are brought from there to their places. What the state
+/// touches is appended to `errors`.
 void begin_from(const Experiment& experiment, Scene& scene, int level, const Positions& x,
                 ConfigErrors& errors);
 

@@ -102,11 +102,22 @@ void set_places(ConfigNode& node, const Location& where) {
   for (Location& key : node.key_places) key = where;
 }
 
+/// Whether an item of a list goes by the word: a plugin by its type, other things by their name.
+bool is_called(const ConfigNode& item, const std::string& word) {
+  if (item.kind == Kind::scalar) return item.scalar == word;
+  for (const char* key : {"type", "name"})
+    if (const ConfigNode* name = item.find(key); name && name->scalar == word) return true;
+  return false;
+}
+
 /// The part of `node` that one word of a path names, made if it is a new key; null where there is none.
 ConfigNode* step(ConfigNode& node, const std::string& word, const Location& where) {
   if (node.kind == Kind::list) {
-    const auto index = parse_integer(word);
-    return index && *index >= 0 && *index < int(node.items.size()) ? &node.items[size_t(*index)] : nullptr;
+    if (const auto index = parse_integer(word))
+      return *index >= 0 && *index < int(node.items.size()) ? &node.items[size_t(*index)] : nullptr;
+    for (ConfigNode& item : node.items)
+      if (is_called(item, word)) return &item;
+    return nullptr;
   }
   if (node.kind == Kind::scalar) {
     ConfigNode map;
@@ -170,8 +181,11 @@ bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const
     const size_t size = node->items.size();
     node = step(*node, word, where);
     if (!node) {
-      errors.push_back({where, "\"" + word + "\" is not an index of a list of " + std::to_string(size) +
-                                   ", counted from 0"});
+      const std::string of_list = " of a list of " + std::to_string(size) + ", counted from 0";
+      errors.push_back({where, "\"" + word + "\" is " +
+                                   (parse_integer(word) ? "not an index" + of_list
+                                                        : "neither an index" + of_list +
+                                                              ", nor the type or name of an item")});
       return false;
     }
   }

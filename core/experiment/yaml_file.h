@@ -18,9 +18,10 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 /// The node in block style, lists of scalars on one line; reading it gives the node back.
 std::string to_yaml(const ConfigNode& node);
 
-/// Sets what is at a path of keys and list indices from 0 ("metrics.0.type") to a YAML value, making maps on
-/// the way; a plugin's bare name becomes `{type: name}`. Places are named "--set <path>".
-/// Returns false, with an error appended, where that cannot be.
+/// Sets what is at a path of keys and of indices from 0 or types or names in lists ("metrics.0.type",
+/// "energies.gravity.acceleration") to a YAML value, making maps on the way; a plugin's bare name becomes
+/// `{type: name}`. Places are named "--set <path>". Returns false, with an error appended, where that cannot
+/// be.
 bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors);
 
 /// The same with a value that has been read, and keeps its places; `where` is the path's own.

@@ -25,9 +25,31 @@ void ActiveContacts::build(const Positions& x) {
 void ActiveContacts::begin_step(const Positions& x) {
   if (models_.empty()) return;
   build(x);
+  // Anchors that an obstacle has taken along are ahead of a cloth that has had no step to follow.
+  if (!carried_) from_ = dragged(x);
+  carried_ = false;
+  lag();
+}
+
+Positions ActiveContacts::dragged(const Positions& x) const {
   Positions anchors = x;
   for (const auto& friction : friction_) friction->drag(x, from_, anchors);
-  from_ = std::move(anchors);
+  return anchors;
+}
+
+void ActiveContacts::models_changed(const BoundContacts& before, const Positions& x) {
+  if (models_ == before) return;
+  if (!carried_) from_ = dragged(x);
+  for (std::size_t k = 0; k < models_.size(); ++k)
+    if (const auto* movable = dynamic_cast<const MovableObstacles*>(models_[k].get());
+        movable && models_[k] != before[k])
+      movable->carry(*before[k], x, from_);
+  carried_ = true;
+  sweeps_.clear();
+  sets_.clear();
+  friction_.clear();
+  state_.resize(0, 3);
+  build(x);
   lag();
 }
 

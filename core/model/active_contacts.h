@@ -19,7 +19,7 @@ struct ContactMemory {
 /// friction remembers. Empty, and without any work, where the level has no contact model.
 class ActiveContacts {
  public:
-  explicit ActiveContacts(const std::vector<std::unique_ptr<BoundContact>>& models) : models_(models) {}
+  explicit ActiveContacts(const BoundContacts& models) : models_(models) {}
 
   bool any() const { return !models_.empty(); }
   bool has_friction() const { return !friction_.empty(); }
@@ -29,6 +29,9 @@ class ActiveContacts {
   /// A step begins at x: friction takes the normal forces and tangents there, and its anchors, which are
   /// where displacements count from, have followed what slid in the last one.
   void begin_step(const Positions& x);
+  /// The models, `before` until now, are those of other conditions, and the cloth is at x, within both: what
+  /// friction remembers moves along with the obstacles.
+  void models_changed(const BoundContacts& before, const Positions& x);
   /// Renews the normal forces and tangents at x; displacements count from where they did.
   void renew_lag(const Positions& x);
 
@@ -60,14 +63,17 @@ class ActiveContacts {
   void sweep(const Positions& x0, const Positions& x1);
   void build(const Positions& x);
   void lag();
+  /// Anchors that have followed what slid in the last step.
+  Positions dragged(const Positions& x) const;
 
-  const std::vector<std::unique_ptr<BoundContact>>& models_;
+  const BoundContacts& models_;
   std::vector<std::unique_ptr<ContactSweep>> sweeps_;
   std::vector<std::unique_ptr<ContactSet>> sets_;   // at state_
   std::shared_ptr<const Way> swept_, built_along_;  // of sweeps_, and of those that sets_ come from
   std::vector<std::unique_ptr<FrictionEnergy>> friction_;
   Positions state_, from_;
   bool with_friction_ = true;
+  bool carried_ = false;  // from_ has moved with obstacles since the last step
   double seconds_building_ = 0;
 };
 

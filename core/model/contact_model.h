@@ -62,6 +62,23 @@ class BoundContact {
   virtual std::vector<TriangleMesh> obstacles() const = 0;
 };
 
+/// An optional ability of a BoundContact whose obstacles may stand elsewhere than in the one before it.
+class MovableObstacles {
+ public:
+  virtual ~MovableObstacles() = default;
+  /// How far the obstacles come from where `before`, of the same kind and level, has them to where this has
+  /// them, the cloth staying at x, touching nothing and keeping a part of every gap. The way is that of
+  /// parameters that change linearly, so that it is 1 where they are changed by this part only, and where
+  /// nothing has moved. Throws std::runtime_error naming an obstacle that is no longer made of the same
+  /// parts.
+  virtual StepLimit max_move(const BoundContact& before, const Positions& x) const = 0;
+  /// Moves the rows of `anchors` (n×3) of vertices in contact at x along with what they touch.
+  virtual void carry(const BoundContact& before, const Positions& x, Positions& anchors) const = 0;
+};
+
+/// The contacts of one level, which may be shared by its models under different conditions.
+using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
+
 /// A kind of contact, made by name from its parameters.
 class ContactModel {
  public:

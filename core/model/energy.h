@@ -31,9 +31,10 @@ struct Projection {
   }
 };
 
-/// The part an energy plays: `external` ones define the load of the force residual; a `limit` belongs to the
-/// mesh it is on, as contact does, and is never evaluated on a finer one in its place.
-enum class EnergyRole { membrane, bending, external, limit };
+/// The part an energy plays: `external` ones define the load of the force residual; `position` ones pull
+/// vertices to places; a `limit` belongs to the mesh it is on, as contact does, and is never evaluated on a
+/// finer one in its place.
+enum class EnergyRole { membrane, bending, external, position, limit };
 
 /// How far along a step a state stays allowed, and what ends it there.
 struct StepLimit {

@@ -1,6 +1,7 @@
 #include "core/model/level_model.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace drape {
 
@@ -18,27 +19,65 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
 double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
 
 LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
-                       std::vector<char> fixed, const std::vector<std::shared_ptr<ContactModel>>& contacts)
-    : level_(level),
+                       std::vector<HeldVertex> held,
+                       const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before)
+    : level_(&level),
       material_(material),
-      fixed_(std::move(fixed)),
+      held_(std::move(held)),
+      fixed_(level.vertex_count(), 0),
       masses_(material.area_density() * level.vertex_area) {
-  std::vector<Stencils> stencils;
-  for (const NamedEnergy& e : energies) {
-    Term term{e.name, e.energy->role(), e.energy->bind(level, material), nullptr};
-    stencils.push_back(term.energy->stencils());
-    if (term.role == EnergyRole::limit) limits_.push_back(term.energy.get());
-    terms_.push_back(std::move(term));
-  }
-  pattern_ = BlockPattern::of(level.vertex_count(), stencils);
-  for (std::size_t t = 0; t < terms_.size(); ++t)
-    if (stencils[t].rows() > 0 && terms_[t].role != EnergyRole::limit)
-      terms_[t].slots = std::make_unique<BlockSlots>(*pattern_, stencils[t]);
+  for (const HeldVertex& h : held_) fixed_[h.vertex] = 1;
+  bind_energies(energies, before);
   for (const Term& term : terms_)
     if (term.role == EnergyRole::external && term.slots) load_is_constant_ = false;
-  for (const auto& contact : contacts)
-    if (auto bound = contact->bind(level, material)) contacts_.push_back(std::move(bound));
+  bind_contacts(contacts, before);
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+}
+
+void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before) {
+  std::vector<Stencils> stencils;
+  for (std::size_t t = 0; t < energies.size(); ++t) {
+    const NamedEnergy& e = energies[t];
+    const Term* old = before ? &before->terms_.at(t) : nullptr;
+    if (old && old->kind == e.energy && before->material_ == material_) {
+      terms_.push_back(*old);
+    } else {
+      Term term{e.name, e.energy->role(), e.energy, e.energy->bind(*level_, material_), nullptr};
+      Stencils own = term.energy->stencils();
+      if (old && own != old->energy->stencils())
+        throw std::runtime_error("energy " + e.name +
+                                 " has other stencils under other conditions; they may not depend on a "
+                                 "parameter that a schedule changes");
+      if (old) term.slots = old->slots;
+      stencils.push_back(std::move(own));
+      terms_.push_back(std::move(term));
+    }
+    if (terms_.back().role == EnergyRole::limit) limits_.push_back(terms_.back().energy.get());
+  }
+  if (before) {
+    pattern_ = before->pattern_;
+    return;
+  }
+  pattern_ = BlockPattern::of(level_->vertex_count(), stencils);
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (stencils[t].rows() > 0 && terms_[t].role != EnergyRole::limit)
+      terms_[t].slots = std::make_shared<BlockSlots>(*pattern_, stencils[t]);
+}
+
+void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts,
+                               const LevelModel* before) {
+  contact_kinds_ = contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const bool same = before && before->contact_kinds_.at(k) == contacts[k] && before->material_ == material_;
+    bound_.push_back(same ? before->bound_[k] : contacts[k]->bind(*level_, material_));
+    if (bound_.back()) contacts_.push_back(bound_.back());
+  }
+}
+
+void LevelModel::take_contacts(const LevelModel& other) {
+  contact_kinds_ = other.contact_kinds_;
+  bound_ = other.bound_;
+  contacts_ = other.contacts_;
 }
 
 double LevelModel::value(const Positions& x) const {

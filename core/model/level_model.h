@@ -19,17 +19,32 @@ struct NamedEnergy {
   std::shared_ptr<const Energy> energy;
 };
 
+/// A vertex held at a place.
+struct HeldVertex {
+  int vertex = 0;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< [m]
+  int pin = 0;                                      ///< which of the experiment's pins holds it
+};
+
 /// The plain model of one level: the sum E_l of its energies, what keeps it apart from itself and others, its
-/// lumped masses and its fixed vertices (docs/method.md, section 1). Immutable; refers to `level`, which must
-/// outlive it.
+/// lumped masses and its held vertices (docs/method.md, section 1), under the conditions of one moment. Under
+/// others it is another one, assigned to it. Refers to `level`, which must outlive it.
 class LevelModel {
  public:
-  /// `fixed` has one flag a vertex: 1 where it is held at its place.
+  /// No vertex may be held twice. What `before`, a model of the same level under other conditions, has in
+  /// common is shared with it. Throws std::runtime_error where an energy's stencils are others there: a
+  /// pattern is for all conditions.
   LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
-             std::vector<char> fixed, const std::vector<std::shared_ptr<ContactModel>>& contacts = {});
+             std::vector<HeldVertex> held, const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
+             const LevelModel* before = nullptr);
 
-  const Level& level() const { return level_; }
+  /// Has the contacts of another model of the level.
+  void take_contacts(const LevelModel& other);
+
+  const Level& level() const { return *level_; }
   const Material& material() const { return material_; }
+  const std::vector<HeldVertex>& held() const { return held_; }
+  /// One flag a vertex: 1 where it is held.
   const std::vector<char>& fixed() const { return fixed_; }
   const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
 
@@ -44,7 +59,7 @@ class LevelModel {
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }
   /// Empty where nothing is to be kept apart.
-  const std::vector<std::unique_ptr<BoundContact>>& contacts() const { return contacts_; }
+  const BoundContacts& contacts() const { return contacts_; }
 
   /// Energy of each term, limits included, in the order given, and of the contacts if there are any [J].
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
@@ -63,19 +78,25 @@ class LevelModel {
   struct Term {
     std::string name;
     EnergyRole role;
-    std::unique_ptr<BoundEnergy> energy;
-    std::unique_ptr<BlockSlots> slots;  // null where the energy is linear
+    std::shared_ptr<const Energy> kind;  // that it was bound from
+    std::shared_ptr<const BoundEnergy> energy;
+    std::shared_ptr<const BlockSlots> slots;  // null where the energy is linear
   };
 
+  void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
+  void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;
 
-  const Level& level_;
+  const Level* level_;
   Material material_;
+  std::vector<HeldVertex> held_;
   std::vector<char> fixed_;
   Eigen::VectorXd masses_;
   std::vector<Term> terms_;
   std::vector<const BoundEnergy*> limits_;
-  std::vector<std::unique_ptr<BoundContact>> contacts_;
+  std::vector<std::shared_ptr<ContactModel>> contact_kinds_;  // that contacts_ were bound from
+  std::vector<std::shared_ptr<const BoundContact>> bound_;    // of each of them; null where it binds nothing
+  BoundContacts contacts_;                                    // those that are not null
   std::shared_ptr<const BlockPattern> pattern_;
   bool load_is_constant_ = true;   // whether every external energy is linear
   double constant_load_norm_ = 0;  // then the norm of its forces

@@ -13,6 +13,7 @@ struct Material {
   double poisson_ratio = 0.243;   ///< ν [1]
 
   static void declare(Declaration<Material>& d);
+  bool operator==(const Material&) const = default;
 
   /// Mass of a unit of area, ρ d [kg/m²].
   double area_density() const { return density * thickness; }

@@ -8,6 +8,7 @@ double Objective::gradient(const Positions& x, Positions& g) {
   double sum = smooth_gradient(x, g);
   for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
     sum += limits_[k]->add_gradient(x, g);
+  if (penalty_) sum += penalty_->add_gradient(x, g);
   return std::isfinite(sum) ? sum + contacts_.add_gradient(x, g) : sum;
 }
 
@@ -20,15 +21,23 @@ double Objective::plain_energy(const Positions& x) {
 double Objective::value(const Positions& x) {
   double sum = smooth_value(x);
   for (const BoundEnergy* limit : limits_) sum += limit->value(x);
+  if (penalty_) sum += penalty_->value(x);
   return std::isfinite(sum) ? sum + contacts_.barrier(x) + contacts_.friction(x) : sum;
 }
 
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> local = contacts_.energies(x);
-  smooth_alone_ = local.empty() && limits_.empty();
+  smooth_alone_ = local.empty() && limits_.empty() && !penalty_;
   if (smooth_alone_) return smooth;
-  return sum_.add(smooth, limits_, local, x, projection);
+  std::vector<const BoundEnergy*> lasting = limits_;
+  if (penalty_) lasting.push_back(penalty_);
+  return sum_.add(smooth, lasting, local, x, projection);
+}
+
+void Objective::model_changed(const BoundContacts& before, const Positions& x) {
+  set_limits(model_.limits());
+  contacts_.models_changed(before, x);
 }
 
 std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {

@@ -45,6 +45,16 @@ class Objective {
   /// be evaluated at x0 and at states that far, and with contact nowhere else.
   StepLimit max_step(const Positions& x0, const Positions& x1);
 
+  /// The model is under other conditions, its contacts having been `before`; the cloth is at x.
+  void model_changed(const BoundContacts& before, const Positions& x);
+  /// Adds an energy that is no part of the model, such as a pull to a place; null for none.
+  void set_penalty(const BoundEnergy* penalty) {
+    if (penalty || penalty_) sum_ = SumMatrix();
+    penalty_ = penalty;
+  }
+  /// Whether the vertices that the model holds are to be brought to their places.
+  virtual bool brings_held_vertices() const { return true; }
+
   /// Contacts, their gaps and friction's memory; what a step does with them.
   ActiveContacts& contacts() { return contacts_; }
 
@@ -70,6 +80,7 @@ class Objective {
  private:
   const LevelModel& model_;
   std::vector<const BoundEnergy*> limits_;
+  const BoundEnergy* penalty_ = nullptr;
   ActiveContacts contacts_;
   SumMatrix sum_;
   bool smooth_alone_ = true;

@@ -6,9 +6,7 @@ namespace drape {
 
 Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const {
   Positions y = weights * x;
-  const std::vector<char>& fixed = models[level + 1]->fixed();
-  for (Eigen::Index i = 0; i < y.rows(); ++i)
-    if (fixed[i]) y.row(i) = starts[level + 1].row(i);
+  for (const HeldVertex& h : models[level + 1]->held()) y.row(h.vertex) = h.place.transpose();
   return y;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/hierarchy/hierarchy.h"
+#include "core/model/conditions.h"
 #include "core/model/contact_model.h"
 #include "core/model/level_model.h"
 
@@ -16,10 +17,11 @@ namespace drape {
 struct Problem {
   const Hierarchy& hierarchy;
   std::vector<const LevelModel*> models;  ///< the plain model of every level
-  std::vector<Positions> starts;          ///< the scene's start on every level, fixed vertices in place
+  std::vector<Positions> starts;          ///< the scene's start on every level, held vertices in place
+  Conditions* conditions = nullptr;       ///< that change while a level is solved; null where none do
 
   int finest() const { return static_cast<int>(models.size()) - 1; }
-  /// A level's state carried to the next one by `weights` (n_{l+1} × n_l), fixed vertices put in place.
+  /// A level's state carried to the next one by `weights` (n_{l+1} × n_l), held vertices put in place.
   Positions carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const;
 };
 
@@ -30,6 +32,7 @@ const char* to_string(Outcome outcome);
 /// One Newton iteration, as observers see it.
 struct IterationRow {
   int level = 0, step = 0, iteration = 0;
+  std::optional<double> time;          ///< pseudo-time, where conditions change
   double seconds = 0;                  ///< since the method's start
   double flops = 0;                    ///< of the level's factorisations so far
   double energy = 0;                   ///< E_l, the plain energy of the level [J]
@@ -57,6 +60,7 @@ struct LevelResult {
   double decrement = 0;
   double force_residual = 0;           ///< of what was minimised [1]
   std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
+  ConditionsState conditions;          ///< that it reached, where they change
 };
 
 struct NewtonState;
@@ -68,6 +72,8 @@ class Observer {
   virtual ~Observer() = default;
   virtual void level_started(int level) { (void)level; }
   virtual void iteration(const IterationRow& row, const Positions& x) { (void)row, (void)x; }
+  /// What the level came to under one of its conditions; x is as it was before the next ones.
+  virtual void change_finished(const ChangeRow& row, const Positions& x) { (void)row, (void)x; }
   virtual void level_finished(const LevelResult& result) { (void)result; }
   virtual bool stop_requested() { return false; }
   /// Whether the level is to end as it is and the next one to begin. Not asked on the finest level.

@@ -7,6 +7,7 @@
 
 #include "core/model/stretch_limit.h"
 #include "core/numerics/block_cholesky.h"
+#include "core/numerics/hard_positions.h"
 
 namespace drape {
 
@@ -70,8 +71,16 @@ constexpr double solved_part = 0.1;
 constexpr double no_fresh_direction = 2;
 /// Differences of energies below this part of them are rounding, not descent.
 constexpr double energy_noise = 1e-12;
+/// Held vertices that are pulled are pulled harder at this many times the force tolerance.
+constexpr double near_equilibrium = 10;
+/// A change of conditions of which less than this part is made at equilibrium is held up; so often in turn,
+/// and it is given up.
+constexpr double held_up = 1e-3;
+constexpr int most_held_up = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
+/// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
+constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
 
@@ -90,12 +99,16 @@ class Newton {
         p_(parameters),
         run_(run),
         observer_(run.observer),
+        conditions_(run.conditions),
+        hard_(model_),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
-    free_count_ = static_cast<double>(std::count(model_.fixed().begin(), model_.fixed().end(), 0));
+    take_positions();
+    const Positions& rest = model_.level().rest.vertices;
+    diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
   LevelResult run() {
@@ -105,8 +118,17 @@ class Newton {
       return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
     for (bool step_begun = run_.from != nullptr;; step_begun = false) {
       if (!step_begun) {
-        if (converged()) return finish(Outcome::converged, "");
-        if (result_.steps == p_.max_steps)
+        while (hard_.pulling() && result_.force_residual <= near_equilibrium * p_.force_tolerance) pull_on();
+        const bool settled = !hard_.pulling() && converged();
+        const bool changing = conditions_ && !conditions_->finished();
+        if (settled && !changing) return finish_settled();
+        if (changing && !hard_.pulling() && (settled || !conditions_->settles())) {
+          change_conditions(settled);
+          if (times_held_up_ == most_held_up)
+            return finish(Outcome::infeasible, "the conditions of pseudo-time " + brief(conditions_->time()) +
+                                                   " cannot be reached" + held());
+        }
+        if (result_.steps - changed_at_.steps == p_.max_steps)
           return finish(Outcome::out_of_steps,
                         "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
                             "; force residual " + brief(result_.force_residual));
@@ -118,6 +140,12 @@ class Newton {
         return finish(Outcome::refined_early,
                       "refined on request; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
+      const double gone = (middle() - begun_at_).norm() / diagonal_;
+      if (gone > lost_after)
+        return finish(Outcome::infeasible,
+                      "nothing holds the cloth: it has moved on by " + brief(gone) +
+                          " of its diagonals and does not come to rest; pin it, put something under it, or "
+                          "raise the friction");
     }
   }
 
@@ -127,7 +155,10 @@ class Newton {
     f_.contacts().begin_step(result_.x);
     evaluate();
     if (std::isfinite(energy_)) update_residual();
-    return std::isfinite(energy_) && std::isfinite(result_.force_residual);
+    if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual)) return false;
+    begun_at_ = middle();
+    bring_held_vertices();
+    return true;
   }
 
   /// After begin_step.
@@ -141,6 +172,11 @@ class Newton {
     s.projection_share = share_;
     std::copy_n(decrements_, 3, s.decrements.begin());
     s.held_by = limit_.by;
+    s.positions = hard_.memory();
+    if (conditions_) s.so_far.conditions = conditions_->state();
+    s.changed_at = changed_at_;
+    s.times_held_up = times_held_up_;
+    s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
     s.contacts = f_.contacts().memory();
     s.pattern = f_.pattern_memory();
     s.analysis = cholesky_.analysis();
@@ -162,6 +198,11 @@ class Newton {
     limit_.by = s.held_by;
     age_ = s.factor_age;
     origin_ = result_.x;
+    hard_.restore(s.positions);
+    take_positions();
+    changed_at_ = s.changed_at;
+    times_held_up_ = s.times_held_up;
+    begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
     if (s.analysis.count == 0) return;
@@ -178,6 +219,14 @@ class Newton {
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
+  /// Mean of the free vertices.
+  Eigen::RowVector3d middle() const {
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    for (Eigen::Index i = 0; i < result_.x.rows(); ++i)
+      if (!fixed_[i]) sum += result_.x.row(i);
+    return sum / std::max(free_count_, 1.0);
+  }
+
   bool converged() {
     if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
     if (p_.decrement_tolerance > 0 &&
@@ -189,6 +238,106 @@ class Newton {
     evaluate();
     update_residual();
     return result_.force_residual <= p_.force_tolerance;
+  }
+
+  LevelResult finish_settled() {
+    if (conditions_) report_change();
+    if (!hard_.given_up()) return finish(Outcome::converged, "");
+    return finish(Outcome::infeasible,
+                  hard_.message(result_.x, limit_.by) + "; the rest of the cloth is at equilibrium");
+  }
+
+  /// The next change of conditions, or what is left of the one under way, as far as it is allowed.
+  void change_conditions(bool settled) {
+    const bool begins = conditions_->made();
+    if (begins && (settled || conditions_->change() > 0)) report_change();
+    const BoundContacts before = model_.contacts();
+    limit_ = conditions_->advance(result_.level, result_.x);
+    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
+    begun_at_ = middle();
+    times_held_up_ = settled && limit_.fraction < held_up ? times_held_up_ + 1 : 0;
+    f_.model_changed(before, result_.x);
+    age_ = p_.refresh;
+    bring_held_vertices();
+  }
+
+  void report_change() {
+    ChangeRow row;
+    row.level = result_.level;
+    row.change = conditions_->change();
+    row.time = conditions_->time();
+    row.steps = result_.steps - changed_at_.steps;
+    row.iterations = result_.iterations - changed_at_.iterations;
+    row.seconds = run_.clock.seconds() - changed_at_.seconds;
+    row.energy = energy_ - f_.contacts().friction(result_.x);
+    row.force_residual = result_.force_residual;
+    row.farthest_missing = hard_.farthest(result_.x);
+    observer_.change_finished(row, result_.x);
+  }
+
+  /// Where the model holds vertices at other places than x has them: the cloth as a whole is moved there, as
+  /// its matrix would have it, or as far as limits and contact let it; then held vertices are pulled.
+  void bring_held_vertices() {
+    if (f_.brings_held_vertices()) hard_.begin(result_.x);
+    take_positions();
+    if (!hard_.pulling()) return;
+    if (move_with_held_vertices() < 1) {
+      hard_.pull();
+      take_positions();
+    }
+  }
+
+  /// Near equilibrium with held vertices pulled: they are put on their places if nothing is in the way, or
+  /// pulled harder, or given up.
+  void pull_on() {
+    if (move_with_held_vertices(true) < 1) {
+      hard_.pull_harder(result_.x);
+      take_positions();
+    }
+  }
+
+  /// Moves x by the held vertices' ways and by what the matrix makes of them elsewhere, so far as is allowed;
+  /// with `whole`, only if that is all of it. How far.
+  double move_with_held_vertices(bool whole = false) {
+    const Positions way = hard_.way(result_.x);
+    std::vector<char> fixed = fixed_;
+    fixed_ = model_.fixed();
+    origin_ = result_.x;
+    age_ = p_.refresh;
+    factorise();
+    factored_->multiply(way, r_);
+    for (const HeldVertex& h : model_.held()) r_.row(h.vertex).setZero();
+    cholesky_.solve(r_, direction_);
+    direction_ = way - direction_;
+    age_ = p_.refresh;
+    trial_ = result_.x + direction_;
+    for (const HeldVertex& h : model_.held()) trial_.row(h.vertex) = h.place.transpose();
+    limit_ = f_.max_step(result_.x, trial_);
+    double fraction = limit_.fraction;
+    while (fraction > shortest_step) {
+      if (fraction < 1) trial_ = result_.x + fraction * direction_;
+      if (std::isfinite(f_.gradient(trial_, trial_g_))) break;
+      fraction *= 0.5;
+    }
+    fixed_ = std::move(fixed);
+    if (fraction == 1) {
+      hard_.arrive();
+      result_.x = trial_;
+    } else if (!whole && fraction > shortest_step) {
+      result_.x = trial_;
+    }
+    take_positions();
+    return fraction;
+  }
+
+  /// What is fixed and pulled has changed, and so has what is minimised.
+  void take_positions() {
+    fixed_ = hard_.fixed();
+    free_count_ = static_cast<double>(std::count(fixed_.begin(), fixed_.end(), 0));
+    f_.set_penalty(hard_.penalty());
+    if (g_.rows() == 0) return;
+    evaluate();
+    update_residual();
   }
 
   std::string fault_at_start() const {
@@ -229,7 +378,7 @@ class Newton {
   /// Whether more iterations of the implicit step would be about less than its end is asked for.
   bool step_is_solved() {
     shifted_gradient();
-    return free_norm(r_, model_.fixed()) <= solved_part * p_.force_tolerance * scale_;
+    return free_norm(r_, fixed_) <= solved_part * p_.force_tolerance * scale_;
   }
 
   bool iterate(int iteration) {
@@ -299,7 +448,7 @@ class Newton {
     inertia_ = 0;
     const double s = inverse_h2();
     for (Eigen::Index i = 0; i < r_.rows(); ++i) {
-      if (model_.fixed()[i]) {
+      if (fixed_[i]) {
         r_.row(i).setZero();
         continue;
       }
@@ -351,7 +500,7 @@ class Newton {
   bool try_factor(const BlockMatrix& matrix, double extra_shift) {
     {
       PhaseTimer t(result_.seconds_by_phase, "analyse");
-      cholesky_.analyse(matrix.pattern, model_.fixed());
+      cholesky_.analyse(matrix.pattern, fixed_);
     }
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
@@ -373,7 +522,7 @@ class Newton {
     }
     PhaseTimer t(result_.seconds_by_phase, "gradient");
     const double before = energy_ + inertia_;
-    const double force_before = free_norm(r_, model_.fixed());
+    const double force_before = free_norm(r_, fixed_);
     for (alpha_ = limit_.fraction; alpha_ >= shortest_step; alpha_ *= 0.5) {
       trial_ = result_.x + alpha_ * direction_;
       const double energy = f_.gradient(trial_, trial_g_);
@@ -398,14 +547,13 @@ class Newton {
     double sum = 0;
     const double s = inverse_h2();
     for (Eigen::Index i = 0; i < x.rows(); ++i)
-      if (!model_.fixed()[i])
-        sum += (g.row(i) + s * model_.masses()[i] * (x.row(i) - origin_.row(i))).squaredNorm();
+      if (!fixed_[i]) sum += (g.row(i) + s * model_.masses()[i] * (x.row(i) - origin_.row(i))).squaredNorm();
     return std::sqrt(sum);
   }
 
   void update_residual() {
     scale_ = f_.residual_scale(result_.x, g_);
-    result_.force_residual = free_norm(g_, model_.fixed()) / scale_;
+    result_.force_residual = free_norm(g_, fixed_) / scale_;
   }
 
   void report(int iteration) {
@@ -427,6 +575,7 @@ class Newton {
     row.force_residual = result_.force_residual;
     row.step_length = alpha_;
     row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
+    if (conditions_) row.time = conditions_->time();
     row.seconds = run_.clock.seconds();
     row.flops = result_.flops;
     observer_.iteration(row, result_.x);
@@ -434,6 +583,7 @@ class Newton {
 
   LevelResult finish(Outcome outcome, std::string message) {
     result_.outcome = outcome;
+    if (conditions_) result_.conditions = conditions_->state();
     result_.message = std::move(message);
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
@@ -452,6 +602,11 @@ class Newton {
   const LevelRun& run_;
   const Stopwatch watch_;
   Observer& observer_;
+  Conditions* conditions_;
+  HardPositions hard_;
+  std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
+  ChangeBegun changed_at_;   // when the change under way was begun
+  int times_held_up_ = 0;
 
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of
@@ -462,6 +617,8 @@ class Newton {
   StepLimit limit_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
+  Eigen::RowVector3d begun_at_;
+  double diagonal_ = 1;
   double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
   int share_ = std::size(shares) - 1;
   double decrements_[3] = {};

@@ -9,8 +9,15 @@
 #include "core/model/objective.h"
 #include "core/model/solver.h"
 #include "core/numerics/block_cholesky.h"
+#include "core/numerics/hard_positions.h"
 
 namespace drape {
+
+/// Where a level was when the change of conditions under way was begun.
+struct ChangeBegun {
+  int steps = 0, iterations = 0;
+  double seconds = 0;
+};
 
 /// A level under way, at the beginning of an implicit step: all that the steps to come depend on, bit for
 /// bit. What follows from the rest (energy, gradient, contacts, the layout of the factor) is not in it.
@@ -22,6 +29,10 @@ struct NewtonState {
   int projection_share = 0;   ///< which of the shares of the projection worked last
   std::array<double, 3> decrements{};
   std::string held_by;  ///< what kept the last step short, in words
+  HardPositions::Memory positions;
+  ChangeBegun changed_at;
+  int times_held_up = 0;             ///< in turn, the change of conditions under way
+  std::array<double, 3> begun_at{};  ///< middle of the free vertices, at the start or the last change [m]
   ContactMemory contacts;
   Objective::PatternMemory pattern;
   BlockCholesky::Analysis analysis;
@@ -42,5 +53,12 @@ struct MethodState {
   /// The state of a level under way, null of any other.
   const NewtonState* of(int l) const { return l == level && under_way ? &*under_way : nullptr; }
 };
+
+/// Puts a problem's models under the conditions that its levels had in the state.
+inline void restore_conditions(const Problem& problem, const MethodState& state) {
+  if (!problem.conditions) return;
+  for (const LevelResult& level : state.finished) problem.conditions->restore(level.level, level.conditions);
+  if (state.under_way) problem.conditions->restore(state.level, state.under_way->so_far.conditions);
+}
 
 }  // namespace drape

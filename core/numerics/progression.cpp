@@ -10,10 +10,12 @@ std::vector<LevelResult> solve_progressively(
     const MethodState& from, Observer& observer) {
   const Stopwatch clock(from.seconds);
   std::vector<LevelResult> results = from.finished;
+  restore_conditions(problem, from);
   const int first = results.empty() ? from.level : results.front().level;
   for (int l = from.level; l <= problem.finest(); ++l) {
     if (!results.empty() && results.back().dead_end) break;
     const NewtonState* state = from.of(l);
+    if (problem.conditions && !state) problem.conditions->begin(l, l == first);
     Refined start;
     if (l == first)
       start.x = problem.starts[l];
@@ -33,7 +35,7 @@ std::vector<LevelResult> solve_progressively(
       result.dead_end = true;
     } else {
       result = minimise(*objective(l), std::move(start.x), newton,
-                        {clock, observer, l < problem.finest(), spent, state});
+                        {clock, observer, l < problem.finest(), spent, state, problem.conditions});
       result.dead_end = result.outcome == Outcome::cancelled;
     }
     result.afresh = l == first;

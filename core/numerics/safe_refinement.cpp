@@ -22,10 +22,15 @@ class PullToTarget : public Objective {
   PullToTarget(const LevelModel& model, const Positions& from, Positions target)
       : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
     contacts().leave_out_friction();
-    Positions g;
-    smooth_gradient(from, g);
-    scale_ = std::max(free_norm(g, model.fixed()), std::numeric_limits<double>::min());
+    take_scale(from);
     divide(from);
+  }
+
+  /// Lets go of the target by so much, for what the pull keeps outside its limits: beside a vertex that is
+  /// pinned on this level alone, the target is where the coarse cloth was, and too far.
+  void loosen(const Positions& y) {
+    looseness_ *= 10;
+    take_scale(y);
   }
 
   /// Sorts the triangles at y into F and the others; the number of others.
@@ -60,6 +65,7 @@ class PullToTarget : public Objective {
 
   double residual_scale(const Positions&, const Positions&) const override { return scale_; }
   bool is_proxy() const override { return false; }
+  bool brings_held_vertices() const override { return false; }
 
  protected:
   double smooth_value(const Positions& y) override {
@@ -90,7 +96,13 @@ class PullToTarget : public Objective {
   }
 
  private:
-  double weight(Eigen::Index i) const { return model().masses()[i] / (pull * pull); }
+  double weight(Eigen::Index i) const { return model().masses()[i] / (pull * pull * looseness_); }
+
+  void take_scale(const Positions& y) {
+    Positions g;
+    smooth_gradient(y, g);
+    scale_ = std::max(free_norm(g, model().fixed()), std::numeric_limits<double>::min());
+  }
 
   /// Without limits there is nothing between vertices but contact.
   static std::shared_ptr<const BlockPattern> pattern_for(const LevelModel& model) {
@@ -104,7 +116,7 @@ class PullToTarget : public Objective {
   std::vector<std::unique_ptr<BoundEnergy>> inside_limits_;
   std::unique_ptr<BoundEnergy> penalty_;
   std::unique_ptr<BlockSlots> slots_;
-  double scale_ = 1;
+  double scale_ = 1, looseness_ = 1;
 };
 
 /// Passes on nothing but the wish to stop.
@@ -116,6 +128,17 @@ class Quiet : public Observer {
  private:
   Observer& observer_;
 };
+
+/// Moves held vertices to their places as far as nothing is in the way; the level's own solve goes on with
+/// it.
+void move_pins(const LevelModel& model, Positions& y) {
+  Positions placed = y;
+  for (const HeldVertex& h : model.held()) placed.row(h.vertex) = h.place.transpose();
+  if (placed == y) return;
+  ActiveContacts contacts(model.contacts());
+  const StepLimit limit = contacts.max_step(y, placed);
+  y = limit.fraction == 1 ? placed : Positions(y + limit.fraction * (placed - y));
+}
 
 std::string name_outside(const LevelModel& model, const Positions& y) {
   constexpr std::size_t most_named = 5;
@@ -132,17 +155,6 @@ std::string name_outside(const LevelModel& model, const Positions& y) {
 
 }  // namespace
 
-std::string place_fixed(const LevelModel& model, const Positions& start, Positions& y) {
-  Positions placed = y;
-  for (Eigen::Index i = 0; i < y.rows(); ++i)
-    if (model.fixed()[i]) placed.row(i) = start.row(i);
-  if (placed == y) return "";
-  ActiveContacts contacts(model.contacts());
-  const StepLimit limit = contacts.max_step(y, placed);
-  y += limit.fraction * (placed - y);
-  return limit.fraction < 1 ? "a pin cannot reach its place: " + limit.by : "";
-}
-
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
   const Stopwatch watch;
@@ -154,10 +166,10 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     return refined;
   }
   refined.x = problem.hierarchy.midpoints[level] * x;
-  refined.fault = place_fixed(model, problem.starts[level + 1], refined.x);
+  move_pins(model, refined.x);
   Positions target = problem.carry_up(weights, level, x);
   const bool there = target == refined.x && name_outside(model, target).empty();
-  if (refined.fault.empty() && !there) {
+  if (!there) {
     PullToTarget objective(model, refined.x, std::move(target));
     NewtonParameters newton;
     newton.form = NewtonForm::statics;
@@ -173,7 +185,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       const int left = objective.divide(refined.x);
       refined.cut_short = result.outcome == Outcome::cancelled;
       if (left == 0 || refined.cut_short) break;
-      if (left == outside && result.iterations == 0) break;
+      if (left >= outside || result.iterations == 0) objective.loosen(refined.x);
       outside = left;
     }
     if (!refined.cut_short) refined.fault = name_outside(model, refined.x);

@@ -24,8 +24,4 @@ struct Refined {
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer);
 
-/// Moves the fixed vertices of y to their places in `start`, as far as nothing is in the way; what is,
-/// otherwise.
-std::string place_fixed(const LevelModel& model, const Positions& start, Positions& y);
-
 }  // namespace drape

@@ -33,9 +33,15 @@ void read_sweep(const fs::path& folder, RunSet& set) {
   for (const Json& entry : json["runs"]) {
     if (!entry.is_object()) continue;
     SetRun run;
+    run.sweep = text_at(json, "sweep");
     run.variation = text_at(entry, "name");
     run.status = text_at(entry, "status");
     run.error = text_at(entry, "error");
+    run.exit_code = entry.value("exit_code", 0);
+    if (const auto expect = entry.find("expect"); expect != entry.end() && expect->is_object()) {
+      run.expected = text_at(*expect, "outcome");
+      run.expected_message = text_at(*expect, "message");
+    }
     run.folder = folder / text_at(entry, "folder");
     if (const auto seed = entry.find("seed"); seed != entry.end() && seed->is_number())
       run.seed = seed->get<double>();
@@ -118,6 +124,10 @@ std::vector<const SetRun*> RunSet::of(const std::string& variation) const {
   for (const SetRun& run : runs)
     if (run.variation == variation) found.push_back(&run);
   return found;
+}
+
+bool SetRun::refused() const {
+  return status == "failed" && exit_code == 2 && !fs::exists(folder / "results.json");
 }
 
 bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }

@@ -11,12 +11,17 @@ namespace drape {
 
 /// One of several runs: a variation with one seed.
 struct SetRun {
+  std::string sweep;  ///< its name; empty for a run by itself
   std::string variation;
   Figure seed;
-  std::string status;            ///< as sweep.json has it: "converged", "ended", "failed", …
-  std::string error;             ///< of a failed one
-  std::filesystem::path folder;  ///< as it is found from here
-  std::optional<RunData> data;   ///< of a run that has written results
+  std::string status;  ///< as sweep.json has it: "converged", "ended", "failed", …
+  std::string error;   ///< of a failed one
+  int exit_code = 0;   ///< of its process
+  std::string expected = "converged", expected_message;  ///< how it is to end, and a part of what it says
+  std::filesystem::path folder;                          ///< as it is found from here
+  std::optional<RunData> data;                           ///< of a run that has written results
+
+  bool refused() const;  ///< before anything was computed
 };
 
 /// Runs that are looked at together: those of a sweep, or some folders.

@@ -75,7 +75,8 @@ class LocalEngine {
                      run.name.c_str(), run.seed, needed / 1e9, std::max(0.0, left) / 1e9);
       }
       running_.push_back(
-          {run, needed, RunProcess(folder_.files(run.folder), options_.threads, options_.report)});
+          {run, needed,
+           RunProcess(folder_.files(run.folder), {options_.threads, options_.report, options_.time_limit})});
       waiting_.pop_front();
       folder_.refresh();
       if (needed > left) return;

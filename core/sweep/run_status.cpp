@@ -98,17 +98,24 @@ RunStatus settled(const RunFiles& files, RunStatus status) {
   return status;
 }
 
-RunProcess::RunProcess(RunFiles files, int threads, bool report)
+RunProcess::RunProcess(RunFiles files, const RunProcessOptions& options)
     : files_(std::move(files)),
-      status_(begin(files_, threads)),
+      status_(begin(files_, options.threads)),
       began_(now()),
-      process_(command(files_, threads, report), files_.log(), files_.log()) {}
+      time_limit_(options.time_limit),
+      process_(command(files_, options.threads, options.report), files_.log(), files_.log()) {}
 
 bool RunProcess::ended() {
   if (status_.state != RunState::running) return true;
   const std::optional<Exit> exit = process_.poll();
-  if (!exit) return false;
   const double seconds = now() - began_;
+  if (!exit) {
+    if (time_limit_ > 0 && seconds > time_limit_ && !too_slow_) {
+      too_slow_ = true;
+      process_.signal(SIGKILL);
+    }
+    return false;
+  }
   status_ = settled(files_, status_);
   status_.seconds = seconds;
   status_.exit_code = exit->code;
@@ -116,7 +123,10 @@ bool RunProcess::ended() {
   if (status_.state == RunState::cancelled && !stopped) {
     status_.state = RunState::failed;
     const std::string said = last_lines(files_.log());
-    if (exit->signal)
+    if (too_slow_) {
+      status_.exit_code = exit_too_slow;
+      status_.error = "was ended since it took longer than the sweep's time_limit";
+    } else if (exit->signal)
       status_.error =
           "ended by signal " + std::to_string(exit->signal) + " (" + strsignal(exit->signal) + ")";
     else if (said.empty())

@@ -14,6 +14,9 @@ namespace drape {
 enum class RunState { waiting, running, converged, ended, failed, cancelled };
 const char* to_string(RunState state);
 
+/// Exit codes of runs that say more than that they failed.
+constexpr int exit_refused = 2, exit_too_slow = 124;
+
 /// What is known of one run. Each has a file of its own, so that no two machines write one.
 struct RunStatus {
   RunState state = RunState::waiting;
@@ -23,6 +26,8 @@ struct RunStatus {
   int starts = 0;
   int threads = 0;
 
+  /// Neither computed nor crashed: what was asked for could not be, as it said.
+  bool refused() const { return state == RunState::failed && exit_code == exit_refused; }
   bool has_results() const { return state == RunState::converged || state == RunState::ended; }
   nlohmann::ordered_json json() const;
 };
@@ -44,11 +49,17 @@ void write_status(const RunFiles& files, const RunStatus& status);
 /// cancelled.
 RunStatus settled(const RunFiles& files, RunStatus status);
 
+struct RunProcessOptions {
+  int threads = 1;
+  bool report = false;
+  double time_limit = 0;  ///< [s]; 0: none
+};
+
 /// A `drape run` of the files' config, marked in the status when it begins and when it ends.
 class RunProcess {
  public:
   /// Marks the run as running, removes what an earlier start of it left, and starts.
-  RunProcess(RunFiles files, int threads, bool report);
+  RunProcess(RunFiles files, const RunProcessOptions& options);
 
   bool ended();  ///< marks how, the first time that it is true
   void stop() { stopped_ = true, process_.signal(SIGINT); }
@@ -59,8 +70,9 @@ class RunProcess {
   RunFiles files_;
   RunStatus status_;
   double began_;
+  double time_limit_;
   Process process_;
-  bool stopped_ = false;
+  bool stopped_ = false, too_slow_ = false;
 };
 
 }  // namespace drape

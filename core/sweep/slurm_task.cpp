@@ -27,7 +27,7 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
     write_status(files, before);
     return before.exit_code;
   }
-  RunProcess run(files, threads, report);
+  RunProcess run(files, {threads, report, sweep.value("time_limit", 0.0)});
   for (bool stopped = false; !run.ended();) {
     if (stop() && !stopped) stopped = true, run.stop();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -10,6 +10,7 @@
 #include "core/mesh/io.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/words.h"
+#include "core/sweep/experiment_files.h"
 #include "core/sweep/variations.h"
 
 namespace drape {
@@ -44,7 +45,8 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
 
 class Reader {
  public:
-  Reader(const Registry& registry, ConfigErrors& errors) : registry_(registry), errors_(errors) {}
+  Reader(const Registry& registry, ConfigErrors& errors, std::optional<int> most_levels)
+      : registry_(registry), errors_(errors), most_levels_(most_levels) {}
 
   Sweep read(const std::filesystem::path& file) {
     sweep_.file = file;
@@ -57,15 +59,12 @@ class Reader {
     const std::vector<Setting> common = settings_of(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
     const std::size_t before = errors_.size();
-    if (p.base.empty()) return sweep_;
-    const ConfigNode base = read_yaml(p.base, errors_);
-    if (errors_.size() > before) {
-      errors_[before].message +=
-          " (the sweep's \"base\", named at " + source_.find("base")->where.text() + ")";
-      return sweep_;
-    }
-    for (const Variation& variation : variations) add_variation(base, common, variation);
-    list_faults(variations.size());
+    const std::vector<ExperimentSource> experiments = experiment_sources(p, source_, errors_);
+    if (errors_.size() > before) return sweep_;
+    for (const ExperimentSource& experiment : experiments)
+      for (const Variation& variation : variations)
+        add_variation(experiment.root, common, labelled(variation, experiment.label));
+    list_faults(experiments.size() * variations.size());
     return sweep_;
   }
 
@@ -86,11 +85,20 @@ class Reader {
       errors_.push_back({place_of("seeds"), "\"seeds\" names one of them twice"});
   }
 
+  Variation labelled(Variation variation, const std::string& experiment) const {
+    if (experiment.empty()) return variation;
+    const bool alone = sweep_.parameters.ablation.kind == NodeKind::null;
+    variation.name = alone ? experiment : experiment + ", " + variation.name;
+    variation.folder = folder_name(variation.name);
+    return variation;
+  }
+
   void add_variation(ConfigNode source, const std::vector<Setting>& common, const Variation& variation) {
     const SweepParameters& p = sweep_.parameters;
     ConfigErrors faults;
     SweepRun run;
     run.name = variation.name;
+    run.expect = variation.expect;
     run.settings = nlohmann::ordered_json::object();
     for (const auto* settings : {&common, &variation.settings})
       for (const Setting& setting : *settings) {
@@ -103,7 +111,11 @@ class Reader {
     const bool own = !variation.methods.empty();
     const std::vector<std::string>& methods = own ? variation.methods : p.methods;
     if (own) run.settings["methods"] = methods;
-    const auto experiment = read_experiment(std::move(source), registry_, faults);
+    auto experiment = read_experiment(source, registry_, faults);
+    if (experiment && most_levels_ && experiment->parameters.levels > *most_levels_) {
+      set_path(source, "levels", ConfigNode::of(*most_levels_), source_.where, faults);
+      experiment = read_experiment(std::move(source), registry_, faults);
+    }
     if (experiment) {
       check_methods(*experiment, methods, own ? variation.methods_where : place_of("methods"), faults);
       if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
@@ -173,6 +185,7 @@ class Reader {
 
   const Registry& registry_;
   ConfigErrors& errors_;
+  std::optional<int> most_levels_;
   Sweep sweep_;
   ConfigNode source_;
   ConfigErrors faults_, same_;
@@ -183,8 +196,8 @@ class Reader {
 }  // namespace
 
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
-                                ConfigErrors& errors) {
-  Sweep sweep = Reader(registry, errors).read(file);
+                                ConfigErrors& errors, std::optional<int> most_levels) {
+  Sweep sweep = Reader(registry, errors, most_levels).read(file);
   if (!errors.empty()) return std::nullopt;
   return sweep;
 }

@@ -82,10 +82,13 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
                {"config", sweep.file.string()},
                {"complete", false},
                {"threads", threads},
+               {"time_limit", sweep.parameters.time_limit.value_or(0)},
                {"runs", Json::array()}};
   for (const SweepRun& run : sweep.runs) {
     json["runs"].push_back(
         {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
+    if (run.expect.outcome != "converged")
+      json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     fs::create_directories(files.folder.parent_path());
     if (text_of_file(files.config()) == run.config) continue;
@@ -115,7 +118,9 @@ Json SweepFolder::refresh() const {
   for (Json& run : json["runs"]) {
     const RunStatus status = read_status(files(run["folder"]));
     run.update(status.json());
-    complete = complete && status.has_results();
+    const Json expect = run.value("expect", Json::object());
+    complete =
+        complete && (status.has_results() || (status.refused() && expect.value("outcome", "") == "refused"));
   }
   json["complete"] = complete;
   write_atomically(path_ / "sweep.json", json.dump(1) + "\n");
@@ -150,13 +155,6 @@ FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
   if (!lock_.acquire(1))
     throw std::runtime_error(folder.string() + ": another `drape sweep` is at work here (" + lock_.holder() +
                              "); wait for it, or name another folder with --out");
-}
-
-int exit_code_of(const Json& sweep) {
-  const auto& runs = sweep["runs"];
-  return std::all_of(runs.begin(), runs.end(), [](const Json& run) { return run["status"] == "converged"; })
-             ? 0
-             : 1;
 }
 
 }  // namespace drape

@@ -47,7 +47,4 @@ class FolderLock {
 /// The runs of sweep.json for the terminal: variation, seed, status, seconds, and what failed ones said.
 std::string list_of_runs(const nlohmann::ordered_json& sweep);
 
-/// 0 if every run converged, else 1.
-int exit_code_of(const nlohmann::ordered_json& sweep);
-
 }  // namespace drape

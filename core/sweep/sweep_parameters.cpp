@@ -3,6 +3,14 @@
 
 namespace drape {
 
+void Expectation::declare(Declaration<Expectation>& d) {
+  d.add("outcome", &Expectation::outcome)
+      .choices({"converged", "infeasible", "stalled", "out_of_steps", "refused"})
+      .meaning("of every method's worst level; refused: before anything was computed");
+  d.add("message", &Expectation::message)
+      .meaning("a part of what it says then; required where it is not to converge");
+}
+
 void VariationParameters::declare(Declaration<VariationParameters>& d) {
   d.add("name", &VariationParameters::name).required().meaning("names its runs, and their folder");
   d.add_node("set", &VariationParameters::set)
@@ -13,15 +21,20 @@ void VariationParameters::declare(Declaration<VariationParameters>& d) {
       .meaning("in place of the experiment's");
   d.add("methods", &VariationParameters::methods)
       .meaning("which methods to run; those of the sweep if not given");
+  d.add_section("expect", &VariationParameters::expect)
+      .meaning("how its runs are to end; `drape table` and the exit code say whether they did");
 }
 
 void SweepParameters::declare(Declaration<SweepParameters>& d) {
   d.add("name", &SweepParameters::name).required().meaning("names the sweep's folder");
   d.add("description", &SweepParameters::description).meaning("one sentence");
   d.add("base", &SweepParameters::base)
-      .required()
       .path()
-      .meaning("the experiment that is varied, relative to this file");
+      .meaning("the experiment that is varied, relative to this file; required without experiments");
+  d.add("experiments", &SweepParameters::experiments)
+      .meaning(
+          "several that are varied alike, in place of base; * in a file's name stands for anything, in the "
+          "order of the alphabet");
   d.add_node("set", &SweepParameters::set)
       .meaning("a map: a path of keys in the experiment, then its value, for every variation");
   d.add("seeds", &SweepParameters::seeds)
@@ -35,9 +48,14 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
   d.add("methods", &SweepParameters::methods)
       .meaning("which of the experiment's methods to run; all if not given");
   d.add("threads", &SweepParameters::threads).at_least(1).meaning("of each run");
+  d.add("time_limit", &SweepParameters::time_limit)
+      .unit("s")
+      .above(0)
+      .meaning("a run that takes longer is ended, and has failed; none if not given");
   d.add_node("ablation", &SweepParameters::ablation)
       .meaning(
-          "a list of variations, or {grid: {path: [values], …}}: every combination; the base alone if not "
+          "a list of variations, or {grid: {path: [values], …}}: every combination; the experiments as they "
+          "are if not "
           "given");
 }
 

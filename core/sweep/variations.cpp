@@ -13,15 +13,6 @@ using NodeKind = ConfigNode::Kind;
 
 constexpr std::size_t most_variations = 10000;
 
-std::string folder_name(std::string name) {
-  for (char& c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && !std::isalnum(byte) && !std::strchr("_-.=,", c)) c = '_';
-  }
-  if (!name.empty() && name[0] == '.') name[0] = '_';
-  return name;
-}
-
 void refuse_repeated_keys(const ConfigNode& map, const std::string& name, ConfigErrors& errors) {
   std::map<std::string, Location> places;
   for (std::size_t k = 0; k < map.entries.size(); ++k) {
@@ -87,7 +78,11 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
 Variation named(const ConfigNode& node, ConfigErrors& errors) {
   VariationParameters p;
   schema_of<VariationParameters>("a variation").read(&p, node, errors);
-  Variation v{p.name, "", node.where, {}, p.methods, node.where};
+  Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
+  if (p.expect.outcome != "converged" && p.expect.message.empty())
+    errors.push_back({node.find("expect")->where,
+                      "\"expect\" of what is not to converge needs a \"message\": a part of what it "
+                      "says then"});
   if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
   for (Setting& setting : settings_of(p.set, errors)) {
     if (p.levels && setting.path == "levels")
@@ -125,6 +120,15 @@ void check_names(std::vector<Variation>& all, ConfigErrors& errors) {
 
 }  // namespace
 
+std::string folder_name(std::string name) {
+  for (char& c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && !std::isalnum(byte) && !std::strchr("_-.=,", c)) c = '_';
+  }
+  if (!name.empty() && name[0] == '.') name[0] = '_';
+  return name;
+}
+
 std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors) {
   std::vector<Setting> settings;
   if (set.kind == NodeKind::null) return settings;
@@ -140,7 +144,7 @@ std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors) {
 
 std::vector<Variation> variations_of(const ConfigNode& ablation, ConfigErrors& errors) {
   std::vector<Variation> all;
-  if (ablation.kind == NodeKind::null) all.push_back({"base", "", ablation.where, {}, {}, {}});
+  if (ablation.kind == NodeKind::null) all.push_back({"base", "", ablation.where, {}, {}, {}, {}});
   if (ablation.kind == NodeKind::list)
     for (const ConfigNode& node : ablation.items) all.push_back(named(node, errors));
   if (ablation.kind == NodeKind::map) {

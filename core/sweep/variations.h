@@ -19,7 +19,11 @@ struct Variation {
   std::vector<Setting> settings;
   std::vector<std::string> methods;  ///< empty for all
   Location methods_where;
+  Expectation expect;
 };
+
+/// A name as a folder is called.
+std::string folder_name(std::string name);
 
 /// The entries of a `set` map; anything else is an error.
 std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors);

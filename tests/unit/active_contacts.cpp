@@ -25,9 +25,8 @@ std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double 
 
 Level sheet() { return Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way)); }
 
-std::vector<std::unique_ptr<BoundContact>> bound(const Level& level,
-                                                 const std::vector<std::shared_ptr<ContactModel>>& models) {
-  std::vector<std::unique_ptr<BoundContact>> all;
+BoundContacts bound(const Level& level, const std::vector<std::shared_ptr<ContactModel>>& models) {
+  BoundContacts all;
   for (const auto& model : models) all.push_back(model->bind(level, Material()));
   return all;
 }
@@ -111,7 +110,7 @@ struct Falling {
               {{"neo_hookean", make_plugin_from<Energy>("neo_hookean")},
                {"hinge", make_plugin_from<Energy>("hinge")},
                {"gravity", make_plugin_from<Energy>("{type: gravity, acceleration: [0.98, 0, -9.81]}")}},
-              std::vector<char>(level.vertex_count(), 0), contacts) {}
+              {}, contacts) {}
 
   LevelResult solve(const NewtonParameters& p, double height) {
     PlainObjective objective(model);
@@ -122,7 +121,7 @@ struct Falling {
 }  // namespace
 
 TEST_CASE("Without a contact model there is nothing") {
-  const std::vector<std::unique_ptr<BoundContact>> none;
+  const BoundContacts none;
   ActiveContacts contacts(none);
   const Positions x = sheet().rest.vertices;
   contacts.begin_step(x);
@@ -232,7 +231,7 @@ TEST_CASE("Of several models the nearest ends a step, and their contacts add up"
 
 TEST_CASE("All states of one way are evaluated from one search") {
   const Level level = sheet();
-  std::vector<std::unique_ptr<BoundContact>> models;
+  BoundContacts models;
   models.push_back(std::make_unique<Counted>(a_floor()->bind(level, Material())));
   const auto& counted = dynamic_cast<const Counted&>(*models[0]);
   ActiveContacts contacts(models);

@@ -3,14 +3,57 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/contact/pair_geometry.h"
+#include "core/contact/contact_kernel.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
+#include "plugins/contact/ipc/obstacle_way.h"
 
 namespace drape {
 namespace {
 
 constexpr long unlimited = std::numeric_limits<long>::max();
+
+const BoundIpc& own_kind(const BoundContact& contact) {
+  const auto* own = dynamic_cast<const BoundIpc*>(&contact);
+  if (!own) throw std::runtime_error("obstacles of \"ipc\" cannot come from those of another contact model");
+  return *own;
+}
+
+std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positions& rest, double range) {
+  const Positions none;
+  SweptBoxes boxes;
+  boxes.update(cloth, rest, rest, 0.5 * range);
+  const auto tree = make_broad_phase(BroadPhaseKind::bvh);
+  tree->update(boxes.triangles);
+  AdjacencyList rows;
+  tree->overlaps(unlimited, rows);
+  std::vector<ContactPair> pairs;
+  find_self_pairs(cloth, boxes, rows, {rest, rest, range, none, none}, 0, unlimited, pairs);
+  std::vector<std::array<int, 4>> close;
+  for (const ContactPair& pair : pairs) close.push_back(pair.vertices);
+  std::sort(close.begin(), close.end());
+  return close;
+}
+
+/// What was made before, for as long as somebody has it.
+template <class Part>
+class Kept {
+ public:
+  template <class IsIt, class Make>
+  std::shared_ptr<const Part> find_or_make(const IsIt& is_it, const Make& make) {
+    const std::lock_guard lock(busy_);
+    std::erase_if(all_, [](const auto& part) { return part.expired(); });
+    for (const auto& weak : all_)
+      if (auto part = weak.lock(); part && is_it(*part)) return part;
+    auto part = std::make_shared<const Part>(make());
+    all_.push_back(part);
+    return part;
+  }
+
+ private:
+  std::mutex busy_;
+  std::vector<std::weak_ptr<const Part>> all_;
+};
 
 /// Found pairs along a way, and the names of what they are made of.
 class IpcSweep final : public ContactSweep {
@@ -30,7 +73,9 @@ class IpcSweep final : public ContactSweep {
     for (const std::vector<ContactPair>* pairs : {&found_.repelling, &found_.passive}) {
       int blocking = -1;
       const double part = additive_ccd(x0_, x1_, obstacles_->vertices, *pairs, keep_, blocking);
-      if (part < limit.fraction) limit = {part, blocking < 0 ? "" : name((*pairs)[blocking])};
+      if (part < limit.fraction)
+        limit = {part,
+                 blocking < 0 ? "" : name_of((*pairs)[blocking], *obstacles_, static_cast<int>(x0_.rows()))};
     }
     if (fraction_ < 1 && limit.fraction == 1)
       limit.by = "the number of pairs that a longer way may bring together";
@@ -43,23 +88,6 @@ class IpcSweep final : public ContactSweep {
   }
 
  private:
-  std::string name(const ContactPair& pair) const {
-    const auto& v = pair.vertices;
-    if (pair.kind == PairKind::edge_edge)
-      return name("edge", {v[0], v[1]}) + " and " + name("edge", {v[2], v[3]});
-    return name("vertex", {v[0]}) + " and " + name("triangle", {v[1], v[2], v[3]});
-  }
-
-  std::string name(const std::string& primitive, const std::vector<int>& vertices) const {
-    const int n = static_cast<int>(x0_.rows()), body = obstacles_->body_of(vertices[0] - n);
-    const bool of_cloth = vertices[0] < n;
-    const int first = of_cloth ? 0 : n + obstacles_->first_vertex[body];
-    std::string text = (of_cloth ? "cloth" : obstacles_->bodies[body].name) + " " + primitive;
-    for (std::size_t k = 0; k < vertices.size(); ++k)
-      text += (k == 0 ? " " : "–") + std::to_string(vertices[k] - first);
-    return text;
-  }
-
   Positions x0_, x1_;  // of the way as far as it was searched
   double fraction_;    // of the way that was asked for
   Candidates found_;
@@ -70,6 +98,38 @@ class IpcSweep final : public ContactSweep {
 
 }  // namespace
 
+std::shared_ptr<const RestingCloth> RestingCloth::of(const Level& level, double range, bool self_contact) {
+  static Kept<RestingCloth> all;
+  const TriangleMesh& rest = level.rest;
+  return all.find_or_make(
+      [&](const RestingCloth& cloth) {
+        return cloth.range == range && cloth.self_contact == self_contact &&
+               cloth.rest.vertices.rows() == rest.vertices.rows() &&
+               cloth.rest.triangles.rows() == rest.triangles.rows() && cloth.rest.vertices == rest.vertices &&
+               cloth.rest.triangles == rest.triangles;
+      },
+      [&] {
+        RestingCloth cloth{rest, range, self_contact, Surface::of(rest, level.topology), {}};
+        if (self_contact) cloth.close = close_at_rest(cloth.surface, rest.vertices, range);
+        return cloth;
+      });
+}
+
+std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obstacles> obstacles, double range,
+                                                     BroadPhaseKind kind) {
+  static Kept<ObstacleTree> all;
+  return all.find_or_make(
+      [&](const ObstacleTree& tree) {
+        return tree.obstacles == obstacles && tree.range == range && tree.kind == kind;
+      },
+      [&] {
+        ObstacleTree tree{obstacles, range, kind, {}, make_broad_phase(kind)};
+        tree.boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * range);
+        tree.tree->update(tree.boxes.triangles);
+        return tree;
+      });
+}
+
 BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> obstacles, const Level& level,
                    const Material& material)
     : friction_(p.friction),
@@ -77,28 +137,15 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> ob
       self_contact_(p.self_contact),
       barrier_{p.range, p.stiffness.value_or(contact_stiffness(material)), p.slip_distance},
       obstacles_(std::move(obstacles)),
-      cloth_(Surface::of(level.rest, level.topology)),
-      obstacle_tree_(make_broad_phase(p.broad_phase)),
-      cloth_tree_(make_broad_phase(p.broad_phase)) {
-  obstacle_boxes_.update(obstacles_->surface, obstacles_->vertices, obstacles_->vertices, 0.5 * p.range);
-  obstacle_tree_->update(obstacle_boxes_.triangles);
-  if (self_contact_) remember_close_at_rest(level.rest.vertices);
-}
-
-void BoundIpc::remember_close_at_rest(const Positions& rest) {
-  const Way still{rest, rest, barrier_.range};
-  boxes_.update(cloth_, rest, rest, 0.5 * barrier_.range);
-  cloth_tree_->update(boxes_.triangles);
-  cloth_tree_->overlaps(unlimited, rows_);
-  std::vector<ContactPair> pairs;
-  find_self_pairs(cloth_, boxes_, rows_, still, friction_, unlimited, pairs);
-  for (const ContactPair& pair : pairs) close_at_rest_.push_back(pair.vertices);
-  std::sort(close_at_rest_.begin(), close_at_rest_.end());
-}
+      obstacle_tree_(ObstacleTree::of(obstacles_, p.range, p.broad_phase)),
+      rest_(RestingCloth::of(level, p.range, p.self_contact)),
+      cloth_(rest_->surface),
+      broad_phase_(p.broad_phase),
+      cloth_tree_(make_broad_phase(p.broad_phase)) {}
 
 bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits,
                       std::vector<ContactPair>& pairs, Counts& counts) const {
-  const Way way{x0, x1, barrier_.range};
+  const Way way{x0, x1, barrier_.range, obstacles_->vertices, obstacles_->vertices};
   pairs.clear();
   counts = {};
   const auto list_rows = [&](const Positions& end, const BroadPhase* obstacle_tree) {
@@ -115,8 +162,8 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& li
   if (self_contact_ && !(list_rows(x1.rowwise() - (x1 - x0).colwise().mean(), nullptr) &&
                          find_self_pairs(cloth_, boxes_, rows_, way, friction_, limits.primitives, pairs)))
     return false;
-  if (!obstacles_->bodies.empty() && !(list_rows(x1, obstacle_tree_.get()) &&
-                                       find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_boxes_,
+  if (!obstacles_->bodies.empty() && !(list_rows(x1, obstacle_tree_->tree.get()) &&
+                                       find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes,
                                                            rows_, way, friction_, limits.primitives, pairs)))
     return false;
   counts.primitives = static_cast<long>(pairs.size());
@@ -142,16 +189,53 @@ std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positio
     if (tries >= 20) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
-  if (!close_at_rest_.empty()) {
+  if (!rest_->close.empty()) {
     const auto middle = std::stable_partition(
         found.repelling.begin(), found.repelling.end(), [this](const ContactPair& pair) {
-          return !std::binary_search(close_at_rest_.begin(), close_at_rest_.end(), pair.vertices);
+          return !std::binary_search(rest_->close.begin(), rest_->close.end(), pair.vertices);
         });
     found.passive.assign(middle, found.repelling.end());
     found.repelling.erase(middle, found.repelling.end());
   }
   return std::make_unique<IpcSweep>(x0, std::move(end), fraction, std::move(found), obstacles_, barrier_,
                                     keep_);
+}
+
+StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) const {
+  const Obstacles& from = *own_kind(before).obstacles_;
+  if (&from == obstacles_.get()) return {};
+  return ObstacleWay(from, *obstacles_).max_move(cloth_, x, barrier_.range, keep_, broad_phase_);
+}
+
+void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& anchors) const {
+  const BoundIpc& was = own_kind(before);
+  if (was.obstacles_ == obstacles_) return;
+  const int n = static_cast<int>(x.rows());
+  std::vector<ContactPair> pairs;
+  {
+    Counts counts;
+    const std::lock_guard lock(was.busy_);
+    was.search(x, x, {unlimited, unlimited}, pairs, counts);
+  }
+  Positions moved = Positions::Zero(n, 3);  // weighted by friction's force, as are its anchors
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
+  for (const ContactPair& pair : pairs) {
+    const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
+    if ((is_cloth(0) && is_cloth(3)) || pair.friction == 0) continue;
+    const PairPositions at = positions_of(pair, x, was.obstacles_->vertices);
+    if (!within_range(pair, at, was.barrier_.range)) continue;
+    const Contact contact = contact_at(pair, at, was.barrier_.range);
+    const PairPositions move = positions_of(pair, x, obstacles_->vertices) - at;
+    const Eigen::Vector3d of_obstacle = move * contact.closest.c.cwiseAbs();  // the cloth's columns are zero
+    for (int k = 0; k < 4; ++k) {
+      if (!is_cloth(k)) continue;
+      const double weight = std::abs(contact.closest.c[k]) * pair.friction * contact.pressure();
+      moved.row(pair.vertices[k]) += weight * of_obstacle;
+      weights[pair.vertices[k]] += weight;
+    }
+  }
+  for (int v = 0; v < n; ++v)
+    if (weights[v] > 0) anchors.row(v) += moved.row(v) / weights[v];
 }
 
 std::vector<Touch> BoundIpc::intersections(const Positions& x) const {

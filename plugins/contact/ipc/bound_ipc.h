@@ -14,8 +14,32 @@ struct Candidates {
   std::vector<ContactPair> repelling, passive;
 };
 
+/// What follows from the cloth's rest shape. A level that is bound again, as conditions change, shares it.
+struct RestingCloth {
+  TriangleMesh rest;
+  double range = 0;  ///< d̂ [m]
+  bool self_contact = true;
+  Surface surface;
+  std::vector<std::array<int, 4>> close;  ///< self pairs that rest within the range, in order
+
+  /// Kept for as long as somebody has it.
+  static std::shared_ptr<const RestingCloth> of(const Level& level, double range, bool self_contact);
+};
+
+/// The obstacles' boxes, and a tree of them, kept likewise.
+struct ObstacleTree {
+  std::shared_ptr<const Obstacles> obstacles;
+  double range;
+  BroadPhaseKind kind;
+  SweptBoxes boxes;
+  std::unique_ptr<BroadPhase> tree;
+
+  static std::shared_ptr<const ObstacleTree> of(std::shared_ptr<const Obstacles> obstacles, double range,
+                                                BroadPhaseKind kind);
+};
+
 /// Contact `ipc` of one level.
-class BoundIpc final : public BoundContact {
+class BoundIpc final : public BoundContact, public MovableObstacles {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
            const Material& material);
@@ -26,6 +50,9 @@ class BoundIpc final : public BoundContact {
   std::vector<Touch> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
 
+  StepLimit max_move(const BoundContact& before, const Positions& x) const override;
+  void carry(const BoundContact& before, const Positions& x, Positions& anchors) const override;
+
  private:
   /// Numbers of pairs, of triangles whose boxes overlap and of primitives that may come near.
   struct Counts {
@@ -35,16 +62,15 @@ class BoundIpc final : public BoundContact {
   /// False if there are more than `limits`. Called by one thread at a time.
   bool search(const Positions& x0, const Positions& x1, const Counts& limits, std::vector<ContactPair>& pairs,
               Counts& counts) const;
-  void remember_close_at_rest(const Positions& rest);
 
   double friction_, keep_;
   bool self_contact_;
   BarrierParameters barrier_;
   std::shared_ptr<const Obstacles> obstacles_;
-  Surface cloth_;
-  SweptBoxes obstacle_boxes_;
-  std::unique_ptr<BroadPhase> obstacle_tree_;
-  std::vector<std::array<int, 4>> close_at_rest_;  // self pairs that rest within the range, in order
+  std::shared_ptr<const ObstacleTree> obstacle_tree_;
+  std::shared_ptr<const RestingCloth> rest_;
+  const Surface& cloth_;
+  BroadPhaseKind broad_phase_;
 
   // Kept from call to call for speed alone: results do not depend on them.
   mutable std::mutex busy_;

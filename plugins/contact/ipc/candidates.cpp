@@ -12,9 +12,9 @@ constexpr int grain = 256;  // rows a piece of work
 
 /// Whether a pair can come within the range: as near as it is, less how far its sides move against each
 /// other, the mean motion left out.
-bool may_come_near(const ContactPair& pair, const Way& way, const Positions& obstacles) {
-  const PairPositions at = positions_of(pair, way.x0, obstacles);
-  PairPositions move = positions_of(pair, way.x1, obstacles) - at;
+bool may_come_near(const ContactPair& pair, const Way& way) {
+  const PairPositions at = positions_of(pair, way.x0, way.obstacles0);
+  PairPositions move = positions_of(pair, way.x1, way.obstacles1) - at;
   move.colwise() -= Eigen::Vector3d(move.rowwise().mean());
   double largest[2] = {0, 0};
   const int first_end = first_side(pair.kind);
@@ -104,10 +104,9 @@ bool collect(const AdjacencyList& rows, long limit, std::vector<ContactPair>& pa
 bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows, const Way& way,
                      double friction, long limit, std::vector<ContactPair>& pairs) {
   const Side side{cloth, boxes, 0};
-  const Positions none;
   return collect(rows, limit, pairs, [&](int s, int t, std::vector<ContactPair>& list) {
     const auto add = [&](ContactPair pair, double weight) {
-      if (!may_come_near(pair, way, none)) return;
+      if (!may_come_near(pair, way)) return;
       pair.weight = weight;
       pair.friction = friction;
       list.push_back(pair);
@@ -131,7 +130,7 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
   const Side own{cloth, boxes, 0}, their{other, obstacle_boxes, static_cast<int>(way.x0.rows())};
   return collect(rows, limit, pairs, [&](int s, int t, std::vector<ContactPair>& list) {
     const auto add = [&](ContactPair pair, double weight) {
-      if (!may_come_near(pair, way, obstacles.vertices)) return;
+      if (!may_come_near(pair, way)) return;
       pair.weight = weight;
       pair.friction = obstacles.bodies[obstacles.body_of(other.triangles(t, 0))].friction.value_or(friction);
       list.push_back(pair);

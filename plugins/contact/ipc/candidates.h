@@ -9,11 +9,12 @@
 
 namespace drape {
 
-/// The cloth's straight way from x0 to x1, and how near counts.
+/// The cloth's straight way from x0 to x1, that of the obstacles' vertices, and how near counts.
 struct Way {
   const Positions& x0;
   const Positions& x1;
   double range;  ///< d̂ [m]
+  const Positions &obstacles0, &obstacles1;
 };
 
 /// Share of |e|²|e'|² (at rest) below which nearly parallel edges are faded out: IPC (Li et al. 2020),

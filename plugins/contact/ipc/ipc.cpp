@@ -1,5 +1,7 @@
 #include "plugins/contact/ipc/ipc.h"
 
+#include <mutex>
+
 #include "core/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 
@@ -8,7 +10,7 @@ namespace drape {
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
   d.add("self_contact", &P::self_contact).meaning("keep the cloth apart from itself");
-  d.add_sections("obstacles", &P::obstacles).meaning("meshes in the cloth's way; they do not move");
+  d.add_sections("obstacles", &P::obstacles).meaning("meshes in the cloth's way");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
@@ -40,10 +42,18 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {
+  // The last ones that were made, for as long as somebody has them: where something else has changed, trees
+  // and areas are the same.
+  static std::mutex busy;
+  static std::weak_ptr<const Obstacles> last;
   std::vector<Obstacle> bodies;
   for (const ObstacleParameters& p : p_.obstacles)
     bodies.push_back(Obstacle::of(p, static_cast<int>(bodies.size())));
-  obstacles_ = std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies)));
+  const std::lock_guard lock(busy);
+  obstacles_ = last.lock();
+  if (!obstacles_ || !(obstacles_->bodies == bodies))
+    obstacles_ = std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies)));
+  last = obstacles_;
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh/topology.h"
 #include "core/plugin/parameters.h"
+#include "plugins/contact/ipc/sound_mesh.h"
 #include "plugins/contact/ipc/surface.h"
 
 namespace drape {
@@ -23,12 +23,38 @@ struct ObstacleParameters {
   static void declare(Declaration<ObstacleParameters>& d);
 };
 
-/// A mesh in the way of the cloth, which never moves.
+/// From an obstacle's own coordinates to the world's: scaled, turned, moved.
+struct Pose {
+  double scale = 1;
+  Eigen::Vector3d rotate{0, 0, 0};  ///< about x, then y, then z [degree]
+  Eigen::Vector3d translate{0, 0, 0};
+
+  Eigen::Matrix3d linear() const;
+  bool operator==(const Pose&) const = default;
+};
+
+/// What an obstacle's places follow from.
+struct Form {
+  std::vector<std::shared_ptr<const SoundMesh>> frames;  ///< one mesh, or a sequence with the same triangles
+  double frame = 0;                                      ///< which of them, linear in between
+  Eigen::Vector3d stretch{1, 1, 1};                      ///< factors on its own coordinates
+  Pose pose;
+
+  Positions own_places(double frame) const;
+  bool operator==(const Form&) const = default;
+};
+
+/// A mesh in the way of the cloth.
 struct Obstacle {
   std::string name;
-  TriangleMesh mesh;
+  TriangleMesh mesh;               ///< where it is in the world
   std::optional<double> friction;  ///< μ, where it has its own
+  Form form{};                     ///< without frames it never moves
 
+  /// Whether it follows from the same; never where that is not known.
+  bool operator==(const Obstacle& other) const {
+    return !form.frames.empty() && form == other.form && name == other.name && friction == other.friction;
+  }
   /// Throws std::runtime_error naming the obstacle if the file cannot be read or the mesh is not sound.
   static Obstacle of(const ObstacleParameters& parameters, int number);
 };

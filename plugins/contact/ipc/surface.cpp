@@ -5,6 +5,16 @@
 #include "core/numerics/parallel.h"
 
 namespace drape {
+namespace {
+
+template <class Rows>
+void append_rows(Rows& rows, const Rows& more) {
+  const Eigen::Index count = rows.rows();
+  rows.conservativeResize(count + more.rows(), Eigen::NoChange);
+  rows.bottomRows(more.rows()) = more;
+}
+
+}  // namespace
 
 Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
   Surface s;
@@ -31,6 +41,18 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
     s.edge_length_squared[e] =
         (rest.vertices.row(s.edges(e, 0)) - rest.vertices.row(s.edges(e, 1))).squaredNorm();
   return s;
+}
+
+void Surface::append(const Surface& other) {
+  const int n = static_cast<int>(vertex_area.size()), e = static_cast<int>(edges.rows());
+  append_rows(triangles, Triangles(other.triangles.array() + n));
+  append_rows(triangle_edges, Triangles(other.triangle_edges.array() + e));
+  append_rows(edges, decltype(edges)(other.edges.array() + n));
+  owned.insert(owned.end(), other.owned.begin(), other.owned.end());
+  append_rows(vertex_area, other.vertex_area);
+  append_rows(edge_area, other.edge_area);
+  append_rows(triangle_area, other.triangle_area);
+  append_rows(edge_length_squared, other.edge_length_squared);
 }
 
 void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin) {

@@ -19,6 +19,8 @@ struct Surface {
   Eigen::VectorXd edge_length_squared;                    ///< at rest [m²]
 
   static Surface of(const TriangleMesh& rest, const Topology& topology);
+  /// Adds another surface, whose vertices, edges and triangles follow this one's.
+  void append(const Surface& other);
 
   int triangle_count() const { return static_cast<int>(triangles.rows()); }
   bool owns_vertex(int t, int k) const { return (owned[t] >> k & 1) != 0; }

@@ -2,9 +2,11 @@
 
 #include <utility>
 
+#include "core/contact/bent_advance.h"
 #include "core/numerics/parallel.h"
 #include "plugins/contact/shapes/contact_stack.h"
 #include "plugins/contact/shapes/shape_scene.h"
+#include "plugins/contact/shapes/solid_way.h"
 
 namespace drape {
 
@@ -49,7 +51,7 @@ class ShapeSweep final : public ContactSweep {
   Candidates candidates_;
 };
 
-class BoundShapes final : public BoundContact {
+class BoundShapes final : public BoundContact, public MovableObstacles {
  public:
   explicit BoundShapes(ShapeScene scene) : scene_(std::make_shared<const ShapeScene>(std::move(scene))) {}
 
@@ -74,7 +76,42 @@ class BoundShapes final : public BoundContact {
     return meshes;
   }
 
+  StepLimit max_move(const BoundContact& before, const Positions& x) const override {
+    const std::vector<SolidWay> ways = ways_of(solids_before(before), scene_->solids);
+    const StepLimit whole = advance(ways, x, kept_of_whole * scene_->keep, rounds_of_whole);
+    if (whole.fraction == 1) return {};
+    const StepLimit part = advance(ways, x, scene_->keep, rounds_of_part);
+    return part.fraction < whole.fraction ? part : whole;
+  }
+
+  void carry(const BoundContact& before, const Positions& x, Positions& anchors) const override {
+    solids_before(before);
+    carry_with_solids(*dynamic_cast<const BoundShapes&>(before).scene_, scene_->solids, x, anchors);
+  }
+
  private:
+  StepLimit advance(const std::vector<SolidWay>& ways, const Positions& x, double keep, int rounds) const {
+    StepLimit limit;
+    std::vector<double> parts(scene_->triangles.rows());
+    for (const SolidWay& way : ways) {
+      if (way.is_still()) continue;
+      parallel_for(static_cast<int>(parts.size()), 256, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i)
+          parts[i] = way.advance(scene_->corners(i, x), keep, scene_->barrier.range, rounds);
+      });
+      for (std::size_t i = 0; i < parts.size(); ++i)
+        if (parts[i] < limit.fraction)
+          limit = {parts[i], triangle_name(static_cast<int>(i)) + " and " + way.name()};
+    }
+    return limit;
+  }
+
+  const std::vector<Solid>& solids_before(const BoundContact& before) const {
+    const auto* own = dynamic_cast<const BoundShapes*>(&before);
+    if (!own) throw std::runtime_error("shapes cannot come from obstacles of another contact model");
+    return own->scene_->solids;
+  }
+
   std::shared_ptr<const ShapeScene> scene_;
 };
 

@@ -1,6 +1,5 @@
 #include "plugins/contact/shapes/shapes.h"
 
-#include <Eigen/Geometry>
 #include <stdexcept>
 
 #include "core/contact/stiffness.h"
@@ -11,38 +10,29 @@ namespace drape {
 
 namespace {
 
-using Eigen::Matrix3d, Eigen::Vector3d;
-
 const std::vector<std::pair<std::string, SolidKind>> words = {{"sphere", SolidKind::sphere},
                                                               {"box", SolidKind::box},
                                                               {"capsule", SolidKind::capsule},
                                                               {"cylinder", SolidKind::cylinder},
                                                               {"half_space", SolidKind::half_space}};
 
-/// About x, then y, then z, as start.rotate.
-Matrix3d turned(const Vector3d& degrees) {
-  const Vector3d angle = degrees * (M_PI / 180);
-  return (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) *
-          Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
 Solid solid_of(const ShapeParameters& p, int index, double friction) {
   Solid s;
   s.kind = p.shape;
   s.name = (p.name.empty() ? "shape " + std::to_string(index) : p.name) + ": " + word(p.shape);
   s.centre = p.centre;
-  s.axes = turned(p.rotate);
+  s.turn = p.rotate;
+  s.plane = p.normal;
   s.friction = p.friction.value_or(friction);
   if (p.shape == SolidKind::half_space) {
     if (!(p.normal.norm() > 0)) throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
-    s.axes = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), p.normal).toRotationMatrix();
   } else if (p.shape == SolidKind::box) {
     s.half = p.size / 2;
   } else {
     s.radius = p.radius;
     if (p.shape != SolidKind::sphere) s.half.z() = p.height / 2;
   }
+  s.orient();
   return s;
 }
 

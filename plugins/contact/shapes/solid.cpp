@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/mesh/turn.h"
+
 namespace drape {
 
 namespace {
@@ -92,6 +94,12 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
 }
 
 }  // namespace
+
+void Solid::orient() {
+  axes = kind == SolidKind::half_space
+             ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), plane).toRotationMatrix()
+             : turned(turn);
+}
 
 Nearest Solid::nearest(const Vector3d& p) const {
   const Vector3d q = to_local(p);

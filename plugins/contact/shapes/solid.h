@@ -26,9 +26,14 @@ struct Solid {
   Eigen::Vector3d half = Eigen::Vector3d::Zero();      ///< half extents of the core [m]
   double radius = 0;                                   ///< of the rounding, or the cylinder's [m]
   double friction = 0;                                 ///< μ
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();      ///< what the axes are made of [degree], or …
+  Eigen::Vector3d plane = Eigen::Vector3d::UnitZ();    ///< … of a half-space, its normal, of any length
 
   Eigen::Vector3d to_local(const Eigen::Vector3d& p) const { return axes.transpose() * (p - centre); }
   Eigen::Vector3d to_world(const Eigen::Vector3d& q) const { return centre + axes * q; }
+
+  /// Makes the axes.
+  void orient();
 
   /// Distance, gradient and curvature at p.
   Nearest nearest(const Eigen::Vector3d& p) const;

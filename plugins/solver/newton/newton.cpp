@@ -19,12 +19,14 @@ class NewtonSolver : public ResumableSolver {
                                   Observer& observer) const override {
     const Stopwatch clock(from.seconds);
     std::vector<LevelResult> results = from.finished;
+    restore_conditions(problem, from);
     for (int l = from.level; l <= problem.finest(); ++l) {
       const NewtonState* state = from.of(l);
       if (!state) observer.level_started(l);
+      if (problem.conditions && !state) problem.conditions->begin(l, true);
       PlainObjective objective(*problem.models[l]);
       results.push_back(minimise(objective, problem.starts[l], p_.newton,
-                                 {clock, observer, l < problem.finest(), {}, state}));
+                                 {clock, observer, l < problem.finest(), {}, state, problem.conditions}));
       results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+namespace drape {
+
+/// An empty slab between two convex things: its normal, and its width along it [m].
+struct Slab {
+  Eigen::Vector3d normal;
+  double width;
+};
+
+/// The part of a motion over [0, 1] on which one convex thing, at rest, stays at least `kept` [m] away from
+/// another whose points all move on curves p(t) with |p''| ≤ bend [m]. `widest(t)` is a slab between them at
+/// t, as wide as can be; `width(n, t)` that of another normal, negative where it does not separate them.
+///
+/// Conservative advancement: between t and t + s a point is within bend s²/8 of its chord, so a slab that is
+/// wider than kept + bend s²/8 at both ends stays empty. Any slab is safe, however inaccurate; the answer is
+/// short of what would be allowed only where `rounds` of them are not enough.
+template <class Widest, class Width>
+double bent_advance(const Widest& widest, const Width& width, double kept, double bend, int rounds) {
+  constexpr double slack = 0.02, shortest = 1e-12;
+  double t = 0, reach = 1;
+  for (int round = 0; round < rounds; ++round) {
+    const Slab slab = widest(t);
+    if (!(slab.width > (1 + slack) * kept)) return t;
+    double step = std::min(reach, 1 - t);
+    while (!(std::min(slab.width, width(slab.normal, t + step)) - bend * step * step / 8 >= kept)) {
+      step *= 0.5;
+      if (step < shortest) return t;
+    }
+    t += step;
+    if (t >= 1) return 1;
+    reach = 4 * step;
+  }
+  return t;
+}
+
+/// The two looks at a way that is shortened where it must be: as a whole, it may use up all but
+/// `kept_of_whole` of what a shortened one keeps. So a way that ends where this said is not shortened again.
+inline constexpr double kept_of_whole = 0.1;
+inline constexpr int rounds_of_whole = 4096, rounds_of_part = 256;
+
+}  // namespace drape

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "core/experiment/experiment.h"
+
+namespace drape {
+
+/// Sets in an experiment's map what its schedule's keys say for their beginning, so that it is read with it.
+/// What is wrong with them is left to check_schedule.
+void set_first_keys(ConfigNode& source);
+
+/// Appends what is wrong with the schedule of an experiment that has been read otherwise: paths that may not
+/// change, times, and values that their parameters refuse.
+void check_schedule(const Experiment& experiment, ConfigErrors& errors);
+
+/// What a level model is made of under the conditions of a moment.
+struct Moment {
+  ExperimentParameters parameters;
+  std::vector<NamedEnergy> energies;  ///< handles among them
+  std::vector<std::shared_ptr<ContactModel>> contacts;
+};
+
+/// The keyed parameters of an experiment over pseudo-time, and the models of a scene under them. Refers to
+/// the scene, which owns it.
+class Schedule final : public Conditions {
+ public:
+  Schedule(Experiment experiment, Scene& scene);
+
+  int changes() const override { return p_.steps; }
+  bool settles() const override { return p_.settle; }
+  void begin(int level, bool from_start) override;
+  ConditionsState state() const override { return {change_, effective_}; }
+  void restore(int level, const ConditionsState& state) override;
+  int change() const override { return change_; }
+  bool made() const override { return effective_ == wanted(change_); }
+  double time() const override { return duration_ * change_ / p_.steps; }
+  StepLimit advance(int level, const Positions& x) override;
+
+ private:
+  std::vector<double> wanted(int change) const;
+  /// With the numbers of all keys, one after another. What does not change is shared with now_.
+  Moment moment(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
+  LevelModel model_under(const Moment& moment, int level) const;
+  /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
+  void change_energies_above(int level, const Moment& next);
+  void go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers);
+  void bind_from(int level);
+
+  const Experiment experiment_;
+  Scene& scene_;
+  const ScheduleParameters& p_;                           // experiment_'s
+  std::vector<std::vector<std::vector<double>>> values_;  // of each key at each of its times
+  double duration_;
+  int change_ = 0;
+  std::vector<double> effective_;
+  Moment now_;                          // of effective_
+  std::vector<std::string> made_from_;  // texts of the nodes that now_'s plugins were made from
+};
+
+}  // namespace drape

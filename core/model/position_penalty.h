@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/energy.h"
+
+namespace drape {
+
+/// Σ_k w_k/2 ‖x_k − x̃_k‖²: vertices pulled to places (supplement, section 4, equation 1; w_k = κ_B m_k).
+class PositionPenalty final : public BoundEnergy {
+ public:
+  struct Pull {
+    int vertex = 0;
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< x̃ [m]
+    double weight = 0;                                ///< w [N/m]
+  };
+  explicit PositionPenalty(std::vector<Pull> pulls) : pulls_(std::move(pulls)) {}
+
+  double value(const Positions& x) const override;
+  double add_gradient(const Positions& x, Positions& g) const override;
+  Stencils stencils() const override;
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override;
+
+ private:
+  std::vector<Pull> pulls_;
+};
+
+}  // namespace drape

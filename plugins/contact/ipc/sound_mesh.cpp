@@ -1,0 +1,99 @@
+#include "plugins/contact/ipc/sound_mesh.h"
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+#include "core/mesh/check.h"
+#include "core/mesh/io.h"
+
+namespace drape {
+namespace {
+
+namespace fs = std::filesystem;
+
+TriangleMesh box() {
+  TriangleMesh mesh;
+  mesh.vertices.resize(8, 3);
+  for (int v = 0; v < 8; ++v)
+    for (int k = 0; k < 3; ++k) mesh.vertices(v, k) = (v >> k & 1) - 0.5;
+  mesh.triangles.resize(12, 3);
+  mesh.triangles << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6,  // z
+      0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3,                // y
+      0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5;                // x
+  return mesh;
+}
+
+TriangleMesh icosahedron() {
+  const double a = 1, b = (1 + std::sqrt(5.0)) / 2;
+  TriangleMesh mesh;
+  mesh.vertices.resize(12, 3);
+  mesh.vertices << -a, b, 0, a, b, 0, -a, -b, 0, a, -b, 0, 0, -a, b, 0, a, b, 0, -a, -b, 0, a, -b, b, 0, -a,
+      b, 0, a, -b, 0, -a, -b, 0, a;
+  mesh.triangles.resize(20, 3);
+  mesh.triangles << 0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
+      7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1;
+  mesh.vertices.rowwise().normalize();
+  return mesh;
+}
+
+/// Every triangle in four, new vertices on the unit sphere.
+TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
+  const int n = static_cast<int>(coarse.vertices.rows());
+  const Topology topology = Topology::of(coarse.triangles, n);
+  TriangleMesh fine;
+  fine.vertices.resize(n + topology.edges.rows(), 3);
+  fine.vertices.topRows(n) = coarse.vertices;
+  for (int e = 0; e < topology.edges.rows(); ++e)
+    fine.vertices.row(n + e) =
+        (coarse.vertices.row(topology.edges(e, 0)) + coarse.vertices.row(topology.edges(e, 1))).normalized();
+  fine.triangles.resize(4 * coarse.triangles.rows(), 3);
+  for (int t = 0; t < coarse.triangles.rows(); ++t) {
+    const auto v = coarse.triangles.row(t);
+    const Eigen::RowVector3i e = topology.triangle_edges.row(t).array() + n;
+    fine.triangles.middleRows<4>(4 * t) << v[0], e[2], e[1], v[1], e[0], e[2], v[2], e[1], e[0], e[0], e[1],
+        e[2];
+  }
+  return fine;
+}
+
+/// What `make` makes, unless somebody still has what it made before.
+std::shared_ptr<const SoundMesh> kept(const std::string& key, const std::function<TriangleMesh()>& make) {
+  static std::mutex busy;
+  static std::map<std::string, std::weak_ptr<const SoundMesh>> all;
+  const std::lock_guard lock(busy);
+  std::erase_if(all, [](const auto& entry) { return entry.second.expired(); });
+  if (const auto found = all.find(key); found != all.end())
+    if (auto mesh = found->second.lock()) return mesh;
+  auto made = std::make_shared<SoundMesh>();
+  made->mesh = make();
+  if (const auto faults = check_mesh(made->mesh); !faults.empty()) throw std::runtime_error(faults[0]);
+  made->topology = Topology::of(made->mesh.triangles, static_cast<int>(made->mesh.vertices.rows()));
+  all[key] = made;
+  return made;
+}
+
+}  // namespace
+
+std::shared_ptr<const SoundMesh> sound_mesh_of(const fs::path& file) {
+  std::error_code none;
+  std::string key = fs::absolute(file, none).string();
+  const auto size = fs::file_size(file, none);
+  const auto changed = fs::last_write_time(file, none).time_since_epoch().count();
+  key += " " + std::to_string(size) + " " + std::to_string(changed);
+  return kept(key, [&] { return read_mesh(file); });
+}
+
+std::shared_ptr<const SoundMesh> unit_box() { return kept("box", box); }
+
+std::shared_ptr<const SoundMesh> unit_sphere(int subdivisions) {
+  return kept("sphere " + std::to_string(subdivisions), [&] {
+    TriangleMesh mesh = icosahedron();
+    for (int i = 0; i < subdivisions; ++i) mesh = split_on_sphere(mesh);
+    return mesh;
+  });
+}
+
+}  // namespace drape

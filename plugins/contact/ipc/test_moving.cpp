@@ -1,0 +1,245 @@
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/intersections.h"
+#include "plugins/contact/ipc/bound_ipc.h"
+#include "plugins/contact/ipc/obstacle_way.h"
+
+using namespace drape;
+using Vector = Eigen::Vector3d;
+
+namespace {
+
+std::mt19937 generator(11);
+double uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(generator);
+}
+Vector any(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+
+ObstacleParameters box(const Vector& size, const Vector& translate = Vector::Zero()) {
+  ObstacleParameters p;
+  p.name = "block";
+  p.shape = "box";
+  p.size = size;
+  p.translate = translate;
+  return p;
+}
+
+Level square(int side, double size) {
+  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
+  return Level::of(0, mesh);
+}
+
+Positions wavy(const Level& level, double height) {
+  Positions x = level.rest.vertices;
+  const double a = uniform(-20, 20), b = uniform(-20, 20);
+  for (int v = 0; v < x.rows(); ++v) x(v, 2) = height * std::sin(a * x(v, 0) + b * x(v, 1));
+  return x;
+}
+
+using Bodies = std::vector<ObstacleParameters>;
+
+std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, double friction = 0) {
+  Ipc::Parameters p;
+  p.self_contact = false;
+  p.obstacles = bodies;
+  p.friction = friction;
+  return Ipc(p).bind(level, Material());
+}
+
+StepLimit max_move(const BoundContact& before, const BoundContact& after, const Positions& x) {
+  return dynamic_cast<const MovableObstacles&>(after).max_move(before, x);
+}
+
+/// As whoever moves obstacles does when it cannot move them all the way.
+Bodies blended(const Bodies& from, const Bodies& to, double part) {
+  Bodies result = to;
+  const auto blend = [&](auto& now, const auto& a, const auto& b) { now = a + part * (b - a); };
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    blend(result[i].scale, from[i].scale, to[i].scale);
+    blend(result[i].radius, from[i].radius, to[i].radius);
+    blend(result[i].size, from[i].size, to[i].size);
+    blend(result[i].rotate, from[i].rotate, to[i].rotate);
+    blend(result[i].translate, from[i].translate, to[i].translate);
+  }
+  return result;
+}
+
+double distance_moved(const Bodies& from, const Bodies& to) {
+  return (Obstacle::of(to[0], 0).mesh.vertices - Obstacle::of(from[0], 0).mesh.vertices)
+      .rowwise()
+      .norm()
+      .maxCoeff();
+}
+
+/// Places on the way up to `part` at which the cloth and the obstacle intersect, looked for every `step` or
+/// less.
+int crossings(const Bodies& from, const Bodies& to, double part, const Level& level, const Positions& x,
+              double step) {
+  const double turn = (to[0].rotate - from[0].rotate).cwiseAbs().sum() * M_PI / 180;
+  const double size = std::max(from[0].scale, to[0].scale) * std::max(from[0].size.norm(), to[0].size.norm());
+  const double length = distance_moved(from, to) + turn * size;
+  const int samples = 2 + static_cast<int>(part * length / step);
+  const TriangleMesh cloth{x, level.rest.triangles};
+  int found = 0;
+  for (int k = 0; k <= samples; ++k)
+    found += !intersections(cloth, Obstacle::of(blended(from, to, part * k / samples)[0], 0).mesh).empty();
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("ipc: an obstacle comes as near as a tenth of the range, or of the gap if that is less") {
+  const Level level = square(9, 0.4);
+  const Positions& x = level.rest.vertices;
+  const Bodies low = {box({0.2, 0.2, 0.1}, {0, 0, -0.06})}, high = {box({0.2, 0.2, 0.1}, {0, 0, 0.04})};
+  StepLimit limit = max_move(*bound(low, level), *bound(high, level), x);
+  CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.1).epsilon(1e-3));
+  CHECK_THAT(limit.by, Catch::Contains("cloth") && Catch::Contains("block"));
+  const Bodies near = {box({0.2, 0.2, 0.1}, {0, 0, -0.05 - 2e-5})};
+  limit = max_move(*bound(near, level), *bound(high, level), x);
+  CHECK(limit.fraction == Approx(1.8e-5 / (0.09 + 2e-5)).epsilon(1e-2));
+  limit = max_move(*bound(low, level), *bound({box({0.2, 0.2, 0.1}, {0, 0, -0.0503})}, level), x);
+  CHECK(limit.fraction == 1);
+  CHECK(limit.by.empty());
+  CHECK(max_move(*bound(high, level), *bound(high, level), x).fraction == 1);  // where it is
+  CHECK(max_move(*bound(low, level), *bound(low, level), x).fraction == 1);
+  // Growing is moving too.
+  limit = max_move(*bound({box({0.1, 0.1, 0.1}, {0, 0, -0.06})}, level),
+                   *bound({box({0.1, 0.1, 0.2}, {0, 0, -0.06})}, level), x);
+  CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.05).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "ipc: a plate that slides and turns under the cloth, a tenth of a millimetre below, is not held up") {
+  const Level level = square(9, 0.4);
+  Bodies from = {box({1, 1, 0.01}, {0, 0, -0.0051})}, to = from;
+  to[0].translate.x() += 0.2;
+  to[0].rotate.z() = 200;
+  CHECK(max_move(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+}
+
+TEST_CASE("ipc: no obstacle passes through the cloth, however it moves; what was cut is not cut again") {
+  const Level level = square(7, 0.3);
+  const Vector sizes[] = {{0.002, 0.002, 0.4}, {0.3, 0.2, 0.003}, {0.06, 0.08, 0.05}, {0.4, 0.004, 0.02}};
+  int cut = 0, whole = 0, would_cross = 0, barely = 0;
+  for (int i = 0; i < 160; ++i) {
+    const Positions x = wavy(level, 0.02);
+    const TriangleMesh cloth{x, level.rest.triangles};
+    Bodies from = {box(sizes[i % 4])}, to;
+    do {
+      from[0].translate = any(0.25);
+      from[0].rotate = any(180);
+      from[0].scale = uniform(0.5, 1.5);
+      if (i % 3 == 0)  // near already
+        from[0].translate.z() = 0.5 * from[0].size.z() * from[0].scale + uniform(0.02, 0.03),
+        from[0].rotate.head<2>().setZero();
+    } while (!intersections(cloth, Obstacle::of(from[0], 0).mesh).empty());
+    to = from;
+    to[0].translate += i % 5 == 0 ? any(0.02) : any(0.5);
+    to[0].rotate += i % 2 ? any(60) : any(720);
+    if (i % 4 == 0) to[0].scale = uniform(0.5, 2);
+    if (i % 7 == 0) to[0].translate.z() = -from[0].translate.z() - 5;  // at a high speed
+    const auto before = bound(from, level);
+    const StepLimit limit = max_move(*before, *bound(to, level), x);
+    CAPTURE(i, limit.fraction, limit.by);
+    REQUIRE(limit.fraction > 0);
+    REQUIRE(limit.fraction <= 1);
+    CHECK(limit.by.empty() == (limit.fraction == 1));
+    CHECK(crossings(from, to, limit.fraction, level, x, 1.5e-3) == 0);
+    (limit.fraction < 1 ? cut : whole) += 1;
+    if (limit.fraction == 1) continue;
+    const Bodies part = blended(from, to, limit.fraction);
+    CHECK(max_move(*before, *bound(part, level), x).fraction == 1);
+    would_cross += crossings(from, to, 1, level, x, 1.5e-3) > 0;
+    // Not more careful than needed: it would soon touch.
+    const double soon = limit.fraction + 2e-3 / (distance_moved(from, to) + 1);
+    barely += crossings(from, to, std::min(1.0, soon), level, x, 5e-4) > 0;
+  }
+  CAPTURE(cut, whole, would_cross, barely);
+  CHECK(cut > 40);
+  CHECK(whole > 20);
+  CHECK(would_cross > 0.95 * cut);
+  CHECK(barely > 0.5 * cut);
+}
+
+TEST_CASE("ipc: an edge that is highest between two places does not pass through the cloth there") {
+  const Level level = square(5, 0.2);
+  const Positions& x = level.rest.vertices;
+  const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
+  for (const bool passes : {true, false}) {
+    Bodies from = {box({0.1, 0.1, 0.1}, {0, 0, -apex + (passes ? -2e-5 : 0.5 * lower)})}, to = from;
+    from[0].rotate.y() = 43;
+    to[0].rotate.y() = 47;
+    REQUIRE(bound(to, level)->intersections(x).empty());
+    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    CHECK(fraction > 0.1);
+    CHECK((fraction == 1) == passes);
+    CHECK(fraction < (passes ? 2 : 0.2));
+  }
+}
+
+TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn") {
+  const Level level = square(5, 0.2);
+  const Positions& x = level.rest.vertices;
+  for (const double gap : {1e-7, 1e-6, 1e-5}) {
+    Bodies from = {box({0.1, 0.1, 0.1}, {0, 0, -0.05 - gap})}, to = from;
+    to[0].rotate = {30, 0, 40};
+    const auto before = bound(from, level);
+    for (int round = 0; round < 6; ++round) {
+      const double fraction = max_move(*before, *bound(to, level), x).fraction;
+      CAPTURE(gap, round, fraction);
+      CHECK(fraction > 0);
+      if (round > 0) CHECK(fraction == 1);
+      to = blended(from, to, fraction);
+      CHECK(bound(to, level)->intersections(x).empty());
+    }
+  }
+}
+
+TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
+  const Level level = square(3, 0.2);
+  ObstacleParameters ball;
+  ball.name = "ball";
+  ball.shape = "sphere";
+  ball.translate = {0, 0, 3};
+  ball.subdivisions = 1;
+  const auto before = bound({ball}, level);
+  ball.subdivisions = 2;
+  CHECK_THROWS_WITH(max_move(*before, *bound({ball}, level), level.rest.vertices),
+                    Catch::Contains("\"ball\"") && Catch::Contains("320 triangles and not 80"));
+}
+
+TEST_CASE("ipc: anchors of what is touched are carried along") {
+  const Level level = square(5, 0.2);
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  const Bodies from = {box({1, 0.5, 1}, {0.5, 0, -0.5})};  // below one half of the cloth
+  Bodies to = from;
+  to[0].translate += Vector(0.01, 0.003, 0);
+  to[0].rotate.z() = 5;
+  const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
+  Positions anchors = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+  const Positions start = anchors;
+  dynamic_cast<const MovableObstacles&>(*after).carry(*before, x, anchors);
+  const Eigen::Matrix3d turn = Obstacle::of(to[0], 0).form.pose.linear();
+  int carried = 0;
+  for (int v = 0; v < x.rows(); ++v) {
+    const Vector own = Vector(x(v, 0), x(v, 1), 0) - from[0].translate;
+    const Vector moved = turn * own + to[0].translate - (own + from[0].translate);
+    CAPTURE(v);
+    if (x(v, 0) > 1e-9) {
+      ++carried;
+      CHECK((Vector(anchors.row(v) - start.row(v)) - moved).norm() < 1e-12);
+    } else if (x(v, 0) < -1e-9) {  // those above the edge are carried by half a share of their edges
+      CHECK((anchors.row(v) - start.row(v)).norm() < 0.02);
+    }
+  }
+  CHECK(carried >= 10);
+  // Without friction there is nothing to carry.
+  anchors = x;
+  dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, anchors);
+  CHECK(anchors == x);
+}

@@ -1,0 +1,208 @@
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/mesh/generate.h"
+#include "plugins/contact/shapes/separation.h"
+#include "plugins/contact/shapes/shapes.h"
+
+using namespace drape;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::capsule, SolidKind::cylinder,
+                               SolidKind::half_space};
+constexpr double range = 1e-3;
+
+std::mt19937 generator(5);
+double uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(generator);
+}
+Vector3d any(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
+
+std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& level, double friction = 0) {
+  Shapes::Parameters p;
+  p.shapes = {shape};
+  p.range = range;
+  p.friction = friction;
+  return Shapes(p).bind(level, Material());
+}
+
+StepLimit max_move(const BoundContact& before, const BoundContact& after, const Positions& x) {
+  return dynamic_cast<const MovableObstacles&>(after).max_move(before, x);
+}
+
+ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, double part) {
+  ShapeParameters p = to;
+  p.centre = from.centre + part * (to.centre - from.centre);
+  p.radius = from.radius + part * (to.radius - from.radius);
+  p.size = from.size + part * (to.size - from.size);
+  p.height = from.height + part * (to.height - from.height);
+  p.rotate = from.rotate + part * (to.rotate - from.rotate);
+  p.normal = from.normal + part * (to.normal - from.normal);
+  return p;
+}
+
+Level square(int side, double size) {
+  TriangleMesh mesh = grid({size, size}, side, side, Diagonals::criss_cross);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(size / 2, size / 2, 0);
+  return Level::of(0, mesh);
+}
+
+ShapeParameters level_with(SolidKind kind, double gap) {
+  ShapeParameters p;
+  p.name = "thing";
+  p.shape = kind;
+  p.radius = p.height = 0.1;
+  p.size = {0.3, 0.3, 0.1};
+  p.centre.z() = -gap;
+  if (kind == SolidKind::sphere) p.centre.z() -= 0.1;
+  if (kind == SolidKind::box || kind == SolidKind::cylinder) p.centre.z() -= 0.05;
+  if (kind == SolidKind::capsule) p.centre.z() -= 0.15;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("shapes: a solid comes as near as a tenth of the range, or of the gap if that is less") {
+  const Level level = square(9, 0.4);
+  const Positions& x = level.rest.vertices;
+  for (const SolidKind kind : kinds) {
+    INFO(word(kind));
+    for (const double gap : {0.01, 2e-5}) {
+      const ShapeParameters from = level_with(kind, gap);
+      ShapeParameters to = from;
+      to.centre.z() += 0.1;
+      const StepLimit limit = max_move(*bound(from, level), *bound(to, level), x);
+      CHECK(limit.fraction == Approx((gap - 0.1 * std::min(gap, range)) / 0.1).epsilon(2e-3));
+      CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(word(kind)));
+      to.centre.z() = from.centre.z() - 3;
+      CHECK(max_move(*bound(from, level), *bound(to, level), x).fraction == 1);
+      CHECK(max_move(*bound(from, level), *bound(from, level), x).fraction == 1);
+    }
+  }
+  const ShapeParameters small = level_with(SolidKind::sphere, 0.01);
+  ShapeParameters large = small;
+  large.radius = 0.2;
+  CHECK(max_move(*bound(small, level), *bound(large, level), x).fraction ==
+        Approx((0.01 - 0.1 * range) / 0.1).epsilon(2e-3));
+}
+
+TEST_CASE("shapes: what slides and turns under the cloth is not held up") {
+  const Level level = square(9, 0.4);
+  for (const SolidKind kind : kinds) {
+    const ShapeParameters from = level_with(kind, 1e-4);
+    ShapeParameters to = from;
+    to.centre.x() += 0.2;
+    to.rotate.z() = 100;
+    INFO(word(kind));
+    CHECK(max_move(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+  }
+}
+
+TEST_CASE("shapes: no solid passes through the cloth, however it moves; what was cut is not cut again") {
+  const Level level = square(6, 0.3);
+  int cut = 0, whole = 0, would_cross = 0, barely = 0;
+  for (int i = 0; i < 300; ++i) {
+    Positions x = level.rest.vertices;
+    const double a = uniform(-20, 20), b = uniform(-20, 20);
+    for (int v = 0; v < x.rows(); ++v) x(v, 2) = 0.02 * std::sin(a * x(v, 0) + b * x(v, 1));
+    const auto crosses = [&](const ShapeParameters& p) { return !bound(p, level)->intersections(x).empty(); };
+    ShapeParameters from;
+    from.shape = kinds[i % 5];
+    do {
+      from.centre = any(0.3);
+      from.rotate = any(180);
+      from.normal = any(1);
+      from.radius = i % 2 ? 0.002 : uniform(0.03, 0.1);  // a needle
+      from.height = uniform(0.1, 0.4);
+      from.size = i % 3 ? Vector3d(0.3, 0.2, 0.002) : Vector3d(0.05, 0.08, 0.1);
+    } while (crosses(from));
+    ShapeParameters to = from;
+    to.centre = i % 3 == 0 ? Vector3d(from.centre + any(0.02)) : Vector3d(any(0.1) - from.centre);
+    to.rotate += i % 4 ? any(60) : any(720);
+    to.normal += any(0.7);
+    if (i % 7 == 0) to.radius = uniform(0.01, 0.2), to.size *= 1.5;
+    const auto before = bound(from, level);
+    const StepLimit limit = max_move(*before, *bound(to, level), x);
+    CAPTURE(i, word(from.shape), limit.fraction);
+    REQUIRE(limit.fraction > 0);
+    REQUIRE(limit.fraction <= 1);
+    CHECK(limit.by.empty() == (limit.fraction == 1));
+    const auto crossings = [&](double begin, double end, int samples) {
+      int found = 0;
+      for (int k = 0; k <= samples; ++k)
+        found += crosses(blended(from, to, begin + (end - begin) * k / samples));
+      return found;
+    };
+    CHECK(crossings(0, limit.fraction, 700) == 0);
+    (limit.fraction < 1 ? cut : whole) += 1;
+    if (limit.fraction == 1) continue;
+    CHECK(max_move(*before, *bound(blended(from, to, limit.fraction), level), x).fraction == 1);
+    would_cross += crossings(limit.fraction, 1, 700) > 0;
+    barely += crossings(limit.fraction, std::min(1.0, limit.fraction + 0.01), 20) > 0;
+  }
+  CAPTURE(cut, whole, would_cross, barely);
+  CHECK(cut > 100);
+  CHECK(whole > 50);
+  CHECK(would_cross > 0.95 * cut);
+  CHECK(barely > 0.7 * cut);
+}
+
+TEST_CASE("shapes: an edge that is highest between two places does not pass through the cloth there") {
+  const Level level = square(5, 0.2);
+  const Positions& x = level.rest.vertices;
+  const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
+  for (const bool passes : {true, false}) {
+    ShapeParameters from = level_with(SolidKind::box, 0);
+    from.size.setConstant(0.1);
+    from.centre.z() = -apex + (passes ? -2e-5 : 0.5 * lower);
+    from.rotate.y() = 43;
+    ShapeParameters to = from;
+    to.rotate.y() = 47;
+    REQUIRE(bound(to, level)->intersections(x).empty());
+    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    CHECK(fraction > 0.1);
+    CHECK((fraction == 1) == passes);
+    CHECK(fraction < (passes ? 2 : 0.2));
+  }
+}
+
+TEST_CASE("shapes: one that becomes another one is refused by name") {
+  const Level level = square(3, 0.2);
+  const auto before = bound(level_with(SolidKind::box, 1), level);
+  CHECK_THROWS_WITH(
+      max_move(*before, *bound(level_with(SolidKind::sphere, 1), level), level.rest.vertices),
+      Catch::StartsWith("thing: sphere cannot become what it is") && Catch::EndsWith("thing: box"));
+}
+
+TEST_CASE("shapes: anchors of what is touched are carried along") {
+  const Level level = square(5, 0.2);
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  for (const SolidKind kind : kinds) {
+    const ShapeParameters from = level_with(kind, 0);
+    ShapeParameters to = from;
+    to.centre += Vector3d(0.01, 0.003, 0);
+    const auto before = bound(from, level, 0.3);
+    Positions anchors = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+    const Positions start = anchors;
+    dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*before, x, anchors);
+    INFO(word(kind));
+    int carried = 0;
+    for (int v = 0; v < x.rows(); ++v) {
+      const Eigen::RowVector3d moved = anchors.row(v) - start.row(v);
+      if (moved.isZero(0)) continue;
+      ++carried;
+      CHECK((moved - Eigen::RowVector3d(0.01, 0.003, 0)).norm() < 1e-15);
+    }
+    CHECK(carried >= 1);
+  }
+  // A ball that turns about a horizontal axis carries what lies on it, though its centre stays.
+  const ShapeParameters from = level_with(SolidKind::sphere, 0);
+  ShapeParameters to = from;
+  to.rotate = {0, 1, 0};
+  Positions anchors = x;
+  dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*bound(from, level, 0.3), x, anchors);
+  CHECK((anchors - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+}

@@ -1,0 +1,160 @@
+// Several experiments in one sweep, runs that are to fail, and the table of how all of them ended.
+
+#include <nlohmann/json.hpp>
+
+#include "core/report/run_table.h"
+#include "tests/support/command.h"
+
+using namespace drape;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+/// Cases that end in each way that they can; the last two not as expected.
+void write_cases(const Scratch& folder) {
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", R"(
+name: cases
+base: e.yaml
+set: {levels: 1}
+methods: [newton]
+time_limit: 6
+ablation:
+  - {name: easy}
+  - name: unheld
+    set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}
+    expect: {outcome: refused, message: widen its region}
+  - name: short
+    set: {newton.max_steps: 1}
+    expect: {outcome: out_of_steps, message: max_steps = 1}
+  - name: for another reason
+    set: {newton.max_steps: 2}
+    expect: {outcome: out_of_steps, message: snow}
+  - name: endless
+    set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}
+)");
+}
+
+}  // namespace
+
+TEST_CASE("a run passes when it ends as its sweep expects, for the reason expected") {
+  const Scratch folder;
+  write_cases(folder);
+  const Ended swept = drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(swept.exit_code == 1);
+  CHECK_THAT(swept.err, Contains("endless, seed 1: failed") &&
+                            Contains("was ended since it took longer than the sweep's time_limit"));
+
+  const Ended ended = drape_with("table out --format json", folder.path);
+  CHECK(ended.exit_code == 1);
+  const Json rows = Json::parse(ended.out);
+  REQUIRE(rows.size() == 5);
+  const auto outcome = [&](int k) {
+    return rows[k]["run"].get<std::string>() + ": " + rows[k]["outcome"].get<std::string>() +
+           (rows[k]["pass"] == true ? ", passes" : "");
+  };
+  CHECK(outcome(0) == "easy: converged, passes");
+  CHECK(outcome(1) == "unheld: refused, passes");
+  CHECK(outcome(2) == "short: out_of_steps, passes");
+  CHECK(outcome(3) == "for another reason: out_of_steps");
+  CHECK(outcome(4) == "endless: hang");
+  CHECK(rows[0]["method"] == "newton");
+  CHECK(rows[0]["vertices"] > 10);
+  CHECK(rows[2]["iterations"] == 1);
+  CHECK(rows[0]["energy"].is_number());
+  CHECK(rows[1]["vertices"].is_null());
+  CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("holds no vertex"));
+
+  const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
+  CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));
+  CHECK_THAT(few.out, Contains("| short | yes | out_of_steps | 1 |\n| for another reason | NO | out_of_steps "
+                               "| 2 |\n| endless | NO | hang |  |\n"));
+  const Ended csv = drape_with("table out --format csv --columns run,pass,outcome", folder.path);
+  CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
+  CHECK(drape_with("table out --columns runs", folder.path).err ==
+        "error: there is no column \"runs\"; did you mean \"run\"?\n");
+}
+
+TEST_CASE("an intersection, or an energy that is no number, fails whatever the outcome") {
+  const auto rows = [](Figure energy, Figure intersections) {
+    RunData data;
+    data.methods.push_back({});
+    data.methods[0].name = "newton";
+    data.methods[0].status = "converged";
+    LevelRecord level;
+    level.status = "converged";
+    level.energy_on_finest = energy;
+    level.intersections = intersections;
+    data.methods[0].levels.push_back(level);
+    SetRun run;
+    run.variation = "case";
+    run.status = "converged";
+    run.data = data;
+    return table_rows({"set", true, {run}});
+  };
+  CHECK(all_pass(rows(1.0, 0.0)));
+  CHECK(!all_pass(rows(1.0, 1.0)));
+  CHECK(!all_pass(rows({}, 0.0)));
+}
+
+TEST_CASE("an expectation says why") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {outcome: refused}}\n"
+               "  - {name: b, expect: {outcome: refuse}}\n");
+  CHECK(
+      drape_with("sweep s.yaml", folder.path).err ==
+      "error: s.yaml:4:23: \"expect\" of what is not to converge needs a \"message\": a part of what it says "
+      "then\n"
+      "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"infeasible\", \"stalled\", \"out_of_steps\" "
+      "or "
+      "\"refused\", not \"refuse\"; did you mean \"refused\"?\n");
+}
+
+TEST_CASE("a sweep over several experiments names each run by its experiment") {
+  const Scratch folder;
+  const std::string small = small_experiment();
+  const auto called = [&](const std::string& name) {
+    std::string text = small;
+    const std::size_t at = text.find("name: ");
+    return text.replace(at, text.find('\n', at) - at, "name: " + name);
+  };
+  std::filesystem::create_directory(folder / "scenes");
+  std::filesystem::create_directory(folder / "sweeps");
+  folder.write("scenes/b.yaml", called("second"));
+  folder.write("scenes/a.yaml", called("first"));
+  folder.write("sweeps/s.yaml",
+               "name: s\nexperiments: [../scenes/*.yaml]\nset: {levels: 1}\nmethods: [newton]\n");
+  CHECK(drape_with("sweep sweeps/s.yaml --out out", folder.path).exit_code == 0);
+  CHECK_THAT(drape_with("table out --columns run,method,pass", folder.path).out,
+             Contains("| first | newton | yes |\n| second | newton | yes |\n"));
+  CHECK(std::filesystem::exists(folder / "out/runs/first/seed_1/results.json"));
+
+  folder.write("sweeps/two.yaml",
+               "name: two\nexperiments: [../scenes/a.yaml, ../scenes/b.yaml]\nset: {levels: 1}\n"
+               "ablation: [{name: as it is}, {name: loop, set: {refiner: midpoint}}]\n");
+  const std::string plan = drape_with("sweep sweeps/two.yaml --dry-run", folder.path).out;
+  CHECK_THAT(plan, Contains("runs/first,_as_it_is/seed_1 ") && Contains("runs/second,_loop/seed_1 "));
+
+  const auto said = [&](const std::string& text) {
+    folder.write("sweeps/bad.yaml", "name: bad\n" + text);
+    return drape_with("sweep sweeps/bad.yaml", folder.path).err;
+  };
+  CHECK(said("") ==
+        "error: sweeps/bad.yaml:1:1: \"base\" is required and missing, or \"experiments\" in its place\n");
+  CHECK(said("base: ../scenes/a.yaml\nexperiments: [../scenes/b.yaml]\n") ==
+        "error: sweeps/bad.yaml:3:14: \"base\" and \"experiments\" are both given; keep one of them\n");
+  CHECK(said("experiments: [../scene/*.yaml]\n") ==
+        "error: sweeps/bad.yaml:2:15: no file is called like ../scene/*.yaml, seen from this file\n");
+  CHECK(
+      said("experiments: [../scenes/a.yaml, ../scenes/a.yaml]\n") ==
+      "error: sweeps/bad.yaml:2:33: experiments sweeps/../scenes/a.yaml and sweeps/../scenes/a.yaml have the "
+      "same name, \"first\"; rename one of them, or name each once\n");
+  CHECK_THAT(said("experiments: [../scenes/c.yaml]\n"),
+             Contains("no such file (the sweep's \"experiments\", named at sweeps/bad.yaml:2:15)\n"));
+  CHECK_THAT(said("experiments: [../scenes/a.yaml]\nset: {levels: 0}\n"),
+             Contains("\"levels\" must be at least 1"));
+}
