@@ -172,7 +172,6 @@ struct Scene {
   Hierarchy hierarchy;
   std::vector<NamedEnergy> energies;  ///< that the models were bound from, handles among them
   std::vector<std::unique_ptr<LevelModel>> models;
-  std::vector<Positions> shapes;  ///< what the start moves: the rest's, or that of its file
   std::vector<Positions> starts;
   std::optional<Positions> reference;    ///< on the finest level, where the experiment names a file with it
   std::unique_ptr<Conditions> schedule;  ///< null where the experiment has none

@@ -271,7 +271,7 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
         p.decrement_tolerance = 1e-7;
         const Positions centres = c.level.rest.vertices.array() + 0.05;
         const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
-                               {});
+                               {{0, c.level.rest.vertices.row(0), 0}});
         Keeping whole;
         PlainObjective first(model);
         const LevelResult expected =
