@@ -3,6 +3,8 @@
 # make demo     run configs/sphere.yaml to 25K vertices by three methods; its figures beside the supplement's
 # make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
+# make scenes   run every scene of the supplement's Table 2 by PCS, or go on with it, and write one table of them (needs
+#               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
 # make test     build and run every test
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
@@ -20,7 +22,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 test data bench hard pictures format fix-format lint clean
+.PHONY: all setup configure build demo table1 scenes test data bench hard pictures format fix-format lint clean
 all: build
 
 setup:
@@ -39,6 +41,14 @@ demo: build
 
 table1: build
 	@benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS))
+
+SCENES_NAME = scenes$(if $(LEVELS),_levels_$(LEVELS))
+SCENES_COLUMNS = run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message
+scenes: build
+	@$(BUILD)/bin/drape sweep configs/sweeps/scenes.yaml --out results/$(SCENES_NAME) \
+	  $(if $(LEVELS),--most-levels $(LEVELS)); ended=$$?; [ $$ended -le 1 ] || exit $$ended; \
+	  $(BUILD)/bin/drape table results/$(SCENES_NAME) --columns $(SCENES_COLUMNS) > benchmarks/results/$(SCENES_NAME).md; \
+	  cat benchmarks/results/$(SCENES_NAME).md; exit $$ended
 
 test: build
 	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)

@@ -49,6 +49,8 @@ SweepCommand::SweepCommand(CLI::App& app)
       ->check(positive_integer);
   sweep_->add_option("--memory-limit", memory_limit_, "GB: of all runs together; with slurm, of each")
       ->check(CLI::PositiveNumber);
+  sweep_->add_option("--most-levels", most_levels_, "of every run; an experiment that has fewer keeps them")
+      ->check(positive_integer);
   sweep_->add_flag("--dry-run", dry_run_, "check everything and list the runs, without running any");
   sweep_->add_flag("--retry-failed", retry_failed_, "run those again that failed");
   sweep_->add_flag("--report", report_, "write every run's report.html and its pictures");
@@ -79,7 +81,7 @@ void SweepCommand::check_options(int threads) const {
 
 int SweepCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
   ConfigErrors errors;
-  const std::optional<Sweep> sweep = read_sweep(config_, registry, errors);
+  const std::optional<Sweep> sweep = read_sweep(config_, registry, errors, most_levels_);
   for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
   if (!sweep) return exit_bad_input;
   const int threads = threads_ ? threads_ : sweep->parameters.threads;

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class SweepCommand {
   std::vector<std::string> sbatch_;
   int workers_ = 0, threads_ = 0, task_ = -1;
   double memory_limit_ = 0;
+  std::optional<int> most_levels_;
   bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false;
 };
 

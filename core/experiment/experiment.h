@@ -172,7 +172,6 @@ struct Scene {
   Hierarchy hierarchy;
   std::vector<NamedEnergy> energies;  ///< that the models were bound from, handles among them
   std::vector<std::unique_ptr<LevelModel>> models;
-  std::vector<Positions> shapes;  ///< what the start moves: the rest's, or that of its file
   std::vector<Positions> starts;
   std::optional<Positions> reference;    ///< on the finest level, where the experiment names a file with it
   std::unique_ptr<Conditions> schedule;  ///< null where the experiment has none
@@ -187,5 +186,9 @@ enum class TouchingStart { refused, kept };
 /// touches appended, if it cannot be built. A touching start is `kept` for repair_start alone.
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
                                    TouchingStart touching = TouchingStart::refused);
+
+/// Contact keeps apart what is apart: a start that touches something is refused, and says where.
+void refuse_touching_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
+                           ConfigErrors& errors);
 
 }  // namespace drape

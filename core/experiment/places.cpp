@@ -17,11 +17,6 @@ Eigen::Matrix3d turned(const Eigen::Vector3d& angles) {
       .toRotationMatrix();
 }
 
-Eigen::Vector3d place_of(const PlaceParameters& p, const StartParameters& start, const Eigen::Vector3d& rest,
-                         const Eigen::Vector3d& shape) {
-  return p.moved() ? p.place(rest) : start.place(shape);
-}
-
 void check_place(const std::string& word, std::size_t number, const PlaceParameters& p, const Location& where,
                  const Level& coarsest, ConfigErrors& errors) {
   const std::string name = word + " " + std::to_string(number) + " (" + p.region + ")";
@@ -42,8 +37,8 @@ void check_place(const std::string& word, std::size_t number, const PlaceParamet
 /// all.
 class Handles final : public Energy {
  public:
-  Handles(const ExperimentParameters& p, const Level& coarsest, const std::vector<Positions>& shapes)
-      : handles_(p.handles), start_(p.start), coarsest_(coarsest), shapes_(shapes) {}
+  Handles(const ExperimentParameters& p, const Level& coarsest)
+      : handles_(p.handles), start_(p.start), coarsest_(coarsest) {}
 
   EnergyRole role() const override { return EnergyRole::position; }
 
@@ -57,7 +52,9 @@ class Handles final : public Energy {
       const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
       for (int v : own)
         pulls.push_back(
-            {v, place_of(handle, start_, level.rest.vertices.row(v), shapes_[level.index].row(v)),
+            {v,
+             handle.moved() ? handle.place(level.rest.vertices.row(v))
+                            : start_.place(level.rest.vertices.row(v)),
              stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
     }
     return std::make_unique<PositionPenalty>(std::move(pulls));
@@ -67,7 +64,6 @@ class Handles final : public Energy {
   std::vector<HandleParameters> handles_;
   StartParameters start_;
   const Level& coarsest_;
-  const std::vector<Positions>& shapes_;
 };
 
 }  // namespace
@@ -117,21 +113,21 @@ void check_places(const Experiment& e, const Level& coarsest, ConfigErrors& erro
 }
 
 std::vector<HeldVertex> held_vertices(const ExperimentParameters& p, const Level& level,
-                                      const Level& coarsest, const Positions& shape) {
+                                      const Level& coarsest, const Positions& start) {
   std::vector<HeldVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k)
     for (int v : vertices_of(p.pins[k], level, coarsest))
-      by_vertex[v] = {v, place_of(p.pins[k], p.start, level.rest.vertices.row(v), shape.row(v)),
-                      static_cast<int>(k)};
+      by_vertex[v] = {
+          v, p.pins[k].moved() ? p.pins[k].place(level.rest.vertices.row(v)) : Eigen::Vector3d(start.row(v)),
+          static_cast<int>(k)};
   std::vector<HeldVertex> held;
   for (const HeldVertex& h : by_vertex)
     if (h.vertex >= 0) held.push_back(h);
   return held;
 }
 
-std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest,
-                                             const std::vector<Positions>& shapes) {
-  return p.handles.empty() ? nullptr : std::make_shared<Handles>(p, coarsest, shapes);
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest) {
+  return p.handles.empty() ? nullptr : std::make_shared<Handles>(p, coarsest);
 }
 
 }  // namespace drape

@@ -12,14 +12,13 @@ std::vector<int> vertices_of(const PlaceParameters& region, const Level& level, 
 /// vertices that there are not.
 void check_places(const Experiment& experiment, const Level& coarsest, ConfigErrors& errors);
 
-/// The held vertices of a level: each where its last pin has it, or else where the start puts the level's
-/// `shape`.
+/// The held vertices of a level: each where its last pin has it, or where `start` (n×3) does if that pin does
+/// not move it.
 std::vector<HeldVertex> held_vertices(const ExperimentParameters& parameters, const Level& level,
-                                      const Level& coarsest, const Positions& shape);
+                                      const Level& coarsest, const Positions& start);
 
-/// The handles as an energy, which pulls as hard on every level; null without a handle. `coarsest` and
-/// `shapes`, of all levels, must outlive it.
-std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& parameters, const Level& coarsest,
-                                             const std::vector<Positions>& shapes);
+/// The handles as an energy, which pulls as hard on every level; null without a handle. `coarsest` must
+/// outlive it.
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& parameters, const Level& coarsest);
 
 }  // namespace drape

@@ -97,21 +97,20 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
   return shapes;
 }
 
-/// Held vertices in their places, others where the start puts the shape, with noise by the place in the rest
-/// shape.
-Positions make_start(const Positions& rest, const Positions& shape, const std::vector<HeldVertex>& held,
-                     const StartParameters& s) {
+/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
+                     double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    const double across = s.perturbation > 0 ? s.perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
     x.row(i) = s.place(shape.row(i), across).transpose();
   }
-  for (const HeldVertex& h : held) x.row(h.vertex) = h.place.transpose();
   return x;
 }
 
-/// Contact keeps apart what is apart: a start that touches is refused, and says where.
+}  // namespace
+
 void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
                            ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
@@ -126,8 +125,6 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
                                     " more pairs; move the start or the obstacle so that they are apart"});
   }
 }
-
-}  // namespace
 
 Location Experiment::place_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);
@@ -162,14 +159,16 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   }
   const Level& coarsest = scene->hierarchy.levels[0];
   check_places(e, coarsest, errors);
-  scene->shapes = start_shapes(e, scene->hierarchy, errors);
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
-  if (auto handles = handles_energy(p, coarsest, scene->shapes))
-    scene->energies.push_back({"handles", std::move(handles)});
+  if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
-    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, scene->shapes[level.index]);
-    scene->starts.push_back(make_start(level.rest.vertices, scene->shapes[level.index], held, p.start));
+    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
+    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
           std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));

@@ -45,7 +45,8 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
 
 class Reader {
  public:
-  Reader(const Registry& registry, ConfigErrors& errors) : registry_(registry), errors_(errors) {}
+  Reader(const Registry& registry, ConfigErrors& errors, std::optional<int> most_levels)
+      : registry_(registry), errors_(errors), most_levels_(most_levels) {}
 
   Sweep read(const std::filesystem::path& file) {
     sweep_.file = file;
@@ -110,7 +111,11 @@ class Reader {
     const bool own = !variation.methods.empty();
     const std::vector<std::string>& methods = own ? variation.methods : p.methods;
     if (own) run.settings["methods"] = methods;
-    const auto experiment = read_experiment(std::move(source), registry_, faults);
+    auto experiment = read_experiment(source, registry_, faults);
+    if (experiment && most_levels_ && experiment->parameters.levels > *most_levels_) {
+      set_path(source, "levels", ConfigNode::of(*most_levels_), source_.where, faults);
+      experiment = read_experiment(std::move(source), registry_, faults);
+    }
     if (experiment) {
       check_methods(*experiment, methods, own ? variation.methods_where : place_of("methods"), faults);
       if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
@@ -180,6 +185,7 @@ class Reader {
 
   const Registry& registry_;
   ConfigErrors& errors_;
+  std::optional<int> most_levels_;
   Sweep sweep_;
   ConfigNode source_;
   ConfigErrors faults_, same_;
@@ -190,8 +196,8 @@ class Reader {
 }  // namespace
 
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
-                                ConfigErrors& errors) {
-  Sweep sweep = Reader(registry, errors).read(file);
+                                ConfigErrors& errors, std::optional<int> most_levels) {
+  Sweep sweep = Reader(registry, errors, most_levels).read(file);
   if (!errors.empty()) return std::nullopt;
   return sweep;
 }

@@ -59,9 +59,10 @@ struct Sweep {
   std::vector<SweepRun> runs;  ///< the seeds of the first variation, then of the next
 };
 
-/// Reads a sweep and every experiment in it, collecting all that is wrong; empty if anything is.
+/// Reads a sweep and every experiment in it, collecting all that is wrong; empty if anything is. Experiments
+/// of more than `most_levels` levels are made to have so many.
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
-                                ConfigErrors& errors);
+                                ConfigErrors& errors, std::optional<int> most_levels = std::nullopt);
 
 /// The schema of sweeps for `drape describe`, and as JSON for editors, what `ablation` takes included.
 std::string describe_sweep();

@@ -30,6 +30,7 @@ const std::map<std::string, std::string> settings = {
     {"constant_load",
      "{type: constant_load, force_density: [1, 2, 3],"
      " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"},
+    {"pressure", "{type: pressure, pressure: 100}"},
     {"strain_limit", "{type: strain_limit, limit: 10}"}};  // every state is inside
 
 /// Every registered energy, with its defaults where `settings` says nothing else.

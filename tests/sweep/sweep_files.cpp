@@ -166,6 +166,24 @@ TEST_CASE("--dry-run checks and lists, and leaves no trace") {
   CHECK(fs::is_empty(folder.path));
 }
 
+TEST_CASE("--most-levels keeps experiments from having more, and leaves those that have fewer") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nablation: [{name: few, levels: 1}, {name: many, levels: 3}]\n");
+  const auto plan = [&](const std::string& option) {
+    const Ended ended = drape_with("sweep s.yaml --dry-run" + option, folder.path);
+    CHECK(ended.err == "");
+    return ended.out;
+  };
+  using Catch::Matchers::Contains;
+  CHECK_THAT(plan(""), Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 3,"));
+  CHECK_THAT(plan(" --most-levels 2"),
+             Contains("few/seed_1  levels 1,") && Contains("many/seed_1  levels 2,"));
+  CHECK(drape_with("sweep s.yaml --most-levels 2 --out out", folder.path).exit_code == 0);
+  CHECK_THAT(text_of(folder / "out/runs/many/seed_1/config.yaml"), Contains("\nlevels: 2\n"));
+}
+
 TEST_CASE("a setting may be a whole map or list, and its files are relative to the sweep's own") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());

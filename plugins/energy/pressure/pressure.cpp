@@ -1,0 +1,153 @@
+#include "plugins/energy/pressure/pressure.h"
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "core/numerics/element_order.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// The volume as a sum over edges (a, b) with triangles (a, b, c) and (b, a, d), all relative to one origin:
+///
+///     V = Σ det(a, b, c - d) / 18,   ∂V/∂a = Σ b × (c - d) / 12,   ∂²V/∂a∂b = -[c - d]× / 6.
+///
+/// Every triangle gives each of its edges a third of its det / 6. At the border d is the centre. By edges the
+/// Hessian does not depend on the origin, and its projection has a closed form.
+class BoundPressure final : public BoundEnergy {
+ public:
+  BoundPressure(double pressure, Vector centre, const Level& level)
+      : pressure_(pressure), centre_(std::move(centre)) {
+    const Topology& topology = level.topology;
+    const Stencils inner = topology.hinges(level.rest.triangles);
+    const Eigen::Index edges = topology.edges.rows();
+    closed_ = inner.rows() == edges;
+    Stencils all(edges, 4);
+    all.topRows(inner.rows()) = inner;
+    Eigen::Index next = inner.rows();
+    for (int t = 0; t < level.triangle_count(); ++t)
+      for (int k = 0; k < 3; ++k) {
+        if (topology.edge_triangles(topology.triangle_edges(t, k), 1) >= 0) continue;
+        const auto v = level.rest.triangles.row(t);
+        all.row(next++) << v[(k + 1) % 3], v[(k + 2) % 3], v[k], -1;
+      }
+    order_ = ElementOrder::of(all.leftCols(2), level.rest.vertices);
+    edges_.resize(edges, 4);
+    for (Eigen::Index e = 0; e < edges; ++e) edges_.row(e) = all.row(order_.elements[e]);
+  }
+
+  double value(const Positions& x) const override {
+    const Vector origin = origin_at(x);
+    Sums sums;
+    parallel_for(order_.chunks(), 1, [&](int begin, int end) {
+      for (int c = begin; c < end; ++c) {
+        double sum = 0;
+        for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e)
+          sum += determinant(Edge(*this, x, origin, e));
+        sums[c] = sum;
+      }
+    });
+    return energy(sums);
+  }
+
+  double add_gradient(const Positions& x, Positions& g) const override {
+    const Vector origin = origin_at(x);
+    const double scale = -pressure_ / 12;
+    Sums sums;
+    for_each_colour([&](int c) {
+      double sum = 0;
+      for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
+        const Edge edge(*this, x, origin, e);
+        g.row(edges_(e, 0)) += scale * edge.b.cross(edge.across).transpose();
+        g.row(edges_(e, 1)) -= scale * edge.a.cross(edge.across).transpose();
+        sum += determinant(edge);
+      }
+      sums[c] = sum;
+    });
+    return energy(sums);
+  }
+
+  Stencils stencils() const override { return edges_.leftCols(2); }
+
+  /// An edge's matrix is M = [0 S; Sᵀ 0] with S = p [w]× / 6. M² is a multiple of the projection P = I - n nᵀ
+  /// across w on both vertices, n = w/|w|, and |M| = |p| |w| / 6 times it.
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    const bool clamp = projection.kind == Projection::clamp;
+    const double lifted = projection.is_exact() ? 0 : clamp ? projection.share / 2 : projection.share;
+    const Vector origin = origin_at(x);
+    for_each_colour([&](int c) {
+      for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
+        const Vector w = Edge(*this, x, origin, e).across;
+        const Vector s = (1 - lifted) * pressure_ / 6 * w;
+        const double off[9] = {0, -s.z(), s.y(), s.z(), 0, -s.x(), -s.y(), s.x(), 0};
+        sink.add(e, 0, 1, off);
+        const double length = w.norm();
+        if (lifted == 0 || length == 0) continue;
+        Eigen::Matrix<double, 3, 3, Eigen::RowMajor> own = -w * (w / length).transpose();
+        own.diagonal().array() += length;
+        own *= lifted * std::abs(pressure_) / 6;
+        sink.add(e, 0, 0, own.data());
+        sink.add(e, 1, 1, own.data());
+      }
+    });
+  }
+
+ private:
+  using Sums = std::array<double, ElementOrder::max_chunks>;
+
+  struct Edge {
+    Vector a, b, across;  ///< ends, from the origin, and c - d
+    Edge(const BoundPressure& of, const Positions& x, const Vector& origin, int e) {
+      const auto v = of.edges_.row(e);
+      a = x.row(v[0]).transpose() - origin;
+      b = x.row(v[1]).transpose() - origin;
+      across = x.row(v[2]);
+      across -= v[3] >= 0 ? Vector(x.row(v[3])) : of.centre_;
+    }
+  };
+
+  static double determinant(const Edge& edge) { return edge.a.dot(edge.b.cross(edge.across)); }
+
+  /// A closed surface's volume does not depend on it: a place on the cloth, so that far away is as exact as
+  /// near.
+  Vector origin_at(const Positions& x) const { return closed_ ? Vector(x.row(0)) : centre_; }
+
+  double energy(const Sums& sums) const {
+    double result = 0;
+    for (int c = 0; c < order_.chunks(); ++c) result += sums[c];
+    return -pressure_ * result / 18;
+  }
+
+  template <class Body>
+  void for_each_colour(const Body& body) const {
+    for (int colour = 0; colour < order_.colours(); ++colour) {
+      const int first = order_.colour_start[colour];
+      parallel_for(order_.colour_start[colour + 1] - first, 1, [&](int begin, int end) {
+        for (int c = first + begin; c < first + end; ++c) body(c);
+      });
+    }
+  }
+
+  double pressure_;
+  Vector centre_;
+  bool closed_ = false;
+  ElementOrder order_;
+  Stencils edges_;  ///< a, b, c, d in order_; d is -1 at the border
+};
+
+}  // namespace
+
+std::unique_ptr<BoundEnergy> Pressure::bind(const Level& level, const Material&) const {
+  return std::make_unique<BoundPressure>(p_.pressure, p_.centre, level);
+}
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Energy, drape::Pressure>(
+      "pressure", "Pressure that turns with the cloth, as in a balloon: -p times the enclosed volume.");
+}

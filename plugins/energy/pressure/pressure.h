@@ -1,0 +1,38 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Pressure on one side of the cloth that turns with it, E = -p V(x): V is the volume that the cloth
+/// encloses, an open cloth being closed by the cone from its border to a fixed centre.
+class Pressure final : public Energy {
+ public:
+  struct Parameters {
+    double pressure = 0;
+    Eigen::Vector3d centre{0, 0, 0};
+    static void declare(Declaration<Parameters>& d) {
+      d.add("pressure", &Parameters::pressure)
+          .unit("Pa")
+          .required()
+          .meaning("on the back of every triangle, so that it pushes along the normal; negative for suction")
+          .source("this project");
+      d.add("centre", &Parameters::centre)
+          .unit("m")
+          .meaning(
+              "where the cone that closes an open cloth ends; of no effect where the border is pinned, "
+              "nor on a closed mesh")
+          .source("this project");
+    }
+  };
+
+  explicit Pressure(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape

@@ -1,0 +1,157 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "plugins/energy/pressure/pressure.h"
+#include "tests/support/closed_meshes.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+
+namespace {
+
+const Eigen::Vector3d apex(0.2, 0.3, -0.4);
+
+std::unique_ptr<BoundEnergy> bound(const Level& level, double pressure,
+                                   const Eigen::Vector3d& centre = apex) {
+  Pressure::Parameters p;
+  p.pressure = pressure;
+  p.centre = centre;
+  return Pressure(p).bind(level, Material());
+}
+
+Positions noisy(const Positions& x, double size, unsigned seed) {
+  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), seed);
+  return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
+}
+
+/// Six times the volume, triangle by triangle, the cone from the border to the centre with it.
+double six_volumes(const Level& level, const Positions& x, const Eigen::Vector3d& centre) {
+  double sum = 0;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const auto v = level.rest.triangles.row(t);
+    const auto at = [&](int k) { return Eigen::Vector3d(x.row(v[k]).transpose() - centre); };
+    sum += at(0).dot(at(1).cross(at(2)));
+  }
+  return sum;
+}
+
+Level open_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 30, 7)); }
+Level closed_level() { return Level::of(0, sphere_mesh(0.3, 1)); }
+
+}  // namespace
+
+TEST_CASE("pressure: derivatives are those of the value, and the value that of the volume") {
+  for (const Level& level : {open_level(), closed_level()}) {
+    const Positions x = noisy(level.rest.vertices, 0.05, 3);
+    const auto energy = bound(level, 200);
+    CHECK(energy->value(x) == Approx(-200 * six_volumes(level, x, apex) / 6).epsilon(1e-12));
+    const Eigen::VectorXd g = flat(gradient_of(*energy, x));
+    const Eigen::MatrixXd h = dense(hessian_of(*energy, x, Projection::none));
+    const auto value = [&](const Positions& y) { return energy->value(y); };
+    const auto gradient = [&](const Positions& y) { return gradient_of(*energy, y); };
+    REQUIRE(g.norm() > 1e-3);
+    REQUIRE(h.norm() > 1e-3);
+    // Of third degree: differences of fourth order are exact.
+    CHECK((differences(value, x, 0.01).transpose() - g).norm() <= 1e-11 * g.norm());
+    CHECK((differences(gradient, x, 0.01) - h).norm() <= 1e-11 * h.norm());
+  }
+}
+
+TEST_CASE("pressure: projection is that of every edge's matrix") {
+  const Level level = Level::of(0, grid({1, 1}, 2, 2, Diagonals::one_way));
+  const Positions x = noisy(level.rest.vertices, 0.1, 4);
+  const auto energy = bound(level, -30);
+  const Eigen::MatrixXd exact = dense(hessian_of(*energy, x, Projection::none));
+  for (const double share : {1.0, 0.3}) {
+    Eigen::MatrixXd clamped = Eigen::MatrixXd::Zero(12, 12), absolute = clamped;
+    int edges = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) {
+        Eigen::MatrixXd one = Eigen::MatrixXd::Zero(12, 12);
+        one.block<3, 3>(3 * i, 3 * j) = exact.block<3, 3>(3 * i, 3 * j);
+        one.block<3, 3>(3 * j, 3 * i) = exact.block<3, 3>(3 * j, 3 * i);
+        edges += one.norm() > 0;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(one);
+        const auto with = [&](const Eigen::VectorXd& lifted) {
+          const Eigen::VectorXd values = (1 - share) * eigen.eigenvalues() + share * lifted;
+          return Eigen::MatrixXd(eigen.eigenvectors() * values.asDiagonal() *
+                                 eigen.eigenvectors().transpose());
+        };
+        clamped += with(eigen.eigenvalues().cwiseMax(0));
+        absolute += with(eigen.eigenvalues().cwiseAbs());
+      }
+    REQUIRE(edges == 5);
+    const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, share})); };
+    CHECK((found(Projection::clamp) - clamped).norm() <= 1e-12 * exact.norm());
+    CHECK((found(Projection::absolute) - absolute).norm() <= 1e-12 * exact.norm());
+  }
+}
+
+TEST_CASE("pressure: a closed mesh feels no net force and no torque, wherever it is") {
+  const Level level = closed_level();
+  const Positions x = noisy(level.rest.vertices, 0.05, 5);
+  const auto energy = bound(level, 100);
+  const Positions near = gradient_of(*energy, x);
+  CHECK(near.colwise().sum().norm() <= 1e-14 * near.norm());
+  Eigen::Vector3d torque(0, 0, 0);
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    torque += Eigen::Vector3d(x.row(i)).cross(Eigen::Vector3d(near.row(i)));
+  CHECK(torque.norm() <= 1e-14 * near.norm());
+
+  // 1 km away, rounded to a grid that both places have, nothing is lost.
+  Positions rounded = (x * 1048576).array().round().matrix() / 1048576, away = rounded;
+  away.rowwise() += Eigen::RowVector3d(1024, -512, 256);
+  CHECK(energy->value(away) == energy->value(rounded));
+  CHECK(gradient_of(*energy, away) == gradient_of(*energy, rounded));
+}
+
+TEST_CASE("pressure: a sphere's volume, and a force along every normal") {
+  std::vector<double> errors;
+  const double radius = 0.3, exact = 4 * M_PI / 3 * std::pow(radius, 3);
+  for (const int splits : {2, 3, 4}) {
+    const Level level = Level::of(0, sphere_mesh(radius, splits));
+    const auto energy = bound(level, 1);
+    const Positions& x = level.rest.vertices;
+    errors.push_back(1 + energy->value(x) / exact);
+    CHECK(bound(level, -7)->value(x) == -7 * energy->value(x));
+    // V is of third degree: V(s x) = s³ V(x), and x · ∂V/∂x = 3 V.
+    CHECK(energy->value(2 * x) == Approx(8 * energy->value(x)).epsilon(1e-13));
+    const Positions force = -gradient_of(*energy, x);
+    CHECK(force.cwiseProduct(x).sum() == Approx(-3 * energy->value(x)).epsilon(1e-13));
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      CHECK(force.row(i).dot(x.row(i)) > 0.99 * force.row(i).norm() * radius);
+  }
+  CHECK(errors[2] > 0);
+  CHECK(errors[2] < 0.01);
+  CHECK(errors[1] / errors[2] == Approx(4).epsilon(0.05));
+  CHECK(errors[0] / errors[1] == Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("pressure: inner vertices of an open cloth carry a third of the area around them") {
+  const Level level = open_level();
+  const Positions x = noisy(level.rest.vertices, 0.02, 6);
+  Positions expected = Positions::Zero(x.rows(), 3);
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const auto v = level.rest.triangles.row(t);
+    const Eigen::Vector3d e1 = x.row(v[1]) - x.row(v[0]), e2 = x.row(v[2]) - x.row(v[0]);
+    for (int k = 0; k < 3; ++k) expected.row(v[k]) += 50 * e1.cross(e2).transpose() / 6;
+  }
+  int inner = 0;
+  for (const Eigen::Vector3d& centre : {apex, Eigen::Vector3d(-3, 2, 5)}) {
+    const Positions force = -gradient_of(*bound(level, 50, centre), x);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      if (level.topology.on_border[i]) continue;
+      ++inner;
+      CHECK((force.row(i) - expected.row(i)).norm() <= 1e-12 * expected.norm());
+    }
+  }
+  REQUIRE(inner > 10);
+}
+
+TEST_CASE("pressure: same bits with any number of threads") {
+  for (const Level& level :
+       {Level::of(0, sphere_mesh(0.3, 4)), Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross))})
+    check_threads(*bound(level, 100), noisy(level.rest.vertices, 0.003, 7));
+}
