@@ -122,7 +122,7 @@ void finest_level(const Experiment& e, const Scene& scene, Table& table) {
   parameters.max_steps = 8;
   Observer silent;
   PlainObjective objective(model);
-  const LevelResult r = minimise(objective, x, parameters, Stopwatch(), silent);
+  const LevelResult r = minimise(objective, x, parameters, {Stopwatch(), silent});
   const auto& phase = r.seconds_by_phase;
   const double n = r.iterations;
   table.add("whole Newton iteration (without the analysis)", (r.seconds - phase.at("analyse")) / n,

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/mesh/file.h"
+
 namespace drape {
 
 namespace {
@@ -66,6 +68,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   }
   std::filesystem::create_directories(folder_.file("frames"));
   write_frames(folder_.file(level.file), frames);
+  sync_to_disk(folder_.file(level.file));
   levels_.push_back(std::move(level));
   return entry;
 }

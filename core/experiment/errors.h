@@ -31,6 +31,17 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
 /// The energy of the finest level in a state carried up to it by the refiner [J].
 double energy_on_finest(const Scene& scene, int level, const Positions& x);
 
+/// What is known of the frames of one level.
+struct LevelFrames {
+  std::string method, file;
+  int level = 0;
+  std::vector<Work> work;        ///< of each frame, with what it builds on
+  std::vector<int> iterations;   ///< of the level
+  std::vector<double> energies;  ///< on the finest level [J]
+  Positions last;                ///< in full precision
+  bool converged = false;
+};
+
 /// Collects the frames of a run and measures them all once the methods have ended, so that no method's time
 /// has the measuring in it.
 class ErrorTable {
@@ -50,18 +61,11 @@ class ErrorTable {
              const std::function<void(const std::string&)>& fault);
 
   bool empty() const { return levels_.empty(); }
+  const std::vector<LevelFrames>& levels() const { return levels_; }
+  /// Takes in what an earlier table of the same run had collected; its files are there.
+  void restore(std::vector<LevelFrames> levels) { levels_ = std::move(levels); }
 
  private:
-  struct LevelFrames {
-    std::string method, file;
-    int level = 0;
-    std::vector<Work> work;        // of each frame, with what it builds on
-    std::vector<int> iterations;   // of the level
-    std::vector<double> energies;  // on the finest level
-    Positions last;                // in full precision
-    bool converged = false;
-  };
-
   const RunFolder& folder_;
   const Experiment& experiment_;
   const Scene& scene_;

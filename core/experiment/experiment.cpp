@@ -46,6 +46,11 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
+  d.add("file", &StartParameters::file)
+      .path()
+      .meaning(
+          "a mesh with the coarsest level's triangles, in place of the rest shape; split at midpoints on "
+          "finer levels");
   d.add("scale", &StartParameters::scale).meaning("factors on the rest shape's x, y, z");
   d.add("rotate", &StartParameters::rotate).unit("°").meaning("then turned about x, y, z, in this order");
   d.add("translate", &StartParameters::translate).unit("m").meaning("then moved");

@@ -40,8 +40,9 @@ struct ClothParameters {
   static void declare(Declaration<ClothParameters>& d);
 };
 
-/// Where the cloth starts: rest → scaled → rotated → moved.
+/// Where the cloth starts: rest, or the file's shape → scaled → rotated → moved.
 struct StartParameters {
+  std::string file;
   Eigen::Vector3d scale{1, 1, 1};
   Eigen::Vector3d rotate{0, 0, 0};
   Eigen::Vector3d translate{0, 0, 0};
@@ -185,5 +186,9 @@ enum class TouchingStart { refused, kept };
 /// touches appended, if it cannot be built. A touching start is `kept` for repair_start alone.
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
                                    TouchingStart touching = TouchingStart::refused);
+
+/// Contact keeps apart what is apart: a start that touches something is refused, and says where.
+void refuse_touching_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
+                           ConfigErrors& errors);
 
 }  // namespace drape

@@ -10,29 +10,25 @@ namespace drape {
 
 static_assert(std::endian::native == std::endian::little, "frames are written as they lie in memory");
 
-void Frames::begin_level() {
-  kept_.clear();
-  spacing_ = 1;
-  seen_ = 0;
-}
+void Frames::begin_level() { m_ = {}; }
 
 void Frames::iteration(const Work& work, const Positions& x) {
-  const bool wanted = most_ > 1 && seen_ % spacing_ == 0;
-  ++seen_;
+  const bool wanted = most_ > 1 && m_.seen % m_.spacing == 0;
+  ++m_.seen;
   if (!wanted) return;
-  if (static_cast<int>(kept_.size()) == most_ - 1) {  // one place is the last state's
-    for (std::size_t k = 1; 2 * k < kept_.size(); ++k) kept_[k] = std::move(kept_[2 * k]);
-    kept_.resize((kept_.size() + 1) / 2);
-    spacing_ *= 2;
-    if ((seen_ - 1) % spacing_ != 0 || static_cast<int>(kept_.size()) == most_ - 1) return;
+  if (static_cast<int>(m_.kept.size()) == most_ - 1) {  // one place is the last state's
+    for (std::size_t k = 1; 2 * k < m_.kept.size(); ++k) m_.kept[k] = std::move(m_.kept[2 * k]);
+    m_.kept.resize((m_.kept.size() + 1) / 2);
+    m_.spacing *= 2;
+    if ((m_.seen - 1) % m_.spacing != 0 || static_cast<int>(m_.kept.size()) == most_ - 1) return;
   }
-  kept_.push_back({work, x});
+  m_.kept.push_back({work, x});
 }
 
 std::vector<Frame> Frames::end_level(const Work& work, const Positions& last) {
-  if (!kept_.empty() && kept_.back().work.iterations == work.iterations) kept_.pop_back();
-  kept_.push_back({work, last});
-  return std::move(kept_);
+  if (!m_.kept.empty() && m_.kept.back().work.iterations == work.iterations) m_.kept.pop_back();
+  m_.kept.push_back({work, last});
+  return std::move(m_.kept);
 }
 
 void write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames) {

@@ -32,6 +32,14 @@ class Frames {
   /// At most `most` frames a level, its last state among them; 0 keeps nothing and costs nothing.
   explicit Frames(int most) : most_(most) {}
 
+  /// Of the level under way.
+  struct Memory {
+    int spacing = 1, seen = 0;
+    std::vector<Frame> kept;
+  };
+  const Memory& memory() const { return m_; }
+  void restore(Memory memory) { m_ = std::move(memory); }
+
   bool any() const { return most_ > 0; }
   void begin_level();
   /// The state after an iteration; `work` counts from the level's start.
@@ -40,8 +48,8 @@ class Frames {
   std::vector<Frame> end_level(const Work& work, const Positions& last);
 
  private:
-  int most_, spacing_ = 1, seen_ = 0;
-  std::vector<Frame> kept_;
+  int most_;
+  Memory m_;
 };
 
 /// float32, little-endian, frame after frame, row by row. Written as a whole, then renamed.

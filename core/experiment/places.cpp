@@ -17,11 +17,6 @@ Eigen::Matrix3d turned(const Eigen::Vector3d& angles) {
       .toRotationMatrix();
 }
 
-Eigen::Vector3d place_of(const PlaceParameters& p, const StartParameters& start,
-                         const Eigen::Vector3d& rest) {
-  return p.moved() ? p.place(rest) : start.place(rest);
-}
-
 void check_place(const std::string& word, std::size_t number, const PlaceParameters& p, const Location& where,
                  const Level& coarsest, ConfigErrors& errors) {
   const std::string name = word + " " + std::to_string(number) + " (" + p.region + ")";
@@ -57,7 +52,9 @@ class Handles final : public Energy {
       const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
       for (int v : own)
         pulls.push_back(
-            {v, place_of(handle, start_, level.rest.vertices.row(v)),
+            {v,
+             handle.moved() ? handle.place(level.rest.vertices.row(v))
+                            : start_.place(level.rest.vertices.row(v)),
              stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
     }
     return std::make_unique<PositionPenalty>(std::move(pulls));
@@ -116,11 +113,13 @@ void check_places(const Experiment& e, const Level& coarsest, ConfigErrors& erro
 }
 
 std::vector<HeldVertex> held_vertices(const ExperimentParameters& p, const Level& level,
-                                      const Level& coarsest) {
+                                      const Level& coarsest, const Positions& start) {
   std::vector<HeldVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k)
     for (int v : vertices_of(p.pins[k], level, coarsest))
-      by_vertex[v] = {v, place_of(p.pins[k], p.start, level.rest.vertices.row(v)), static_cast<int>(k)};
+      by_vertex[v] = {
+          v, p.pins[k].moved() ? p.pins[k].place(level.rest.vertices.row(v)) : Eigen::Vector3d(start.row(v)),
+          static_cast<int>(k)};
   std::vector<HeldVertex> held;
   for (const HeldVertex& h : by_vertex)
     if (h.vertex >= 0) held.push_back(h);

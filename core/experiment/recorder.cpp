@@ -7,6 +7,7 @@
 
 #include "core/experiment/machine.h"
 #include "core/experiment/reference.h"
+#include "core/mesh/file.h"
 #include "core/mesh/io.h"
 #include "core/numerics/parallel.h"
 #include "core/version.h"
@@ -26,18 +27,31 @@ nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::str
                                   : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
 }
 
+/// Takes off what was written to a file after it had so many bytes.
+void cut(const std::filesystem::path& file, std::uint64_t bytes) {
+  if (std::filesystem::file_size(file) < bytes)
+    throw std::runtime_error(file.string() +
+                             ": is shorter than when the checkpoint was made; it was changed since, so that "
+                             "the run cannot go on: run the experiment anew");
+  std::filesystem::resize_file(file, bytes);
+}
+
 }  // namespace
 
-Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
+Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+                   std::ios::openmode mode)
     : folder_(folder),
       experiment_(experiment),
       scene_(scene),
+      steps_(folder.file("steps.csv"), mode),
+      log_(folder.file("log.jsonl"), mode),
       frames_(experiment.parameters.frames),
-      errors_(folder, experiment, scene) {
-  steps_.open(folder.file("steps.csv"));
+      errors_(folder, experiment, scene) {}
+
+Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
+    : Recorder(folder, experiment, scene, std::ios::out) {
   steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
             "step_size,contacts,smallest_gap,intersections,flops\n";
-  log_.open(folder.file("log.jsonl"));
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
   results_["description"] = p.description;
@@ -62,6 +76,49 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
     }
   save();
   log({{"event", "run_started"}, {"experiment", p.name}});
+}
+
+Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+                   const RecorderState& state)
+    : Recorder(folder, experiment, scene, std::ios::app) {
+  cut(folder.file("steps.csv"), state.steps_bytes);
+  cut(folder.file("log.jsonl"), state.log_bytes);
+  results_ = Json::parse(state.results);
+  method_ = state.method;
+  sound_ = state.sound;
+  sound_of_method_ = state.sound_of_method;
+  finest_ = state.finest;
+  frames_.restore(state.frames);
+  errors_.restore(state.measured);
+  spent_ = state.spent;
+  last_ = state.last;
+  overhead_ = state.overhead;
+  reset_peak_memory();
+  save();
+  log({{"event", "run_resumed"}, {"method", method_}});
+}
+
+RecorderState Recorder::state() const {
+  RecorderState s{results_.dump(),
+                  method_,
+                  sound_,
+                  sound_of_method_,
+                  finest_,
+                  frames_.memory(),
+                  errors_.levels(),
+                  spent_,
+                  last_,
+                  overhead_,
+                  std::filesystem::file_size(folder_.file("steps.csv")),
+                  std::filesystem::file_size(folder_.file("log.jsonl"))};
+  sync_to_disk(folder_.file("steps.csv"));
+  sync_to_disk(folder_.file("log.jsonl"));
+  return s;
+}
+
+void Recorder::begun_from(const std::string& where) {
+  results_["begun_from"] = where;
+  save();
 }
 
 void Recorder::log(Json entry) {
@@ -166,11 +223,26 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   return entry;
 }
 
+void Recorder::change_finished(const ChangeRow& r, const Positions&) {
+  method_entry()["changes"].push_back({{"level", r.level},
+                                       {"change", r.change},
+                                       {"time", r.time},
+                                       {"steps", r.steps},
+                                       {"newton_iterations", r.iterations},
+                                       {"seconds", r.seconds},
+                                       {"energy", finite_or_null(r.energy)},
+                                       {"force_residual", finite_or_null(r.force_residual)},
+                                       {"farthest_missing", r.farthest_missing}});
+}
+
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
   const TriangleMesh mesh{r.x, scene_.hierarchy.levels[r.level].rest.triangles};
   write_ply(folder_.file(file_of(method_, r.level, ".ply")), mesh);
   write_vtp(folder_.file(file_of(method_, r.level, ".vtp")), mesh);
+  // Checkpoints to come take them for granted.
+  for (const char* extension : {".ply", ".vtp"})
+    sync_to_disk(folder_.file(file_of(method_, r.level, extension)));
   Json& entry = method_entry();
   entry["levels"].push_back(state_entry(r));
   // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
@@ -180,7 +252,7 @@ void Recorder::level_finished(const LevelResult& r) {
         errors_.add(method_, r, frames_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
   spent_ = spent_ + work;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
-  entry["peak_memory_bytes"] = peak_memory_bytes();
+  entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
   log({{"event", "level_finished"},
        {"method", method_},

@@ -11,10 +11,32 @@
 
 namespace drape {
 
+/// What a recorder knows in the middle of a run, and how long its files are.
+struct RecorderState {
+  std::string results;  ///< of results.json
+  std::string method;
+  bool sound = true, sound_of_method = true;
+  std::vector<std::pair<std::string, Positions>> finest;
+  Frames::Memory frames;
+  std::vector<LevelFrames> measured;
+  Work spent, last;
+  double overhead = 0;
+  std::uint64_t steps_bytes = 0, log_bytes = 0;
+};
+
 /// Writes a run down while it goes: steps.csv, log.jsonl, levels/*.ply and results.json.
 class Recorder : public Observer {
  public:
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
+
+  /// Goes on where another one of the same run was, whose files are cut to what they were then. Throws
+  /// std::runtime_error where one is shorter than that.
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+           const RecorderState& state);
+  /// The files are on the disk as far as the state knows them.
+  RecorderState state() const;
+  /// Says in results.json where the methods begin, if that is not the scene's start.
+  void begun_from(const std::string& where);
 
   void method_started(const std::string& method);
   /// Measures the levels reached and every pair of them, and writes results.json.
@@ -26,6 +48,7 @@ class Recorder : public Observer {
 
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
+  void change_finished(const ChangeRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
   /// Whether no state that was looked at had an intersection.
@@ -34,6 +57,8 @@ class Recorder : public Observer {
  private:
   using Json = nlohmann::ordered_json;
 
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+           std::ios::openmode mode);
   Json& method_entry() { return results_["methods"][method_]; }
   std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);

@@ -41,7 +41,7 @@ LevelResult tighten(const Experiment& experiment, const Scene& scene, const Posi
   const Stopwatch clock;
   PlainObjective objective(*scene.models.back());
   observer.level_started(scene.hierarchy.level_count() - 1);
-  LevelResult result = minimise(objective, x, newton, clock, observer);
+  LevelResult result = minimise(objective, x, newton, {clock, observer});
   observer.level_finished(result);
   return result;
 }

@@ -8,9 +8,10 @@ namespace drape {
 namespace {
 
 // What a run writes; the only names that --overwrite may remove.
-constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv", "log.jsonl",
-                                     "levels",      "fields",       "rest",         "pictures",  "obstacles",
-                                     "frames",      "errors.csv",   "reference.ply"};
+constexpr const char* own_names[] = {"config.yaml",   "results.json", "report.html", "steps.csv",
+                                     "log.jsonl",     "levels",       "fields",      "rest",
+                                     "pictures",      "obstacles",    "frames",      "errors.csv",
+                                     "reference.ply", "checkpoint",   "start.ply"};
 
 }  // namespace
 
@@ -39,9 +40,27 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
       throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
   }
   fs::remove(probe, error);
+  if (earlier_run) lock();
   if (earlier_run)
     for (const char* own : own_names) fs::remove_all(file(own), error);
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
+  lock();
+}
+
+RunFolder RunFolder::of_run(std::filesystem::path path) {
+  RunFolder folder(std::move(path));
+  if (!std::filesystem::exists(folder.file("results.json")))
+    throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
+  folder.lock();
+  return folder;
+}
+
+void RunFolder::lock() {
+  std::filesystem::create_directories(file("checkpoint"));
+  lock_ = std::make_unique<FileLock>(file("checkpoint/lock"));
+  if (!lock_->acquire(0))
+    throw std::runtime_error(path_.string() + ": " + lock_->holder() +
+                             " is at this run; wait for it, or stop it");
 }
 
 void write_atomically(const std::filesystem::path& file, const std::string& text) {

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
+
+#include "core/experiment/file_lock.h"
 
 namespace drape {
 
@@ -16,13 +19,20 @@ class RunFolder {
   /// already and `overwrite` is false, or other files under the names that a run uses; with `overwrite`, an
   /// earlier run's files in it are removed.
   RunFolder(std::filesystem::path path, bool overwrite);
+  /// The folder of a run that is to go on. Throws std::runtime_error when it holds none, or one that a
+  /// process is still at.
+  static RunFolder of_run(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path file(const std::string& name) const { return path_ / name; }
   void write_text(const std::string& name, const std::string& text) const;
 
  private:
+  explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  void lock();
+
   std::filesystem::path path_;
+  std::unique_ptr<FileLock> lock_;  // held as long as the run is under way
 };
 
 }  // namespace drape

@@ -5,7 +5,9 @@
 
 #include "core/experiment/progress.h"
 #include "core/experiment/recorder.h"
+#include "core/experiment/session.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/io.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 
@@ -13,12 +15,26 @@ namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder, the progress bar and the live view.
+/// Passes everything on to the recorder, the session, the progress bar and the live view.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, Progress& progress, LiveView* view, const std::function<bool()>& stop)
-      : recorder_(recorder), progress_(progress), view_(view), stop_(stop) {}
+  RunObserver(Recorder& recorder, Session& session, Progress& progress, LiveView* view,
+              const std::function<bool()>& stop)
+      : recorder_(recorder), session_(session), progress_(progress), view_(view), stop_(stop) {}
 
+  void method_started(const std::string& name, bool resumable) {
+    resumable_ = resumable;
+    progress_.method_started(name);
+    if (view_) view_->method_started(name);
+  }
+  /// Shows what an earlier part of the run has done of the method.
+  void catch_up(const MethodState& state) {
+    for (const LevelResult& result : state.finished)
+      if (view_) view_->level_started(result.level), view_->level_finished(result);
+    if (!state.under_way) return;
+    progress_.level_started(state.level);
+    if (view_) view_->level_started(state.level);
+  }
   void level_started(int level) override {
     recorder_.level_started(level);
     progress_.level_started(level);
@@ -29,18 +45,26 @@ class RunObserver : public Observer {
     progress_.iteration(row, x);
     if (view_) view_->iteration(row, x);
   }
+  void change_finished(const ChangeRow& row, const Positions& x) override {
+    recorder_.change_finished(row, x);
+  }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
+    if (resumable_) session_.level_finished(result);
     progress_.level_finished(result);
     if (view_) view_->level_finished(result);
   }
+  bool checkpoint_due() override { return resumable_ && session_.due(stop_requested()); }
+  void checkpoint(const NewtonState& state) override { session_.save(state); }
   bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
   bool refine_requested() override { return view_ && view_->refine_requested(); }
 
  private:
   Recorder& recorder_;
+  Session& session_;
   Progress& progress_;
   LiveView* view_;
+  bool resumable_ = false;
   const std::function<bool()>& stop_;
 };
 
@@ -77,42 +101,68 @@ ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
   if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
   if (!experiment.parameters.reference.file.empty())
     set_path(config, "reference.file", "reference.ply", none);
   return config;
 }
 
-}  // namespace
+/// The methods of the options, in the experiment's order.
+std::vector<std::string> methods_of(const Experiment& experiment, const RunOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, solver] : experiment.methods)
+    if (options.methods.empty() ||
+        std::find(options.methods.begin(), options.methods.end(), name) != options.methods.end())
+      names.push_back(name);
+  return names;
+}
 
-bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
-  require_methods(experiment, options.methods);
-  const RunFolder folder(options.out, options.overwrite);
-  folder.write_text("config.yaml", to_yaml(saved_config(experiment)));
-  Recorder recorder(folder, experiment, scene);
+const Solver& solver_of(const Experiment& experiment, const std::string& method) {
+  for (const auto& [name, solver] : experiment.methods)
+    if (name == method) return *solver;
+  throw std::logic_error("no method " + method);
+}
+
+/// Runs what is left: the method under way if `resumed`, those after it, what is measured of them all.
+bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
+         Recorder& recorder, const Checkpoint& begun, bool resumed) {
+  Session session(folder, recorder, begun, options.checkpoint);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.quiet);
-  RunObserver observer(recorder, progress, options.view, options.stop);
+  RunObserver observer(recorder, session, progress, options.view, options.stop);
   const Problem problem = scene.problem();
 
-  bool all_converged = true, cancelled = false;
-  for (const auto& [name, solver] : experiment.methods) {
-    if (!options.methods.empty() &&
-        std::find(options.methods.begin(), options.methods.end(), name) == options.methods.end())
-      continue;
-    if (cancelled) break;
-    recorder.method_started(name);
-    progress.method_started(name);
-    if (options.view) options.view->method_started(name);
-    const std::vector<LevelResult> results = solver->solve(problem, observer);
+  bool all_converged = begun.all_converged, cancelled = false;
+  for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
+    const std::string& name = begun.methods[m];
+    const Solver& solver = solver_of(experiment, name);
+    const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver);
+    MethodState state;
+    state.level = begun.first_level;
+    observer.method_started(name, resumable != nullptr);
+    if (resumed && m == begun.method) {
+      state = begun.state;
+      observer.catch_up(state);
+    } else {
+      recorder.method_started(name);
+      session.method_started(m);
+    }
+    const std::vector<LevelResult> results =
+        resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
     recorder.method_finished(results);
+    bool converged = true;
     for (const LevelResult& r : results) {
-      all_converged = all_converged && r.outcome == Outcome::converged;
+      converged = converged && r.outcome == Outcome::converged;
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
+    all_converged = all_converged && converged;
+    session.method_finished(converged);
   }
   UnrecordedObserver unrecorded(progress, options.stop);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
-  recorder.run_finished(!cancelled && measured);
+  const bool complete = !cancelled && measured;
+  recorder.run_finished(complete);
+  if (complete) remove_checkpoints(folder.path());
   if (options.report) write_report(folder.path());
   const bool good = all_converged && recorder.sound();
   if (options.view)
@@ -121,6 +171,33 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
                                           : "not everything converged") +
                                ("; the results are in " + folder.path().string()));
   return good;
+}
+
+}  // namespace
+
+bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
+  require_methods(experiment, options.methods);
+  const RunFolder folder(options.out, options.overwrite);
+  const ConfigNode config = saved_config(experiment);
+  Checkpoint begun;
+  begun.config = to_yaml(config);
+  begun.methods = methods_of(experiment, options);
+  begun.first_level = options.first_level;
+  if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
+  folder.write_text("config.yaml", begun.config);
+  if (!experiment.parameters.start.file.empty())
+    write_ply(folder.file("start.ply"), read_mesh(experiment.parameters.start.file));
+  Recorder recorder(folder, experiment, scene);
+  if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
+  begun.files = marks_of_files(config, folder.path());
+  return run(experiment, scene, options, folder, recorder, begun, false);
+}
+
+bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
+                       Checkpoint checkpoint) {
+  const RunFolder folder = RunFolder::of_run(options.out);
+  Recorder recorder(folder, experiment, scene, checkpoint.recorder);
+  return run(experiment, scene, options, folder, recorder, checkpoint, true);
 }
 
 }  // namespace drape

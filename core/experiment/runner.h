@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/experiment/checkpoint.h"
 #include "core/experiment/experiment.h"
 
 namespace drape {
@@ -17,13 +18,21 @@ struct RunOptions {
   bool overwrite = false;            ///< replace the results of an earlier run in `out`
   bool quiet = false;                ///< no progress
   bool report = true;                ///< write report.html and its pictures at the end
-  std::function<bool()> stop;        ///< asked after every step; may be empty
-  LiveView* view = nullptr;          ///< shown the run, and may stop it; may be null
+  double checkpoint = 5;             ///< about how often the state is saved [s]; 0 for at every step
+  int first_level = 0;               ///< where every method begins
+  std::string begun_from;      ///< what else than the scene's start is there, in words; empty if nothing
+  std::function<bool()> stop;  ///< asked after every step; may be empty
+  LiveView* view = nullptr;    ///< shown the run, and may stop it; may be null
 };
 
 /// Runs the methods one after another and writes everything down as it goes. Returns true when every
 /// level of every method converged. Throws std::runtime_error for a folder that cannot be used and for
 /// a method that the experiment does not have, before anything is written.
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options);
+
+/// Goes on with a run where its checkpoint was made, in its folder `options.out`, to the same results as if
+/// it had not been interrupted. The checkpoint says what methods there are and where they begin.
+bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
+                       Checkpoint checkpoint);
 
 }  // namespace drape

@@ -70,19 +70,47 @@ class Noise {
   } waves_[8];
 };
 
-/// Held vertices in their places, others where the start puts them, with its noise.
-Positions make_start(const Positions& rest, const std::vector<HeldVertex>& held, const StartParameters& s) {
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
+      return mesh.vertices;
+    errors.push_back(
+        {e.place_of("start"), "\"start\": " + file +
+                                  " has other vertices or triangles than the coarsest level; take a "
+                                  "mesh like rest/l0.ply of a run's folder"});
+  } catch (const std::exception& problem) {
+    errors.push_back({e.place_of("start"), problem.what()});
+  }
+  return coarsest.rest.vertices;
+}
+
+/// The shape that the start moves, on every level: the rest's, or that of the file.
+std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels)
+    shapes.push_back(file.empty()       ? level.rest.vertices
+                     : level.index == 0 ? read_start(e, level, errors)
+                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+  return shapes;
+}
+
+/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
+                     double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
-    const double across = s.perturbation > 0 ? s.perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
-    x.row(i) = s.place(rest.row(i), across).transpose();
+    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    x.row(i) = s.place(shape.row(i), across).transpose();
   }
-  for (const HeldVertex& h : held) x.row(h.vertex) = h.place.transpose();
   return x;
 }
 
-/// Contact keeps apart what is apart: a start that touches is refused, and says where.
+}  // namespace
+
 void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
                            ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
@@ -97,8 +125,6 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
                                     " more pairs; move the start or the obstacle so that they are apart"});
   }
 }
-
-}  // namespace
 
 Location Experiment::place_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);
@@ -133,12 +159,16 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   }
   const Level& coarsest = scene->hierarchy.levels[0];
   check_places(e, coarsest, errors);
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
   if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
-    std::vector<HeldVertex> held = held_vertices(p, level, coarsest);
-    scene->starts.push_back(make_start(level.rest.vertices, held, p.start));
+    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
+    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
           std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));

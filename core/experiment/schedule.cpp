@@ -247,7 +247,8 @@ Moment Schedule::moment(const std::vector<double>& numbers, std::vector<std::str
 
 LevelModel Schedule::model_under(const Moment& m, int level) const {
   const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
-  return {own,        m.parameters.material,     m.energies, held_vertices(m.parameters, own, coarsest),
+  return {own,        m.parameters.material,
+          m.energies, held_vertices(m.parameters, own, coarsest, scene_.starts[level]),
           m.contacts, scene_.models[level].get()};
 }
 
@@ -258,12 +259,21 @@ void Schedule::go_to(Moment moment, std::vector<std::string> made_from, std::vec
 }
 
 void Schedule::begin(int level, bool from_start) {
-  if (from_start) {
-    change_ = 0;
-    std::vector<std::string> made_from;
-    Moment first = moment(wanted(0), made_from);
-    go_to(std::move(first), std::move(made_from), wanted(0));
-  }
+  if (from_start)
+    restore(level, {0, wanted(0)});
+  else
+    bind_from(level);
+}
+
+void Schedule::restore(int level, const ConditionsState& state) {
+  change_ = state.change;
+  std::vector<std::string> made_from;
+  Moment then = moment(state.numbers, made_from);
+  go_to(std::move(then), std::move(made_from), state.numbers);
+  bind_from(level);
+}
+
+void Schedule::bind_from(int level) {
   for (std::size_t l = level; l < scene_.models.size(); ++l)
     *scene_.models[l] = model_under(now_, static_cast<int>(l));
 }

@@ -28,6 +28,8 @@ class Schedule final : public Conditions {
   int changes() const override { return p_.steps; }
   bool settles() const override { return p_.settle; }
   void begin(int level, bool from_start) override;
+  ConditionsState state() const override { return {change_, effective_}; }
+  void restore(int level, const ConditionsState& state) override;
   int change() const override { return change_; }
   bool made() const override { return effective_ == wanted(change_); }
   double time() const override { return duration_ * change_ / p_.steps; }
@@ -41,6 +43,7 @@ class Schedule final : public Conditions {
   /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
   void change_energies_above(int level, const Moment& next);
   void go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers);
+  void bind_from(int level);
 
   const Experiment experiment_;
   Scene& scene_;

@@ -1,5 +1,8 @@
 #include "core/mesh/file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -42,6 +45,13 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
   const int error = errno;
   std::remove(part.c_str());
   throw failure("cannot write ", path, error);
+}
+
+void sync_to_disk(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  fsync(file);
+  close(file);
 }
 
 }  // namespace drape

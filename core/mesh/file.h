@@ -13,4 +13,7 @@ std::string read_file(const std::filesystem::path& path);
 /// Throws std::runtime_error naming the path and the cause; the part is then removed.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+/// Returns once what has been written to a file or folder is on the disk, where the system can say so.
+void sync_to_disk(const std::filesystem::path& path);
+
 }  // namespace drape

@@ -5,15 +5,21 @@
 
 namespace drape {
 
+void ActiveContacts::sweep(const Positions& x0, const Positions& x1) {
+  sweeps_.clear();
+  for (const auto& model : models_) sweeps_.push_back(model->sweep(x0, x1));
+  swept_ = std::make_shared<const Way>(Way{x0, x1});
+}
+
 void ActiveContacts::build(const Positions& x) {
   if (state_.rows() == x.rows() && state_ == x) return;
-  if (sweeps_.empty())
-    for (const auto& model : models_) sweeps_.push_back(model->sweep(x, x));
+  if (sweeps_.empty()) sweep(x, x);
   const Stopwatch watch;
   sets_.clear();
   for (const auto& sweep : sweeps_) sets_.push_back(sweep->build(x));
   seconds_building_ += watch.seconds();
   state_ = x;
+  built_along_ = swept_;
 }
 
 void ActiveContacts::begin_step(const Positions& x) {
@@ -59,12 +65,26 @@ void ActiveContacts::lag() {
     if (auto friction = set->friction(from_)) friction_.push_back(std::move(friction));
 }
 
+ContactMemory ActiveContacts::memory() const {
+  if (models_.empty()) return {};
+  return {from_, built_along_->begin, built_along_->end, seconds_building_};
+}
+
+void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
+  seconds_building_ = memory.seconds_building;
+  if (models_.empty()) return;
+  sweep(memory.sweep_begin, memory.sweep_end);
+  state_.resize(0, 3);
+  build(x);
+  from_ = memory.anchors;
+  lag();
+}
+
 StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {
   StepLimit limit;
-  sweeps_.clear();
-  for (const auto& model : models_) {
-    sweeps_.push_back(model->sweep(x0, x1));
-    StepLimit own = sweeps_.back()->max_step();
+  sweep(x0, x1);
+  for (const auto& sweep : sweeps_) {
+    StepLimit own = sweep->max_step();
     if (own.fraction < limit.fraction) limit = std::move(own);
   }
   return limit;

@@ -8,6 +8,13 @@
 
 namespace drape {
 
+/// What the contacts of a level remember at the beginning of a step.
+struct ContactMemory {
+  Positions anchors;                 ///< n×3, where friction's displacements count from [m]
+  Positions sweep_begin, sweep_end;  ///< the way that the contacts of the step were found along [m]
+  double seconds_building = 0;
+};
+
 /// The contacts of one level while something is minimised on it: what may come near, what is near, and what
 /// friction remembers. Empty, and without any work, where the level has no contact model.
 class ActiveContacts {
@@ -28,6 +35,11 @@ class ActiveContacts {
   /// Renews the normal forces and tangents at x; displacements count from where they did.
   void renew_lag(const Positions& x);
 
+  /// What it takes to be again as just after begin_step.
+  ContactMemory memory() const;
+  /// Is again as just after begin_step(x), contacts in the same order.
+  void restore(const ContactMemory& memory, const Positions& x);
+
   /// How far from x0 towards x1 nothing touches. States on the way may then be evaluated.
   StepLimit max_step(const Positions& x0, const Positions& x1);
 
@@ -45,6 +57,10 @@ class ActiveContacts {
   double smallest_gap() const;  ///< there [m]; +∞ without a contact
 
  private:
+  struct Way {
+    Positions begin, end;
+  };
+  void sweep(const Positions& x0, const Positions& x1);
   void build(const Positions& x);
   void lag();
   /// Anchors that have followed what slid in the last step.
@@ -52,7 +68,8 @@ class ActiveContacts {
 
   const BoundContacts& models_;
   std::vector<std::unique_ptr<ContactSweep>> sweeps_;
-  std::vector<std::unique_ptr<ContactSet>> sets_;  // at state_
+  std::vector<std::unique_ptr<ContactSet>> sets_;   // at state_
+  std::shared_ptr<const Way> swept_, built_along_;  // of sweeps_, and of those that sets_ come from
   std::vector<std::unique_ptr<FrictionEnergy>> friction_;
   Positions state_, from_;
   bool with_friction_ = true;

@@ -1,9 +1,17 @@
 #pragma once
 
+#include <vector>
+
 #include "core/hierarchy/level.h"
 #include "core/model/energy.h"
 
 namespace drape {
+
+/// Which conditions have been reached.
+struct ConditionsState {
+  int change = 0;
+  std::vector<double> numbers;  ///< of what is keyed
+};
 
 /// What changes in pseudo-time while a level is solved: places, obstacles, material, loads (docs/method.md,
 /// section 8). A sequence of conditions 0 … changes(); the models of a problem are always under those that
@@ -20,6 +28,10 @@ class Conditions {
   /// Before a level is begun: its model, and the energies of finer ones, are put under the first conditions
   /// if it is begun from the scene's start, and otherwise under those that the last level reached.
   virtual void begin(int level, bool from_start) = 0;
+
+  virtual ConditionsState state() const = 0;
+  /// As `begin`, under conditions that were reached earlier.
+  virtual void restore(int level, const ConditionsState& state) = 0;
 
   /// The change that is under way, or was made last, and whether it has been made in full.
   virtual int change() const = 0;

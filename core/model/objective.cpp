@@ -28,7 +28,8 @@ double Objective::value(const Positions& x) {
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> local = contacts_.energies(x);
-  if (local.empty() && limits_.empty() && !penalty_) return smooth;
+  smooth_alone_ = local.empty() && limits_.empty() && !penalty_;
+  if (smooth_alone_) return smooth;
   std::vector<const BoundEnergy*> lasting = limits_;
   if (penalty_) lasting.push_back(penalty_);
   return sum_.add(smooth, lasting, local, x, projection);
@@ -37,6 +38,13 @@ const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) 
 void Objective::model_changed(const BoundContacts& before, const Positions& x) {
   set_limits(model_.limits());
   contacts_.models_changed(before, x);
+}
+
+std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {
+  const std::shared_ptr<const BlockPattern> smooth = smooth_matrix(x, Projection::none).pattern;
+  const std::shared_ptr<const BlockPattern>& whole = sum_.restore(smooth, std::move(memory.room));
+  smooth_alone_ = memory.smooth_alone;
+  return smooth_alone_ ? smooth : whole;
 }
 
 StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {

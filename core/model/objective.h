@@ -31,6 +31,16 @@ class Objective {
   /// its sparsity does.
   const BlockMatrix& matrix(const Positions& x, Projection projection);
 
+  /// What the pattern of the last matrix depends on beyond the level.
+  struct PatternMemory {
+    SumMatrix::Room room;
+    bool smooth_alone = true;  ///< nothing was added to the smooth part
+  };
+  PatternMemory pattern_memory() const { return {sum_.room(), smooth_alone_}; }
+  /// Is as the objective of the same level that remembers this; the pattern of its last matrix. x is any
+  /// state of the domain.
+  std::shared_ptr<const BlockPattern> restore(PatternMemory memory, const Positions& x);
+
   /// How far from x0 towards x1 every limit holds and nothing touches. Until the next call the function may
   /// be evaluated at x0 and at states that far, and with contact nowhere else.
   StepLimit max_step(const Positions& x0, const Positions& x1);
@@ -73,6 +83,7 @@ class Objective {
   const BoundEnergy* penalty_ = nullptr;
   ActiveContacts contacts_;
   SumMatrix sum_;
+  bool smooth_alone_ = true;
 };
 
 /// E_l itself.

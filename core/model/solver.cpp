@@ -1,11 +1,17 @@
 #include "core/model/solver.h"
 
+#include "core/numerics/newton_state.h"
+
 namespace drape {
 
 Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const {
   Positions y = weights * x;
   for (const HeldVertex& h : models[level + 1]->held()) y.row(h.vertex) = h.place.transpose();
   return y;
+}
+
+std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer& observer) const {
+  return resume(problem, MethodState(), observer);
 }
 
 const char* to_string(Outcome outcome) {

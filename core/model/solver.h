@@ -51,7 +51,8 @@ struct LevelResult {
   Outcome outcome = Outcome::converged;
   std::string message;  ///< what stopped it, where that is not convergence
   Positions x;
-  bool afresh = false;  ///< begun from the scene's start, so that no other level's work is in it
+  bool dead_end = false;  ///< no finer level can begin from it
+  bool afresh = false;    ///< begun from the scene's start, so that no other level's work is in it
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
   double flops = 0;  ///< of the factorisations; one that breaks off counts in full
   double seconds = 0;
@@ -59,7 +60,11 @@ struct LevelResult {
   double decrement = 0;
   double force_residual = 0;           ///< of what was minimised [1]
   std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
+  ConditionsState conditions;          ///< that it reached, where they change
 };
+
+struct NewtonState;
+struct MethodState;
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
 class Observer {
@@ -73,6 +78,9 @@ class Observer {
   virtual bool stop_requested() { return false; }
   /// Whether the level is to end as it is and the next one to begin. Not asked on the finest level.
   virtual bool refine_requested() { return false; }
+  /// Asked at the beginning of every step: whether checkpoint is to be given the state there.
+  virtual bool checkpoint_due() { return false; }
+  virtual void checkpoint(const NewtonState& state) { (void)state; }
 };
 
 /// A method: a schedule of Newton solves over the levels of a problem.
@@ -81,6 +89,17 @@ class Solver {
   virtual ~Solver() = default;
   /// Results of the levels reached, in order. Only misuse throws.
   virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
+};
+
+/// A Solver that can also go on where an earlier solve of the same problem was
+/// (core/numerics/newton_state.h).
+class ResumableSolver : public Solver {
+ public:
+  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const final;
+  /// As `solve`, with the results of finished levels at the front, and bit for bit as if it had not been
+  /// interrupted. A state without any finished level and none under way begins on its level from the start.
+  virtual std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
+                                          Observer& observer) const = 0;
 };
 
 }  // namespace drape

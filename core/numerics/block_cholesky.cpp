@@ -96,10 +96,24 @@ SupernodalTree tree_of(const cholmod_factor& factor) {
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
   const bool same_vertices = pattern_ && fixed == fixed_ && pattern->rows() == pattern_->rows();
+  std::vector<int> order;
+  if (same_vertices) order.swap(order_);
   pattern_ = std::move(pattern);
   fixed_ = fixed;
-  has_factor_ = false;
   ++analyses_;
+  lay_out(std::move(order), worn * ordered_flops_);
+}
+
+void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis) {
+  pattern_ = std::move(pattern);
+  fixed_ = std::move(analysis.fixed);
+  analyses_ = analysis.count;
+  lay_out(std::move(analysis.order), std::numeric_limits<double>::infinity());
+  ordered_flops_ = analysis.ordered_flops;
+}
+
+void BlockCholesky::lay_out(std::vector<int> order, double most_flops) {
+  has_factor_ = false;
   std::vector<int> free;
   for (int v = 0; v < pattern_->rows(); ++v)
     if (!fixed_[v]) free.push_back(v);
@@ -108,8 +122,10 @@ void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const s
 
   Cholmod c;
   make_graph(*pattern_, free, c);
-  if (same_vertices) c.analyse(places_in(free, order_, pattern_->rows()));
-  if (!same_vertices || c.common.fl > worn * ordered_flops_) {
+  given_ = std::move(order);
+  if (!given_.empty()) c.analyse(places_in(free, given_, pattern_->rows()));
+  if (given_.empty() || c.common.fl > most_flops) {
+    given_.clear();
     c.analyse({});
     ordered_flops_ = c.common.fl;
   }

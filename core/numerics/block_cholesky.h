@@ -16,6 +16,14 @@ namespace drape {
 /// until the pattern changes, the order until it has become a bad one for it or the fixed vertices change.
 class BlockCholesky {
  public:
+  /// What an analysis was made from: the same pattern with it gives the same layout.
+  struct Analysis {
+    std::vector<char> fixed;
+    std::vector<int> order;    ///< of the free vertices that was kept; empty where a new one was found
+    double ordered_flops = 0;  ///< what it cost where it was found
+    int count = 0;             ///< of analyses so far, this one with them; 0 where none was made
+  };
+
   /// Orders and analyses; does nothing when called again with the same pattern and flags.
   /// `fixed` has one flag a vertex. Throws std::runtime_error when memory runs out.
   void analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed);
@@ -27,6 +35,10 @@ class BlockCholesky {
   /// Solves with the last factor; n×3 right-hand side and solution, whose fixed rows are zero.
   void solve(const Positions& right_hand_side, Positions& solution);
 
+  Analysis analysis() const { return {fixed_, given_, ordered_flops_, analyses_}; }
+  /// Is laid out as after that analysis of the pattern, without a factor.
+  void restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis);
+
   bool has_factor() const { return has_factor_; }
   int unknowns() const { return 3 * static_cast<int>(order_.size()); }
   /// Floating-point operations of one numeric factorisation, and entries of the factor, without the zeros
@@ -37,9 +49,13 @@ class BlockCholesky {
   int analyses() const { return analyses_; }
 
  private:
+  /// In `order`, as long as that costs no more; else in one that is found.
+  void lay_out(std::vector<int> order, double most_flops);
+
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<char> fixed_;
   std::vector<int> order_;  // order_[p] is the vertex at place p
+  std::vector<int> given_;  // what order_ was made from; empty where it was found
   SupernodalFactor factor_;
   Eigen::VectorXd x_;
   double flops_ = 0, entries_ = 0;

@@ -46,12 +46,11 @@ void HardPositions::arrive() {
 }
 
 void HardPositions::pull() {
-  for (int k : missing_) fixed_[model_.held()[k].vertex] = 0;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
   stiffness_ = std::max(model_.material().membrane_modulus, to_begin_with * membrane() / least_mass());
   best_ = INFINITY;
-  make_penalty();
+  let_go();
 }
 
 double HardPositions::membrane() const {
@@ -62,6 +61,21 @@ double HardPositions::least_mass() const {
   double least = INFINITY;
   for (int k : missing_) least = std::min(least, model_.masses()[model_.held()[k].vertex]);
   return least;
+}
+
+void HardPositions::restore(const Memory& m) {
+  fixed_ = model_.fixed();
+  missing_ = m.missing;
+  stiffness_ = m.stiffness;
+  best_ = m.best;
+  idle_ = m.idle;
+  given_up_ = m.given_up;
+  if (m.pulled) let_go();
+}
+
+void HardPositions::let_go() {
+  for (int k : missing_) fixed_[model_.held()[k].vertex] = 0;
+  make_penalty();
 }
 
 void HardPositions::make_penalty() {

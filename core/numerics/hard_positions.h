@@ -15,6 +15,16 @@ class HardPositions {
  public:
   explicit HardPositions(const LevelModel& model) : model_(model) { fixed_ = model.fixed(); }
 
+  /// All that does not follow from the model.
+  struct Memory {
+    std::vector<int> missing;
+    double stiffness = 0, best = 0;
+    int idle = 0;
+    bool given_up = false, pulled = false;
+  };
+  Memory memory() const { return {missing_, stiffness_, best_, idle_, given_up_, penalty_ != nullptr}; }
+  void restore(const Memory& memory);
+
   /// The model has other places, or a new level begins at x.
   void begin(const Positions& x);
   /// n×3: from x to the places, of the vertices that are not there; zero elsewhere.
@@ -41,6 +51,7 @@ class HardPositions {
   std::string message(const Positions& x, const std::string& held_by) const;
 
  private:
+  void let_go();
   void make_penalty();
   double membrane() const;    // stiffness in its plane [N/m]
   double least_mass() const;  // of the vertices that are missing [kg]

@@ -93,51 +93,52 @@ std::string brief(double value) {
 /// The state of one minimisation; each member function is one phase of an iteration.
 class Newton {
  public:
-  Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const Stopwatch& clock,
-         Observer& observer, bool finer_follows, Conditions* conditions)
+  Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const LevelRun& run)
       : f_(objective),
         model_(objective.model()),
         p_(parameters),
-        clock_(clock),
-        observer_(observer),
-        finer_follows_(finer_follows),
-        conditions_(conditions),
+        run_(run),
+        observer_(run.observer),
+        conditions_(run.conditions),
         hard_(model_),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
+    result_.seconds_by_phase = run.spent;
+    for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     take_positions();
-    begun_at_ = middle();
     const Positions& rest = model_.level().rest.vertices;
     diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
   LevelResult run() {
-    f_.contacts().begin_step(result_.x);
-    evaluate();
-    if (std::isfinite(energy_)) update_residual();
-    if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual))
+    if (run_.from)
+      restore(*run_.from);
+    else if (!begin())
       return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
-    bring_held_vertices();
-    while (true) {
-      while (hard_.pulling() && result_.force_residual <= near_equilibrium * p_.force_tolerance) pull_on();
-      const bool settled = !hard_.pulling() && converged();
-      const bool changing = conditions_ && !conditions_->finished();
-      if (settled && !changing) return finish_settled();
+    for (bool step_begun = run_.from != nullptr;; step_begun = false) {
+      if (!step_begun) {
+        while (hard_.pulling() && result_.force_residual <= near_equilibrium * p_.force_tolerance) pull_on();
+        const bool settled = !hard_.pulling() && converged();
+        const bool changing = conditions_ && !conditions_->finished();
+        if (settled && !changing) return finish_settled();
+        if (changing && !hard_.pulling() && (settled || !conditions_->settles())) {
+          change_conditions(settled);
+          if (times_held_up_ == most_held_up)
+            return finish(Outcome::infeasible, "the conditions of pseudo-time " + brief(conditions_->time()) +
+                                                   " cannot be reached" + held());
+        }
+        if (result_.steps - changed_at_.steps == p_.max_steps)
+          return finish(Outcome::out_of_steps,
+                        "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
+                            "; force residual " + brief(result_.force_residual));
+        begin_step();
+      }
+      if (observer_.checkpoint_due()) observer_.checkpoint(state());
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
-      if (finer_follows_ && observer_.refine_requested())
+      if (run_.finer_follows && observer_.refine_requested())
         return finish(Outcome::refined_early,
                       "refined on request; force residual " + brief(result_.force_residual));
-      if (changing && !hard_.pulling() && (settled || !conditions_->settles())) {
-        change_conditions(settled);
-        if (times_held_up_ == most_held_up)
-          return finish(Outcome::infeasible, "the conditions of pseudo-time " + brief(conditions_->time()) +
-                                                 " cannot be reached" + held());
-      }
-      if (result_.steps - changed_at_.steps == p_.max_steps)
-        return finish(Outcome::out_of_steps,
-                      "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
-                          "; force residual " + brief(result_.force_residual));
       if (!step()) return finish(Outcome::stalled, message_);
       const double gone = (middle() - begun_at_).norm() / diagonal_;
       if (gone > lost_after)
@@ -149,6 +150,72 @@ class Newton {
   }
 
  private:
+  /// False where the start has no finite energy and forces.
+  bool begin() {
+    f_.contacts().begin_step(result_.x);
+    evaluate();
+    if (std::isfinite(energy_)) update_residual();
+    if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual)) return false;
+    begun_at_ = middle();
+    bring_held_vertices();
+    return true;
+  }
+
+  /// After begin_step.
+  NewtonState state() const {
+    NewtonState s;
+    s.so_far = result_;
+    s.so_far.seconds += watch_.seconds();
+    s.step_size = h_;
+    s.step_length = alpha_;
+    s.residual_scale = scale_;
+    s.projection_share = share_;
+    std::copy_n(decrements_, 3, s.decrements.begin());
+    s.held_by = limit_.by;
+    s.positions = hard_.memory();
+    if (conditions_) s.so_far.conditions = conditions_->state();
+    s.changed_at = changed_at_;
+    s.times_held_up = times_held_up_;
+    s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
+    s.contacts = f_.contacts().memory();
+    s.pattern = f_.pattern_memory();
+    s.analysis = cholesky_.analysis();
+    s.factor_age = age_;
+    if (cholesky_.has_factor() && age_ < p_.refresh) {
+      s.factor_shift = factor_shift_;
+      s.factor_values = factored_->values;
+    }
+    return s;
+  }
+
+  void restore(const NewtonState& s) {
+    result_ = s.so_far;
+    h_ = s.step_size;
+    alpha_ = s.step_length;
+    scale_ = s.residual_scale;
+    share_ = s.projection_share;
+    std::copy_n(s.decrements.begin(), 3, decrements_);
+    limit_.by = s.held_by;
+    age_ = s.factor_age;
+    origin_ = result_.x;
+    hard_.restore(s.positions);
+    take_positions();
+    changed_at_ = s.changed_at;
+    times_held_up_ = s.times_held_up;
+    begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
+    f_.contacts().restore(s.contacts, origin_);
+    evaluate();
+    if (s.analysis.count == 0) return;
+    BlockMatrix matrix(f_.restore(s.pattern, origin_));
+    cholesky_.restore(matrix.pattern, s.analysis);
+    if (s.factor_values.empty()) return;
+    matrix.values = s.factor_values;
+    cholesky_.factorise(matrix, s.factor_shift * model_.masses());
+    kept_ = std::move(matrix);
+    factored_ = &kept_;
+    factor_shift_ = s.factor_shift;
+  }
+
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
@@ -186,7 +253,7 @@ class Newton {
     if (begins && (settled || conditions_->change() > 0)) report_change();
     const BoundContacts before = model_.contacts();
     limit_ = conditions_->advance(result_.level, result_.x);
-    if (begins) changed_at_ = {result_.steps, result_.iterations, clock_.seconds()};
+    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     begun_at_ = middle();
     times_held_up_ = settled && limit_.fraction < held_up ? times_held_up_ + 1 : 0;
     f_.model_changed(before, result_.x);
@@ -201,7 +268,7 @@ class Newton {
     row.time = conditions_->time();
     row.steps = result_.steps - changed_at_.steps;
     row.iterations = result_.iterations - changed_at_.iterations;
-    row.seconds = clock_.seconds() - changed_at_.seconds;
+    row.seconds = run_.clock.seconds() - changed_at_.seconds;
     row.energy = energy_ - f_.contacts().friction(result_.x);
     row.force_residual = result_.force_residual;
     row.farthest_missing = hard_.farthest(result_.x);
@@ -238,7 +305,7 @@ class Newton {
     origin_ = result_.x;
     age_ = p_.refresh;
     factorise();
-    matrix_->multiply(way, r_);
+    factored_->multiply(way, r_);
     for (const HeldVertex& h : model_.held()) r_.row(h.vertex).setZero();
     cholesky_.solve(r_, direction_);
     direction_ = way - direction_;
@@ -288,12 +355,15 @@ class Newton {
     energy_ = f_.gradient(result_.x, g_);
   }
 
-  /// One implicit step. False when no descent was found.
-  bool step() {
+  void begin_step() {
     origin_ = result_.x;
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
     if (had_friction || f_.contacts().has_friction()) evaluate();
+  }
+
+  /// One implicit step, once begun. False when no descent was found.
+  bool step() {
     fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < p_.iterations_per_step; ++k) {
       if (!iterate(k)) return false;
@@ -424,8 +494,7 @@ class Newton {
 
   const BlockMatrix& assemble(Projection projection) {
     PhaseTimer t(result_.seconds_by_phase, "hessian");
-    matrix_ = &f_.matrix(result_.x, projection);
-    return *matrix_;
+    return f_.matrix(result_.x, projection);
   }
 
   bool try_factor(const BlockMatrix& matrix, double extra_shift) {
@@ -436,7 +505,9 @@ class Newton {
     PhaseTimer t(result_.seconds_by_phase, "factorise");
     ++result_.factorisations;
     result_.flops += cholesky_.flops();
-    return cholesky_.factorise(matrix, (inverse_h2() + added_mass_ + extra_shift) * model_.masses());
+    factored_ = &matrix;
+    factor_shift_ = inverse_h2() + added_mass_ + extra_shift;
+    return cholesky_.factorise(matrix, factor_shift_ * model_.masses());
   }
 
   /// Backtracks along the direction, from where limits and contact let it, until the energy has decreased
@@ -505,15 +576,16 @@ class Newton {
     row.step_length = alpha_;
     row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
     if (conditions_) row.time = conditions_->time();
-    row.seconds = clock_.seconds();
+    row.seconds = run_.clock.seconds();
     row.flops = result_.flops;
     observer_.iteration(row, result_.x);
   }
 
   LevelResult finish(Outcome outcome, std::string message) {
     result_.outcome = outcome;
+    if (conditions_) result_.conditions = conditions_->state();
     result_.message = std::move(message);
-    result_.seconds = watch_.seconds();
+    result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
@@ -527,21 +599,19 @@ class Newton {
   Objective& f_;
   const LevelModel& model_;
   const NewtonParameters& p_;
-  const Stopwatch& clock_;
-  Stopwatch watch_;
+  const LevelRun& run_;
+  const Stopwatch watch_;
   Observer& observer_;
-  const bool finer_follows_;
   Conditions* conditions_;
   HardPositions hard_;
   std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
-  struct {
-    int steps = 0, iterations = 0;
-    double seconds = 0;
-  } changed_at_;  // when the change under way was begun
+  ChangeBegun changed_at_;   // when the change under way was begun
   int times_held_up_ = 0;
 
   BlockCholesky cholesky_;
-  const BlockMatrix* matrix_ = nullptr;  // assembled last
+  const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of
+  BlockMatrix kept_;
+  double factor_shift_ = 0;
   LevelResult result_;
   std::string message_;
   StepLimit limit_;
@@ -559,8 +629,8 @@ class Newton {
 }  // namespace
 
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer, bool finer_follows, Conditions* conditions) {
-  return Newton(objective, std::move(x), parameters, clock, observer, finer_follows, conditions).run();
+                     const LevelRun& run) {
+  return Newton(objective, std::move(x), parameters, run).run();
 }
 
 }  // namespace drape

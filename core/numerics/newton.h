@@ -2,6 +2,7 @@
 
 #include "core/model/objective.h"
 #include "core/model/solver.h"
+#include "core/numerics/newton_state.h"
 #include "core/numerics/stopwatch.h"
 #include "core/plugin/parameters.h"
 
@@ -33,14 +34,22 @@ struct NewtonParameters {
   static void declare(Declaration<NewtonParameters>& d);
 };
 
+/// The part of a method that one minimisation is.
+struct LevelRun {
+  const Stopwatch& clock;  ///< the method's, for the rows that the observer gets
+  Observer& observer;
+  bool finer_follows = false;                ///< the observer may ask for the finer level early
+  std::map<std::string, double> spent = {};  ///< on the level before this, by phase [s]
+  const NewtonState* from = nullptr;  ///< where an earlier minimisation of the same was, to go on there
+  Conditions* conditions = nullptr;   ///< that change meanwhile
+};
+
 /// Minimises the objective from x, where fixed vertices stay, step by implicit step
 ///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x),
-/// with a filtered line search. `clock` is the method's, for the rows that the observer gets. Where a finer
-/// level follows, the observer may ask for it early. Conditions that have begun on the level are gone through
-/// to the last. Ends `infeasible`, the rest of the cloth at equilibrium, where held vertices or obstacles
-/// cannot reach their places.
+/// with a filtered line search. Where the run has a state to go on from, x is that state's. Conditions that
+/// have begun on the level are gone through to the last. Ends `infeasible`, the rest of the cloth at
+/// equilibrium, where held vertices or obstacles cannot reach their places.
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
-                     const Stopwatch& clock, Observer& observer, bool finer_follows = false,
-                     Conditions* conditions = nullptr);
+                     const LevelRun& run);
 
 }  // namespace drape

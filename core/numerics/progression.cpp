@@ -7,35 +7,40 @@ namespace drape {
 std::vector<LevelResult> solve_progressively(
     const Problem& problem, const std::vector<ProlongationMatrix>& weights,
     const std::function<std::unique_ptr<Objective>(int level)>& objective, const NewtonParameters& newton,
-    Observer& observer) {
-  const Stopwatch clock;
-  std::vector<LevelResult> results;
-  Refined start;
-  start.x = problem.starts[0];
-  if (problem.conditions) problem.conditions->begin(0, true);
-  for (int l = 0; l <= problem.finest(); ++l) {
-    observer.level_started(l);
+    const MethodState& from, Observer& observer) {
+  const Stopwatch clock(from.seconds);
+  std::vector<LevelResult> results = from.finished;
+  restore_conditions(problem, from);
+  const int first = results.empty() ? from.level : results.front().level;
+  for (int l = from.level; l <= problem.finest(); ++l) {
+    if (!results.empty() && results.back().dead_end) break;
+    const NewtonState* state = from.of(l);
+    if (problem.conditions && !state) problem.conditions->begin(l, l == first);
+    Refined start;
+    if (l == first)
+      start.x = problem.starts[l];
+    else if (!state)
+      start = refine_safely(problem, l - 1, results.back().x, weights[l - 1], clock, observer);
     LevelResult result;
-    if (start.fault.empty()) {
-      result = minimise(*objective(l), std::move(start.x), newton, clock, observer, l < problem.finest(),
-                        problem.conditions);
-    } else {
-      result.x = std::move(start.x);
-      result.outcome = Outcome::infeasible;
-      result.message = start.fault;
-    }
     result.level = l;
-    result.afresh = l == 0;
-    if (l > 0) {
-      result.seconds += start.seconds;
-      result.seconds_by_phase["refinement"] = start.seconds;
+    if (!state) observer.level_started(l);
+    std::map<std::string, double> spent;
+    if (l > first) spent["refinement"] = start.seconds;
+    if (start.cut_short || !start.fault.empty()) {
+      result.x = std::move(start.x);
+      result.outcome = start.cut_short ? Outcome::cancelled : Outcome::infeasible;
+      result.message = start.cut_short ? "stopped on request" : start.fault;
+      result.seconds = start.seconds;
+      result.seconds_by_phase = spent;
+      result.dead_end = true;
+    } else {
+      result = minimise(*objective(l), std::move(start.x), newton,
+                        {clock, observer, l < problem.finest(), spent, state, problem.conditions});
+      result.dead_end = result.outcome == Outcome::cancelled;
     }
+    result.afresh = l == first;
     results.push_back(std::move(result));
     observer.level_finished(results.back());
-    if (results.back().outcome == Outcome::cancelled || !start.fault.empty()) break;
-    if (l == problem.finest()) break;
-    if (problem.conditions) problem.conditions->begin(l + 1, false);
-    start = refine_safely(problem, l, results.back().x, weights[l], clock, observer);
   }
   return results;
 }

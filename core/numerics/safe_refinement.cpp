@@ -179,15 +179,16 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     Quiet quiet(observer);
     int outside = objective.divide(refined.x);
     for (int round = 0; round < most_rounds; ++round) {
-      LevelResult result = minimise(objective, std::move(refined.x), newton, clock, quiet);
+      LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, quiet});
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
       const int left = objective.divide(refined.x);
-      if (left == 0 || result.outcome == Outcome::cancelled) break;
+      refined.cut_short = result.outcome == Outcome::cancelled;
+      if (left == 0 || refined.cut_short) break;
       if (left >= outside || result.iterations == 0) objective.loosen(refined.x);
       outside = left;
     }
-    refined.fault = name_outside(model, refined.x);
+    if (!refined.cut_short) refined.fault = name_outside(model, refined.x);
     if (!refined.fault.empty())
       refined.fault = "the refined state is beyond the strain limit: " + refined.fault;
   }

@@ -10,7 +10,8 @@ namespace drape {
 /// A state carried to the next finer level.
 struct Refined {
   Positions x;
-  std::string fault;  ///< why it is not allowed there, naming primitives; empty if it is
+  std::string fault;       ///< why it is not allowed there, naming primitives; empty if it is
+  bool cut_short = false;  ///< stopped on the way, on request
   int iterations = 0;
   double seconds = 0;
 };

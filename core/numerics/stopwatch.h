@@ -6,13 +6,15 @@
 
 namespace drape {
 
-/// Seconds since it was made, on a clock that never runs backwards.
+/// Seconds since it was made, on a clock that never runs backwards, and those it was given to begin with.
 class Stopwatch {
  public:
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  explicit Stopwatch(double already = 0) : already_(already) {}
+  double seconds() const { return already_ + std::chrono::duration<double>(Clock::now() - start_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  double already_;
   Clock::time_point start_ = Clock::now();
 };
 

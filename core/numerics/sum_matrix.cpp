@@ -76,44 +76,59 @@ std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
 
 }  // namespace
 
+void SumMatrix::begin_over(const std::shared_ptr<const BlockPattern>& base) {
+  base_ = pattern_ = base;
+  place_.clear();
+  room_ = {};
+  lasting_slots_.clear();
+  neighbours_.clear();
+}
+
+const std::shared_ptr<const BlockPattern>& SumMatrix::restore(const std::shared_ptr<const BlockPattern>& base,
+                                                              Room room) {
+  begin_over(base);
+  room_ = std::move(room);
+  if (!room_.blocks.empty()) lay_out();
+  return pattern_;
+}
+
 void SumMatrix::make_room(const std::shared_ptr<const BlockPattern>& base,
                           const std::vector<Stencils>& stencils) {
-  if (base != base_) {
-    base_ = pattern_ = base;
-    place_.clear();
-    extra_.clear();
-    idle_.clear();
-    lasting_slots_.clear();
-    neighbours_.clear();
-  }
+  if (base != base_) begin_over(base);
+  std::vector<std::pair<int, int>>& extra = room_.blocks;
+  std::vector<int>& idle = room_.idle;
   const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
   std::vector<std::pair<int, int>> kept;
   bool grows = false;
   std::size_t k = 0;
   for (const auto& pair : needed) {
-    while (k < extra_.size() && extra_[k] < pair) ++idle_[k++];
-    if (k < extra_.size() && extra_[k] == pair)
-      idle_[k++] = 0;
+    while (k < extra.size() && extra[k] < pair) ++idle[k++];
+    if (k < extra.size() && extra[k] == pair)
+      idle[k++] = 0;
     else
       grows = true;
   }
-  while (k < extra_.size()) ++idle_[k++];
+  while (k < extra.size()) ++idle[k++];
   if (!grows) return;
 
-  for (std::size_t e = 0; e < extra_.size(); ++e)
-    if (idle_[e] <= patience) kept.push_back(extra_[e]);
+  for (std::size_t e = 0; e < extra.size(); ++e)
+    if (idle[e] <= patience) kept.push_back(extra[e]);
   std::vector<int> kept_idle;
-  for (std::size_t e = 0; e < extra_.size(); ++e)
-    if (idle_[e] <= patience) kept_idle.push_back(idle_[e]);
+  for (std::size_t e = 0; e < extra.size(); ++e)
+    if (idle[e] <= patience) kept_idle.push_back(idle[e]);
   if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
   const std::vector<std::pair<int, int>> wide = widened(needed, neighbours_, *base_);
   std::vector<std::pair<int, int>> all;
   std::set_union(kept.begin(), kept.end(), wide.begin(), wide.end(), std::back_inserter(all));
-  idle_.assign(all.size(), 0);
+  idle.assign(all.size(), 0);
   for (std::size_t a = 0, e = 0; a < all.size() && e < kept.size(); ++a)
-    if (all[a] == kept[e]) idle_[a] = kept_idle[e++];
-  extra_ = std::move(all);
-  pattern_ = with_blocks(*base_, extra_);
+    if (all[a] == kept[e]) idle[a] = kept_idle[e++];
+  extra = std::move(all);
+  lay_out();
+}
+
+void SumMatrix::lay_out() {
+  pattern_ = with_blocks(*base_, room_.blocks);
   lasting_slots_.clear();
   place_.resize(base_->columns.size());
   parallel_for(base_->rows(), 4096, [&](int begin, int end) {

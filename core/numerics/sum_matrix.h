@@ -13,6 +13,16 @@ namespace drape {
 /// it has not, it gets room around them too, where contacts slide to next, and loses what lay idle for long.
 class SumMatrix {
  public:
+  /// What its pattern has beyond the smooth matrix', which depends on all that it had room for before.
+  struct Room {
+    std::vector<std::pair<int, int>> blocks;  ///< i < j, ascending
+    std::vector<int> idle;                    ///< of each block: calls since it was last needed
+  };
+  const Room& room() const { return room_; }
+  /// Has this room over the pattern of the smooth matrix; the pattern with it.
+  const std::shared_ptr<const BlockPattern>& restore(const std::shared_ptr<const BlockPattern>& base,
+                                                     Room room);
+
   /// smooth + Σ Hessians at x. `lasting` energies keep their stencils from call to call, `passing` ones need
   /// not. The result is `smooth` itself where that has room for everything.
   const BlockMatrix& add(BlockMatrix& smooth, const std::vector<const BoundEnergy*>& lasting,
@@ -20,6 +30,8 @@ class SumMatrix {
                          Projection projection);
 
  private:
+  void begin_over(const std::shared_ptr<const BlockPattern>& base);
+  void lay_out();
   void make_room(const std::shared_ptr<const BlockPattern>& base, const std::vector<Stencils>& stencils);
 
   std::shared_ptr<const BlockPattern> base_;     // of `smooth`
@@ -27,8 +39,7 @@ class SumMatrix {
   std::vector<int> place_;                       // of each block of base_ in pattern_; empty if the same
   std::vector<std::unique_ptr<BlockSlots>> lasting_slots_;
   BlockMatrix matrix_;
-  std::vector<std::pair<int, int>> extra_;    // blocks of pattern_ that base_ has not, ascending
-  std::vector<int> idle_;                     // of each extra block: calls since it was last needed
+  Room room_;                                 // blocks of pattern_ that base_ has not
   std::vector<std::vector<int>> neighbours_;  // of each vertex in base_, itself included
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/sweep/file_lock.h"
+#include "core/experiment/file_lock.h"
 #include "core/sweep/run_status.h"
 #include "core/sweep/sweep.h"
 

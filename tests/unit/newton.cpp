@@ -79,7 +79,7 @@ struct Case {
     const LevelModel model(level, Material(), {{"wells", std::make_shared<Wells>(centres, k, width)}},
                            {{0, level.rest.vertices.row(0), 0}});
     PlainObjective objective(model);
-    return minimise(objective, level.rest.vertices, p, Stopwatch(), observer);
+    return minimise(objective, level.rest.vertices, p, {Stopwatch(), observer});
   }
 };
 
@@ -187,7 +187,7 @@ TEST_CASE("Forces that are not numbers are no equilibrium") {
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
                          {});
   PlainObjective objective(model);
-  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), Stopwatch(), c.observer);
+  const LevelResult r = minimise(objective, c.level.rest.vertices, tight(), {Stopwatch(), c.observer});
   REQUIRE(r.outcome == Outcome::infeasible);
   REQUIRE(r.message.find("not finite") != std::string::npos);
 }
@@ -245,10 +245,65 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
     PlainObjective objective(model);
     NewtonParameters p;
     p.form = form;
-    const LevelResult r = minimise(objective, c.level.rest.vertices, p, Stopwatch(), c.observer);
+    const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
     CAPTURE(int(form), r.steps);
     CHECK(r.outcome == Outcome::infeasible);
     CHECK(r.message.find("nothing holds the cloth: it has moved on by ") == 0);
     CHECK(r.steps < 100);
   }
+}
+
+TEST_CASE("A minimisation goes on from the state at any of its steps to the same bits", "[newton]") {
+  /// Keeps every state that it is offered.
+  struct Keeping : Silent {
+    std::vector<NewtonState> states;
+    bool checkpoint_due() override { return true; }
+    void checkpoint(const NewtonState& state) override { states.push_back(state); }
+  };
+  for (const int refresh : {1, 3})
+    for (const int iterations : {1, 2})
+      for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
+        Case c;
+        NewtonParameters p = tight();
+        p.refresh = refresh;
+        p.iterations_per_step = iterations;
+        p.form = form;
+        p.decrement_tolerance = 1e-7;
+        const Positions centres = c.level.rest.vertices.array() + 0.05;
+        const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
+                               {{0, c.level.rest.vertices.row(0), 0}});
+        Keeping whole;
+        PlainObjective first(model);
+        const LevelResult expected =
+            minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
+        CAPTURE(refresh, iterations, int(form), expected.message);
+        REQUIRE(expected.outcome == Outcome::converged);
+        REQUIRE(whole.states.size() > 4);
+        int kept_factors = 0;
+        for (const NewtonState& state : whole.states) {
+          kept_factors += !state.factor_values.empty();
+          PlainObjective again(model);
+          Silent rest;
+          const LevelResult r = minimise(again, {}, p, {Stopwatch(), rest, false, {}, &state});
+          REQUIRE(r.x == expected.x);
+          REQUIRE(r.force_residual == expected.force_residual);
+          REQUIRE(r.decrement == expected.decrement);
+          REQUIRE(r.iterations == expected.iterations);
+          REQUIRE(r.factorisations == expected.factorisations);
+          REQUIRE(r.analyses == expected.analyses);
+          REQUIRE(r.flops == expected.flops);
+          REQUIRE(r.seconds > 2);
+          REQUIRE(r.seconds_by_phase.at("before") == 2);
+          REQUIRE(rest.rows.size() + state.so_far.iterations == whole.rows.size());
+          for (std::size_t i = 0; i < rest.rows.size(); ++i) {
+            const IterationRow &a = rest.rows[i], &b = whole.rows[state.so_far.iterations + i];
+            REQUIRE(a.energy == b.energy);
+            REQUIRE(a.step == b.step);
+            REQUIRE(a.step_size == b.step_size);
+            REQUIRE(a.step_length == b.step_length);
+            REQUIRE(a.force_residual == b.force_residual);
+          }
+        }
+        REQUIRE((kept_factors > 0) == (refresh > 1));
+      }
 }

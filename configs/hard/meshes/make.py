@@ -69,12 +69,14 @@ def huge_and_tiny(n=17):
     write("huge_and_tiny", vertices, triangles)
 
 
-def faulty():
-    vertices, triangles = grid(8)
+def faulty(n=9):
+    vertices, triangles = grid(n)
+    v = 3 * n + 3
+    across = v - 1, v + n  # the other two of one of its triangles
     moved = list(vertices)
-    moved[27] = (moved[27][0] + 0.3, moved[27][1])
+    moved[v] = (moved[v][0] + 0.3, moved[v][1])
     write("inverted", moved, triangles)
-    moved[27] = tuple((vertices[26][k] + vertices[35][k]) / 2 for k in (0, 1))  # on the edge across
+    moved[v] = tuple((vertices[across[0]][k] + vertices[across[1]][k]) / 2 for k in (0, 1))
     write("no_area", moved, triangles)
 
 

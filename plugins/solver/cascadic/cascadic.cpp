@@ -8,7 +8,7 @@ enum class CarryUp { midpoint, refiner };
 
 /// Coarse to fine, each level under its own energy, in the style of Sensitive Couture (Umetani et al.
 /// 2011): the finest level is plain Newton from a better start.
-class CascadicSolver : public Solver {
+class CascadicSolver : public ResumableSolver {
  public:
   struct Parameters {
     CarryUp prolongation = CarryUp::midpoint;
@@ -23,13 +23,14 @@ class CascadicSolver : public Solver {
   };
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+  std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
+                                  Observer& observer) const override {
     const auto& weights =
         p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints : problem.hierarchy.prolongations;
     const auto objective = [&](int level) {
       return std::make_unique<PlainObjective>(*problem.models[level]);
     };
-    return solve_progressively(problem, weights, objective, p_.newton, observer);
+    return solve_progressively(problem, weights, objective, p_.newton, from, observer);
   }
 
  private:

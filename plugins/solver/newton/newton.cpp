@@ -5,7 +5,7 @@
 namespace drape {
 
 /// Each level on its own, from the scene's start, under its own energy (docs/method.md, section 3).
-class NewtonSolver : public Solver {
+class NewtonSolver : public ResumableSolver {
  public:
   struct Parameters {
     NewtonParameters newton;
@@ -15,15 +15,18 @@ class NewtonSolver : public Solver {
   };
   explicit NewtonSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
-    const Stopwatch clock;
-    std::vector<LevelResult> results;
-    for (int l = 0; l <= problem.finest(); ++l) {
-      observer.level_started(l);
-      if (problem.conditions) problem.conditions->begin(l, true);
+  std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
+                                  Observer& observer) const override {
+    const Stopwatch clock(from.seconds);
+    std::vector<LevelResult> results = from.finished;
+    restore_conditions(problem, from);
+    for (int l = from.level; l <= problem.finest(); ++l) {
+      const NewtonState* state = from.of(l);
+      if (!state) observer.level_started(l);
+      if (problem.conditions && !state) problem.conditions->begin(l, true);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(minimise(objective, problem.starts[l], p_.newton, clock, observer,
-                                 l < problem.finest(), problem.conditions));
+      results.push_back(minimise(objective, problem.starts[l], p_.newton,
+                                 {clock, observer, l < problem.finest(), {}, state, problem.conditions}));
       results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;

@@ -9,7 +9,7 @@ enum class ProxyMatrix { coarse, galerkin };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
 /// plain Newton (Zhang et al. 2022; docs/method.md, section 3).
-class PcsSolver : public Solver {
+class PcsSolver : public ResumableSolver {
  public:
   struct Parameters {
     ProxyMatrix hessian = ProxyMatrix::galerkin;
@@ -30,13 +30,15 @@ class PcsSolver : public Solver {
   };
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+  std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
+                                  Observer& observer) const override {
     const int depth = p_.hessian == ProxyMatrix::galerkin ? p_.depth : 0;
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
       if (level < problem.finest()) return std::make_unique<ProxyObjective>(problem, level, depth);
       return std::make_unique<PlainObjective>(*problem.models[level]);
     };
-    return solve_progressively(problem, problem.hierarchy.prolongations, objective, p_.newton, observer);
+    return solve_progressively(problem, problem.hierarchy.prolongations, objective, p_.newton, from,
+                               observer);
   }
 
  private:

@@ -23,7 +23,7 @@ class FinestOnly : public drape::Solver {
     observer.level_started(finest);
     drape::PlainObjective objective(*problem.models[finest]);
     drape::LevelResult result =
-        drape::minimise(objective, problem.starts[finest], p_.newton, clock, observer);
+        drape::minimise(objective, problem.starts[finest], p_.newton, {clock, observer});
     observer.level_finished(result);
     return {result};
   }

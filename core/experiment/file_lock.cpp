@@ -1,4 +1,4 @@
-#include "core/sweep/file_lock.h"
+#include "core/experiment/file_lock.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/mesh/file.h"
 #include "core/numerics/stopwatch.h"
-#include "core/sweep/process.h"
 
 namespace drape {
 
@@ -38,7 +38,7 @@ bool FileLock::acquire(double patience) {
 }
 
 std::string FileLock::holder() const {
-  std::string text = text_of_file(name_);
+  std::string text = read_file(name_);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text;
 }

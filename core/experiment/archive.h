@@ -1,0 +1,165 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace drape {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
+
+/// Whether a value is its bytes.
+template <class T>
+inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// Values as bytes, one after another. A struct is what `fields(archive, value)`, found by its type, passes
+/// on, the same for writing and for reading.
+class ArchiveWriter {
+ public:
+  std::string bytes;
+
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+
+ private:
+  void raw(const void* from, std::size_t size) { bytes.append(static_cast<const char*>(from), size); }
+  void count(std::uint64_t n) { raw(&n, sizeof n); }
+
+  template <class T>
+  void put(const T& value) {
+    if constexpr (is_plain<T>)
+      raw(&value, sizeof value);
+    else
+      fields(*this, const_cast<T&>(value));  // which reads it alone
+  }
+  void put(const std::string& text) {
+    count(text.size());
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    count(values.size());
+    if constexpr (is_plain<T>)
+      raw(values.data(), sizeof(T) * values.size());
+    else
+      for (const T& value : values) put(value);
+  }
+  template <class T, std::size_t n>
+  void put(const std::array<T, n>& values) {
+    for (const T& value : values) put(value);
+  }
+  template <class A, class B>
+  void put(const std::pair<A, B>& pair) {
+    put(pair.first);
+    put(pair.second);
+  }
+  template <class T>
+  void put(const std::optional<T>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  template <class T>
+  void put(const std::map<std::string, T>& map) {
+    count(map.size());
+    for (const auto& entry : map) put(entry);
+  }
+  template <int columns>
+  void put(const Eigen::Matrix<double, Eigen::Dynamic, columns, Eigen::RowMajor>& matrix) {
+    count(matrix.rows());
+    raw(matrix.data(), sizeof(double) * matrix.size());
+  }
+};
+
+/// Reads what ArchiveWriter wrote. Throws std::runtime_error where the bytes end too early.
+class ArchiveReader {
+ public:
+  explicit ArchiveReader(std::string_view bytes) : bytes_(bytes) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  void raw(void* to, std::size_t size) {
+    require(size);
+    if (size > 0) std::memcpy(to, bytes_.data(), size);
+    bytes_.remove_prefix(size);
+  }
+  void require(std::size_t size) const {
+    if (size > bytes_.size()) throw std::runtime_error("it ends too early");
+  }
+  /// Of things that take at least so many bytes each.
+  std::size_t count(std::size_t smallest) {
+    std::uint64_t n = 0;
+    raw(&n, sizeof n);
+    if (n > bytes_.size() / smallest) throw std::runtime_error("it ends too early");
+    return n;
+  }
+
+  template <class T>
+  void get(T& value) {
+    if constexpr (is_plain<T>)
+      raw(&value, sizeof value);
+    else
+      fields(*this, value);
+  }
+  void get(std::string& text) {
+    text.resize(count(1));
+    raw(text.data(), text.size());
+  }
+  template <class T>
+  void get(std::vector<T>& values) {
+    values.resize(count(is_plain<T> ? sizeof(T) : 1));
+    if constexpr (is_plain<T>)
+      raw(values.data(), sizeof(T) * values.size());
+    else
+      for (T& value : values) get(value);
+  }
+  template <class T, std::size_t n>
+  void get(std::array<T, n>& values) {
+    for (T& value : values) get(value);
+  }
+  template <class A, class B>
+  void get(std::pair<A, B>& pair) {
+    get(pair.first);
+    get(pair.second);
+  }
+  template <class T>
+  void get(std::optional<T>& value) {
+    bool there = false;
+    get(there);
+    value.reset();
+    if (there) get(value.emplace());
+  }
+  template <class T>
+  void get(std::map<std::string, T>& map) {
+    map.clear();
+    for (std::size_t n = count(1); n > 0; --n) {
+      std::pair<std::string, T> entry;
+      get(entry);
+      map.insert(std::move(entry));
+    }
+  }
+  template <int columns>
+  void get(Eigen::Matrix<double, Eigen::Dynamic, columns, Eigen::RowMajor>& matrix) {
+    const std::size_t rows = count(sizeof(double) * columns);
+    matrix.resize(static_cast<Eigen::Index>(rows), columns);
+    raw(matrix.data(), sizeof(double) * matrix.size());
+  }
+
+  std::string_view bytes_;
+};
+
+}  // namespace drape

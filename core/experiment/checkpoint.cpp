@@ -1,0 +1,202 @@
+#include "core/experiment/checkpoint.h"
+
+#include <zlib.h>
+
+#include "core/experiment/archive.h"
+#include "core/mesh/file.h"
+
+namespace drape {
+
+// What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
+
+template <class A>
+void fields(A& a, ConditionsState& s) {
+  a(s.change, s.numbers);
+}
+
+template <class A>
+void fields(A& a, HardPositions::Memory& m) {
+  a(m.missing, m.stiffness, m.best, m.idle, m.given_up, m.pulled);
+}
+
+template <class A>
+void fields(A& a, ChangeBegun& c) {
+  a(c.steps, c.iterations, c.seconds);
+}
+
+template <class A>
+void fields(A& a, LevelResult& r) {
+  a(r.level, r.outcome, r.message, r.x, r.dead_end, r.afresh, r.steps, r.iterations, r.factorisations,
+    r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap,
+    r.conditions);
+}
+
+template <class A>
+void fields(A& a, ContactMemory& m) {
+  a(m.anchors, m.sweep_begin, m.sweep_end, m.seconds_building);
+}
+
+template <class A>
+void fields(A& a, Objective::PatternMemory& m) {
+  a(m.room.blocks, m.room.idle, m.smooth_alone);
+}
+
+template <class A>
+void fields(A& a, BlockCholesky::Analysis& m) {
+  a(m.fixed, m.order, m.ordered_flops, m.count);
+}
+
+template <class A>
+void fields(A& a, NewtonState& s) {
+  a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
+    s.positions, s.changed_at, s.times_held_up, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age,
+    s.factor_shift, s.factor_values);
+}
+
+template <class A>
+void fields(A& a, MethodState& s) {
+  a(s.finished, s.level, s.under_way, s.seconds);
+}
+
+template <class A>
+void fields(A& a, Work& w) {
+  a(w.seconds, w.iterations, w.flops);
+}
+
+template <class A>
+void fields(A& a, Frame& f) {
+  a(f.work, f.x);
+}
+
+template <class A>
+void fields(A& a, Frames::Memory& m) {
+  a(m.spacing, m.seen, m.kept);
+}
+
+template <class A>
+void fields(A& a, LevelFrames& f) {
+  a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged);
+}
+
+template <class A>
+void fields(A& a, RecorderState& s) {
+  a(s.results, s.method, s.sound, s.sound_of_method, s.finest, s.frames, s.measured, s.spent, s.last,
+    s.overhead, s.steps_bytes, s.log_bytes);
+}
+
+template <class A>
+void fields(A& a, FileMark& m) {
+  a(m.path, m.bytes, m.checksum);
+}
+
+template <class A>
+void fields(A& a, Checkpoint& c) {
+  a(c.program, c.config, c.files, c.methods, c.method, c.all_converged, c.state, c.first_level, c.own_start,
+    c.recorder);
+}
+
+namespace {
+
+constexpr std::string_view magic = "drapestt";
+constexpr std::uint32_t format = 2;
+
+struct Header {
+  std::uint32_t format = drape::format, checksum = 0;
+  std::uint64_t size = 0;
+};
+constexpr std::size_t header_size = magic.size() + 16;
+
+template <class A>
+void fields(A& a, Header& h) {
+  a(h.format, h.checksum, h.size);
+}
+
+std::filesystem::path newest(const std::filesystem::path& folder) { return folder / "checkpoint/state.bin"; }
+std::filesystem::path previous(const std::filesystem::path& folder) {
+  return folder / "checkpoint/previous.bin";
+}
+
+Checkpoint read(const std::filesystem::path& file) {
+  try {
+    return decode(read_file(file));
+  } catch (const std::exception& fault) {
+    throw std::runtime_error(file.string() + ": " + fault.what());
+  }
+}
+
+}  // namespace
+
+std::uint32_t checksum_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+std::string encode(const Checkpoint& checkpoint) {
+  ArchiveWriter body, whole;
+  body(checkpoint);
+  Header header;
+  header.size = body.bytes.size();
+  header.checksum = checksum_of(body.bytes);
+  whole.bytes = magic;
+  whole(header);
+  return whole.bytes + body.bytes;
+}
+
+Checkpoint decode(std::string_view bytes) {
+  if (!bytes.starts_with(magic.substr(0, std::min(bytes.size(), magic.size()))))
+    throw std::runtime_error("is no checkpoint of drape");
+  if (bytes.size() < header_size) throw std::runtime_error("is cut short");
+  Header header;
+  ArchiveReader(bytes.substr(magic.size()))(header);
+  if (header.format != format)
+    throw std::runtime_error("is a checkpoint of format " + std::to_string(header.format) +
+                             ", but this drape reads format " + std::to_string(format) +
+                             "; resume it with the drape that wrote it");
+  bytes.remove_prefix(header_size);
+  if (bytes.size() < header.size) throw std::runtime_error("is cut short");
+  if (bytes.size() > header.size || checksum_of(bytes) != header.checksum)
+    throw std::runtime_error("is damaged: its checksum does not fit");
+  ArchiveReader reader(bytes);
+  Checkpoint checkpoint;
+  reader(checkpoint);
+  if (!reader.at_end()) throw std::runtime_error("is damaged: it goes on after its end");
+  return checkpoint;
+}
+
+void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
+  const std::filesystem::path file = newest(folder), next = file.parent_path() / "next.bin";
+  std::filesystem::create_directories(file.parent_path());
+  write_file(next, encode(checkpoint));
+  sync_to_disk(next);
+  if (std::filesystem::exists(file)) std::filesystem::rename(file, previous(folder));
+  std::filesystem::rename(next, file);
+  sync_to_disk(file.parent_path());
+}
+
+Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning) {
+  warning.clear();
+  std::string faults;
+  for (const auto& file : {newest(folder), previous(folder)}) {
+    if (!std::filesystem::exists(file)) continue;
+    try {
+      Checkpoint checkpoint = read(file);
+      if (!faults.empty()) warning = faults + "; going on from the checkpoint before it, " + file.string();
+      return checkpoint;
+    } catch (const std::exception& fault) {
+      faults += (faults.empty() ? "" : "; ") + std::string(fault.what());
+    }
+  }
+  if (faults.empty())
+    throw std::runtime_error(folder.string() +
+                             ": holds no checkpoint of a run; give the results folder of one that was "
+                             "interrupted, or run the experiment anew");
+  throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment anew, as in drape run " +
+                           (folder / "config.yaml").string() + " --out ANOTHER");
+}
+
+void remove_checkpoints(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (const auto& file : {newest(folder), previous(folder)}) std::filesystem::remove(file, error);
+}
+
+}  // namespace drape

@@ -1,0 +1,193 @@
+#include "core/experiment/session.h"
+
+#include <algorithm>
+
+#include "core/experiment/yaml_file.h"
+#include "core/mesh/file.h"
+#include "core/mesh/io.h"
+#include "core/numerics/safe_refinement.h"
+#include "core/version.h"
+
+namespace drape {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Saving takes no more than one part in so many of the time.
+constexpr double rareness = 100;
+
+std::string program() { return "drape " + std::string(version()) + " (" + commit() + ")"; }
+
+/// A file's bytes, or those of the files in a folder, in the order of their names.
+FileMark mark_of(const fs::path& path) {
+  std::string bytes;
+  if (fs::is_directory(path)) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(path))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) bytes += file.filename().string() + "\n" + read_file(file);
+  } else {
+    bytes = read_file(path);
+  }
+  return {path.string(), bytes.size(), checksum_of(bytes)};
+}
+
+std::string mesh_name(const std::string& method, int level) {
+  return "levels/" + method + "_l" + std::to_string(level) + ".ply";
+}
+
+nlohmann::ordered_json results_of(const fs::path& folder) {
+  const fs::path file = folder / "results.json";
+  if (!fs::exists(file))
+    throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
+  nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  if (!results.is_object() || !results.contains("methods"))
+    throw std::runtime_error(file.string() + ": is damaged; run the experiment anew");
+  return results;
+}
+
+}  // namespace
+
+Session::Session(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval)
+    : folder_(folder.path()),
+      recorder_(recorder),
+      now_(std::move(begun)),
+      interval_(interval),
+      method_clock_(now_.state.seconds) {
+  now_.program = program();
+}
+
+void Session::method_started(int method) {
+  now_.method = method;
+  now_.state = {};
+  now_.state.level = now_.first_level;
+  method_clock_ = Stopwatch();
+  save();
+}
+
+void Session::method_finished(bool converged) { now_.all_converged = now_.all_converged && converged; }
+
+void Session::level_finished(const LevelResult& result) {
+  if (result.outcome == Outcome::cancelled) return;
+  now_.state.finished.push_back(result);
+  now_.state.level = result.level + 1;
+  now_.state.under_way.reset();
+  save();
+}
+
+bool Session::due(bool stopping) const {
+  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, rareness * cost_);
+}
+
+void Session::save(const NewtonState& under_way) {
+  now_.state.level = under_way.so_far.level;
+  now_.state.under_way = under_way;
+  save();
+}
+
+void Session::save() {
+  const Stopwatch watch;
+  now_.state.seconds = method_clock_.seconds();
+  now_.recorder = recorder_.state();
+  save_checkpoint(folder_, now_);
+  cost_ = watch.seconds();
+  since_ = Stopwatch();
+}
+
+std::vector<FileMark> marks_of_files(const ConfigNode& saved, const fs::path& folder) {
+  std::vector<FileMark> marks;
+  // Parameters that are paths are absolute there, but for the copies in the folder.
+  const std::string& path = saved.scalar;
+  if (path.starts_with('/') && fs::exists(path)) marks.push_back(mark_of(path));
+  for (const char* copy : {"rest/l0.ply", "reference.ply"})
+    if (path == copy) marks.push_back(mark_of(folder / copy)), marks.back().path = copy;
+  const auto add = [&](const ConfigNode& part) {
+    for (FileMark& mark : marks_of_files(part, folder)) marks.push_back(std::move(mark));
+  };
+  for (const ConfigNode& item : saved.items) add(item);
+  for (const auto& entry : saved.entries) add(entry.second);
+  return marks;
+}
+
+bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }
+
+Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
+  results_of(folder);
+  Checkpoint checkpoint = load_checkpoint(folder, warning);
+  const fs::path config = folder / "config.yaml";
+  if (!fs::exists(config) || read_file(config) != checkpoint.config)
+    throw std::runtime_error(config.string() +
+                             ": is not the one that the checkpoint was made with; put that one back, or "
+                             "change parameters with --set KEY=VALUE --out ANOTHER");
+  for (const FileMark& was : checkpoint.files) {
+    const fs::path path = was.path.starts_with('/') ? fs::path(was.path) : folder / was.path;
+    if (!fs::exists(path))
+      throw std::runtime_error(path.string() + ": is gone, and the run reads it; put it back where it was");
+    if (const FileMark is = mark_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
+      throw std::runtime_error(path.string() +
+                               ": is not what it was when the run began; put that file back, or run the "
+                               "experiment anew");
+  }
+  if (checkpoint.program != program())
+    warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
+                                                program() + ": the last bits may differ");
+  return checkpoint;
+}
+
+SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
+  const nlohmann::ordered_json results = results_of(folder);
+  SavedState state{method, 0, {}};
+  std::optional<Checkpoint> checkpoint;
+  if (!results.value("complete", false)) {
+    std::string warning;
+    checkpoint = load_checkpoint(folder, warning);
+    if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
+  }
+  if (state.method.empty())
+    for (const auto& [name, entry] : results["methods"].items()) state.method = name;
+  const bool current = checkpoint && checkpoint->methods.at(checkpoint->method) == state.method;
+  const std::optional<NewtonState>& under_way = current ? checkpoint->state.under_way : std::nullopt;
+  std::vector<int> levels;
+  for (int l = 0; l < 32; ++l)
+    if (fs::exists(folder / mesh_name(state.method, l)) || (under_way && checkpoint->state.level == l))
+      levels.push_back(l);
+  const std::string whose = folder.string() + ": holds no state of method " + state.method;
+  if (levels.empty()) throw std::runtime_error(whose + "; name another with --method");
+  state.level = level.value_or(levels.back());
+  if (std::find(levels.begin(), levels.end(), state.level) == levels.end())
+    throw std::runtime_error(whose + " on level " + std::to_string(state.level) +
+                             "; the last level that it has is " + std::to_string(levels.back()));
+  state.x = under_way && checkpoint->state.level == state.level
+                ? under_way->so_far.x
+                : read_mesh(folder / mesh_name(state.method, state.level)).vertices;
+  return state;
+}
+
+void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level,
+                        ConfigErrors& errors) {
+  for (const char* key : {"cloth", "refiner"})
+    if (to_yaml(*before.resolved.find(key)) != to_yaml(*changed.resolved.find(key)))
+      errors.push_back(
+          {changed.place_of(key), "\"" + std::string(key) +
+                                      "\" cannot be changed: the saved state is one of the cloth "
+                                      "as it was; run the changed experiment from its start"});
+  if (changed.parameters.levels <= level)
+    errors.push_back({changed.place_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
+                                                      ", for the saved state is one of level " +
+                                                      std::to_string(level) +
+                                                      "; choose a coarser one with --level"});
+}
+
+void begin_from(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                ConfigErrors& errors) {
+  const LevelModel& model = *scene.models[level];
+  if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
+  scene.starts[level] = x;
+  refuse_touching_start(experiment, model, x, errors);
+  for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
+    scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
+}
+
+}  // namespace drape

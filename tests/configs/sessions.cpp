@@ -1,0 +1,392 @@
+// Runs that are interrupted and go on end with the bits of one that was not.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/experiment/runner.h"
+#include "core/experiment/session.h"
+#include "core/mesh/generate.h"
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+/// Two sheets, one close above the other, fall on a ball: self-contact, friction and a strain limit.
+void write_sheets(const Scratch& folder) {
+  TriangleMesh sheets = grid({0.4, 0.4}, 6, 6, Diagonals::one_way);
+  const auto n = static_cast<int>(sheets.vertices.rows());
+  const Positions lower = sheets.vertices;
+  const Triangles triangles = sheets.triangles;
+  sheets.vertices.resize(2 * n, 3);
+  sheets.vertices << lower, lower.rowwise() + Eigen::RowVector3d(0.003, 0.002, 0.0012);
+  sheets.triangles.resize(2 * triangles.rows(), 3);
+  sheets.triangles << triangles, triangles.array() + n;
+  write_mesh(folder / "sheets.obj", sheets);
+  const std::string one = text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml");
+  folder.write("e.yaml", replaced(replaced(one, "{shape: square, side: 0.4, columns: 9, rows: 9}",
+                                           "{shape: file, file: sheets.obj}"),
+                                  "levels: 2", "levels: 3"));
+}
+
+/// Some steps a level, in which the sheets come to touch each other and the ball.
+Overrides some_steps(Overrides more = {}) {
+  more.emplace_back("start.translate", "[-0.2, -0.2, 0.1015]");
+  more.emplace_back("newton.max_steps", "8");
+  return more;
+}
+
+/// Without what a clock or the machine says.
+Json timeless(Json json) {
+  if (json.is_object()) {
+    for (const char* key : {"seconds", "seconds_by_phase", "peak_memory_bytes"}) json.erase(key);
+    for (auto& item : json.items()) item.value() = timeless(item.value());
+  }
+  if (json.is_array())
+    for (Json& item : json) item = timeless(item);
+  return json;
+}
+
+/// Rows without the column of that name.
+std::string without_column(const std::string& text, const std::string& name) {
+  std::istringstream lines(text);
+  std::string kept;
+  int column = -1;
+  for (std::string line; std::getline(lines, line); kept += "\n") {
+    std::istringstream cells(line);
+    int k = 0;
+    for (std::string cell; std::getline(cells, cell, ','); ++k) {
+      if (cell == name && column < 0) column = k;
+      if (k != column) kept += cell + ",";
+    }
+  }
+  return kept;
+}
+
+/// All that two equal runs have in common, by file.
+std::map<std::string, std::string> outcome_of(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const char* part : {"levels", "frames", "fields"})
+    if (fs::exists(folder / part))
+      for (const auto& entry : fs::directory_iterator(folder / part))
+        all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
+  all["results.json"] = timeless(Json::parse(text_of(folder / "results.json"))).dump(1);
+  all["steps.csv"] = without_column(text_of(folder / "steps.csv"), "seconds");
+  all["errors.csv"] = without_column(text_of(folder / "errors.csv"), "seconds");
+  return all;
+}
+
+void check_equal(const fs::path& folder, const fs::path& expected) {
+  const auto a = outcome_of(folder), b = outcome_of(expected);
+  REQUIRE(a.size() == b.size());
+  for (const auto& [name, bytes] : b) {
+    INFO(name);
+    REQUIRE(a.count(name) == 1);
+    if (name.ends_with(".csv") || name.ends_with(".json"))
+      CHECK(a.at(name) == bytes);
+    else
+      CHECK((a.at(name) == bytes));  // not shown
+  }
+}
+
+Experiment experiment_in(const fs::path& file, const Overrides& overrides = {}) {
+  ConfigErrors errors;
+  auto experiment = read_experiment(file, overrides, test_registry(), errors);
+  throw_errors(errors);
+  return std::move(*experiment);
+}
+
+std::unique_ptr<Scene> scene_of(const Experiment& experiment) {
+  ConfigErrors errors;
+  auto scene = build_scene(experiment, errors);
+  throw_errors(errors);
+  return scene;
+}
+
+RunOptions silent(const fs::path& out) {
+  RunOptions options;
+  options.out = out;
+  options.quiet = true;
+  options.report = false;
+  return options;
+}
+
+/// Runs an experiment in one go and again in as many parts as it can be cut into: every part is stopped the
+/// second time that anything asks, which is after one step, or if that leads nowhere, later. How many parts.
+int check_in_parts(const Experiment& experiment, const fs::path& folder) {
+  run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
+  REQUIRE(Json::parse(text_of(folder / "whole/results.json"))["complete"] == true);
+
+  int parts = 1, patience = 2, asked = 0;
+  RunOptions options = silent(folder / "parts");
+  options.stop = [&] { return ++asked > patience; };
+  run_experiment(experiment, *scene_of(experiment), options);
+  for (std::string before; !is_complete(options.out); ++parts) {
+    REQUIRE(parts < 2000);
+    std::string warning;
+    Checkpoint checkpoint = checkpoint_to_resume(options.out, warning);
+    CHECK(warning == "");
+    const MethodState& state = checkpoint.state;
+    const std::string now = std::to_string(checkpoint.method) + " " + std::to_string(state.level) + " " +
+                            (state.under_way ? std::to_string(state.under_way->so_far.steps) : "begins");
+    patience = now == before ? 2 * patience : 2;
+    before = now;
+    asked = 0;
+    const Experiment again = experiment_in(options.out / "config.yaml");
+    resume_experiment(again, *scene_of(again), options, std::move(checkpoint));
+  }
+  check_equal(folder / "parts", folder / "whole");
+  return parts;
+}
+
+}  // namespace
+
+TEST_CASE("A run that is stopped at every step and goes on has the bits of one that is not") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Overrides short_levels = {{"levels", "3"}, {"newton.max_steps", "8"}};
+  CHECK(check_in_parts(experiment_in(folder / "e.yaml", short_levels), folder.path) > 60);
+}
+
+TEST_CASE("So has one with self-contact, obstacles, friction and a strain limit") {
+  const Scratch folder;
+  write_sheets(folder);
+  CHECK(check_in_parts(experiment_in(folder / "e.yaml", some_steps()), folder.path) > 60);
+}
+
+TEST_CASE("So has one whose iterations share a matrix, and one of several of them a step") {
+  for (const char* iterations : {"1", "2"}) {
+    const Scratch folder;
+    write_sheets(folder);
+    const Overrides shared =
+        some_steps({{"newton.refresh", "3"}, {"newton.iterations_per_step", iterations}});
+    CHECK(check_in_parts(experiment_in(folder / "e.yaml", shared), folder.path) > 60);
+  }
+}
+
+TEST_CASE("So has one of the static form, with every projection made in full") {
+  const Scratch folder;
+  write_sheets(folder);
+  const Overrides statics =
+      some_steps({{"newton.form", "static"}, {"newton.projection_share", "full"}, {"levels", "2"}});
+  CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
+}
+
+TEST_CASE("So has one whose conditions change, held vertices being pulled and obstacles moved") {
+  // A ball rises into a sheet that is held at two corners, one of which is moved, and made softer.
+  const std::string schedule = R"(
+pins:
+  - {region: nearest, point: [0, 0, 0], move: [-0.2, -0.2, 0.11]}
+  - {region: nearest, point: [0.4, 0.4, 0], move: [-0.2, -0.2, 0.11]}
+schedule:
+  steps: 6
+  keys:
+    - {set: material.bending_modulus, at: [0, 0.5], to: [8e4, 8e3], between: log}
+    - {set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.03]]}
+    - {set: pins.1.move, at: [0, 0.5, 1], to: [[-0.2, -0.2, 0.11], [-0.25, -0.2, 0.0], [-0.2, -0.2, 0.11]]}
+    - {set: energies.strain_limit.limit, at: [0, 1], to: [1.06, 1.04]}
+)";
+  for (const char* settle : {"false", "true"}) {
+    const Scratch folder;
+    folder.write("e.yaml",
+                 text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml") + schedule);
+    const Overrides some = {{"newton.max_steps", "12"},
+                            {"schedule.settle", settle},
+                            {"newton.force_tolerance", "0.1"},
+                            {"cloth.columns", "7"},
+                            {"cloth.rows", "7"}};
+    CHECK(check_in_parts(experiment_in(folder / "e.yaml", some), folder.path) > 40);
+  }
+}
+
+namespace {
+
+/// A run of the sheets in its folder `out`, with a checkpoint at every step.
+const std::string sheets_run =
+    "run e.yaml --out out --quiet --no-report --threads 1 --checkpoint 0 --set newton.max_steps=8 "
+    "--set start.translate=[-0.2,-0.2,0.1015]";
+const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
+
+/// Waits until the run has made some steps.
+void wait_for_steps(const fs::path& out, int steps) {
+  for (int k = 0; k < 6000; ++k) {
+    const std::string rows = fs::exists(out / "steps.csv") ? text_of(out / "steps.csv") : "";
+    if (std::count(rows.begin(), rows.end(), '\n') > steps) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  FAIL("the run makes no " << steps << " steps");
+}
+
+/// What a run of the sheets leaves that was interrupted in the middle.
+void interrupt_sheets(const Scratch& folder) {
+  write_sheets(folder);
+  Command command("exec " + drape_command + " " + sheets_run, folder.path);
+  wait_for_steps(folder / "out", 12);
+  command.send(SIGINT);
+  REQUIRE(command.wait().exit_code == 130);
+  REQUIRE_FALSE(is_complete(folder / "out"));
+}
+
+/// Standard error of what must be refused without a word on standard output.
+std::string refused_by(const std::string& arguments, const Scratch& folder) {
+  const Ended ended = drape_with(arguments, folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  return ended.err;
+}
+
+}  // namespace
+
+TEST_CASE("Killed at twenty random moments, a run goes on every time and ends with the same bits") {
+  const Scratch folder;
+  write_sheets(folder);
+  const Stopwatch watch;
+  REQUIRE(drape_with("check e.yaml", folder.path).exit_code == 0);
+  const double to_begin = watch.seconds();
+  REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
+  const double whole = watch.seconds() - 2 * to_begin;
+
+  std::mt19937 random(5);
+  int cut = 0, resumed = 0;
+  for (int kill = 0; kill < 20; ++kill) {
+    const bool begun = fs::exists(folder / "out/checkpoint/state.bin");
+    resumed += begun;
+    Command command("exec " + drape_command + " " + (begun ? go_on : sheets_run + " --overwrite"),
+                    folder.path);
+    // Half of them while it begins, half in what is a tenth of its work.
+    const double part = static_cast<double>(random() % 1000) / 1000;
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(kill % 2 ? part * to_begin : to_begin + part * whole / 10));
+    command.send(SIGKILL);
+    cut += command.wait().exit_code == 128 + SIGKILL;
+  }
+  CHECK(cut == 20);
+  CHECK(resumed >= 15);
+  CHECK_FALSE(is_complete(folder / "out"));
+  const Ended ended = drape_with(go_on, folder.path);
+  CHECK(ended.err == "");
+  CHECK(ended.exit_code == 1);  // as the run that was not killed: out of steps
+  check_equal(folder / "out", folder / "whole");
+  const Ended again = drape_with("run --resume out", folder.path);
+  CHECK(again.exit_code == 0);
+  CHECK(again.out == "out: the run is complete; there is nothing to go on with\n");
+  CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
+}
+
+TEST_CASE("What a run cannot go on with is refused, and said") {
+  const Scratch folder;
+  interrupt_sheets(folder);
+  const std::string before = text_of(folder / "out/results.json");
+
+  CHECK(refused_by("run --resume nowhere", folder) ==
+        "error: nowhere: holds no run; give the results folder of one\n");
+  CHECK_THAT(refused_by("run e.yaml --resume out", folder),
+             Contains("takes the experiment from the run's own config.yaml; leave out e.yaml"));
+  CHECK_THAT(refused_by("run --resume out --overwrite", folder), Contains("leave out --overwrite"));
+  CHECK_THAT(refused_by("run --resume out --out other", folder), Contains("leave out --out"));
+  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1", folder),
+             Contains("is another run; name its folder with --out"));
+  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1 --out ./out", folder),
+             Contains("leaves the run that it begins from as it is"));
+  CHECK_THAT(refused_by("run e.yaml --level 1", folder), Contains("name its run with --resume"));
+  CHECK_THAT(refused_by("run", folder), Contains("config is required"));
+
+  const auto damaged = [&](const std::string& name, const std::string& text, const std::string& expected) {
+    const std::string whole = text_of(folder / name);
+    folder.write(name, text);
+    CHECK_THAT(refused_by("run --resume out", folder), Contains(expected));
+    folder.write(name, whole);
+  };
+  damaged("out/config.yaml", text_of(folder / "out/config.yaml") + "# \n",
+          "out/config.yaml: is not the one that the checkpoint was made with");
+  damaged("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
+  damaged("out/steps.csv", "method\n", "out/steps.csv: is shorter than when the checkpoint was made");
+  damaged("out/results.json", "{", "out/results.json: is damaged");
+  CHECK(text_of(folder / "out/results.json") == before);
+
+  FileLock other(folder / "out/checkpoint/lock");
+  REQUIRE(other.acquire(0));
+  CHECK_THAT(refused_by("run --resume out", folder), Contains("is at this run; wait for it, or stop it"));
+}
+
+TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a warning") {
+  const Scratch folder;
+  interrupt_sheets(folder);
+  REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
+  folder.write("out/checkpoint/state.bin", "drapestt");
+  const Ended ended = drape_with(go_on, folder.path);
+  CHECK_THAT(ended.err, Contains("state.bin: is cut short; going on from the checkpoint before it"));
+  CHECK(ended.exit_code == 1);
+  check_equal(folder / "out", folder / "whole");
+}
+
+TEST_CASE("An obstacle's mesh that changed since is named") {
+  const Scratch folder;
+  folder.write("e.yaml", replaced(text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml"),
+                                  "{type: ipc, friction: 0.1}",
+                                  "{type: ipc, obstacles: [{file: box.obj, translate: [0, 0, -1]}]}"));
+  write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
+  Command command("exec " + drape_command + " " + sheets_run, folder.path);
+  wait_for_steps(folder / "out", 3);
+  command.send(SIGKILL);
+  command.wait();
+  write_mesh(folder / "box.obj", grid({0.5, 0.4}, 2, 2, Diagonals::one_way));
+  CHECK_THAT(refused_by("run --resume out", folder),
+             Contains("box.obj: is not what it was when the run began"));
+  fs::remove(folder / "box.obj");
+  CHECK_THAT(refused_by("run --resume out", folder), Contains("box.obj"));
+}
+
+TEST_CASE("A saved state flows on under changed parameters, in a folder of its own") {
+  const Scratch folder;
+  interrupt_sheets(folder);
+  const std::string flow = "run --resume out --quiet --no-report --threads 1 --set newton.max_steps=4 ";
+  const auto rows = [&](const std::string& out) {
+    const std::string text = text_of(folder / (out + "/steps.csv"));
+    return text.substr(text.find('\n') + 1);
+  };
+
+  REQUIRE(drape_with(flow + "--out last", folder.path).exit_code == 1);
+  CHECK(rows("last").starts_with("pcs,1,0,0,"));  // the level under way after 12 steps of 8 a level
+  const Json last = Json::parse(text_of(folder / "last/results.json"));
+  CHECK(last["begun_from"] == "out, method pcs, level 1");
+  REQUIRE(last["methods"].size() == 1);
+  REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);
+  CHECK(last["methods"]["pcs"]["levels"][0]["afresh"] == true);
+
+  REQUIRE(
+      drape_with(flow + "--out soft --level 0 --set material.bending_modulus=1e3", folder.path).exit_code ==
+      1);
+  CHECK(rows("soft").starts_with("pcs,0,0,0,"));
+  // Its first state is near to where the other run left the level, and far from the scene's start.
+  const Positions left = read_mesh(folder / "out/levels/pcs_l0.ply").vertices,
+                  flown = read_mesh(folder / "soft/levels/pcs_l0.ply").vertices;
+  CHECK((flown - left).norm() > 0);
+
+  // Interrupted and resumed, it has the bits of one that is not.
+  Command command("exec " + drape_command + " " + flow + "--out part --checkpoint 0", folder.path);
+  wait_for_steps(folder / "part", 5);
+  command.send(SIGKILL);
+  command.wait();
+  drape_with(replaced(go_on, "--resume out", "--resume part"), folder.path);
+  check_equal(folder / "part", folder / "last");
+
+  CHECK_THAT(refused_by(flow + "--out x --set refiner=midpoint", folder),
+             Contains("--set refiner: \"refiner\" cannot be changed"));
+  CHECK_THAT(refused_by(flow + "--out x --set cloth.vertices=99", folder),
+             Contains("\"cloth\" cannot be changed"));
+  CHECK_THAT(refused_by(flow + "--out x --levels 1", folder), Contains("\"levels\" must be at least 2"));
+  CHECK_THAT(refused_by(flow + "--out x --level 2", folder),
+             Contains("holds no state of method pcs on level 2; the last level that it has is 1"));
+  CHECK_THAT(refused_by(flow + "--out x --method cascadic", folder),
+             Contains("holds no state of method cascadic; name another with --method"));
+  CHECK_THAT(refused_by(flow + "--out x --set contact.1.shapes.0.radius=0.15", folder),
+             Contains("the start of level 1 touches: "));
+  CHECK_FALSE(fs::exists(folder / "x"));
+}

@@ -1,0 +1,148 @@
+// The file that a run goes on from: what was saved is what is read, and nothing else is.
+
+#include "core/experiment/checkpoint.h"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+
+using namespace drape;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+
+namespace {
+
+/// One with something in every field.
+Checkpoint full() {
+  std::srand(3);
+  Checkpoint c;
+  c.program = "drape";
+  c.config = "name: x\n";
+  c.files = {{"/a.obj", 17, 99}};
+  c.methods = {"pcs", "newton"};
+  c.method = 1;
+  c.all_converged = false;
+  LevelResult coarse;
+  coarse.outcome = Outcome::stalled;
+  coarse.message = "no descent";
+  coarse.x = Positions::Random(4, 3);
+  coarse.afresh = true;
+  coarse.steps = 7;
+  coarse.seconds_by_phase = {{"solve", 0.5}, {"gradient", 0.25}};
+  coarse.smallest_gap = 1e-4;
+  c.state.finished = {coarse};
+  c.state.level = 1;
+  c.state.seconds = 3;
+  NewtonState& s = c.state.under_way.emplace();
+  s.so_far.x = Positions::Random(9, 3);
+  s.so_far.force_residual = std::nan("");
+  s.decrements = {1, 2, 3};
+  s.held_by = "ball";
+  s.positions = {{3}, 1e4, 0.5, 2, false, true};
+  s.changed_at = {4, 5, 6};
+  s.begun_at = {7, 8, 9};
+  s.so_far.conditions = {3, {0.5, 0.25}};
+  s.contacts = {Positions::Random(9, 3), Positions::Random(9, 3), Positions::Random(9, 3), 2};
+  s.pattern.room = {{{0, 4}, {2, 7}}, {0, 3}};
+  s.pattern.smooth_alone = false;
+  s.analysis = {{0, 1, 0}, {2, 0}, 123, 4};
+  s.factor_values = {1, 2, 3};
+  c.first_level = 1;
+  c.own_start = Positions::Random(4, 3);
+  c.recorder.results = "{}";
+  c.recorder.finest = {{"pcs", Positions::Random(9, 3)}};
+  c.recorder.frames = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
+  c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true}};
+  c.recorder.steps_bytes = 12345;
+  return c;
+}
+
+std::string error_of(const std::string& bytes) {
+  try {
+    decode(bytes);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string error_in(const std::filesystem::path& folder) {
+  try {
+    std::string warning;
+    load_checkpoint(folder, warning);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("A checkpoint is read as it was written") {
+  const std::string bytes = encode(full());
+  const Checkpoint c = decode(bytes);
+  CHECK(encode(c) == bytes);
+  CHECK(c.methods == std::vector<std::string>{"pcs", "newton"});
+  CHECK(c.state.finished.at(0).x == full().state.finished.at(0).x);
+  CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
+  CHECK(c.state.under_way.value().pattern.room.blocks.at(1) == std::pair(2, 7));
+  CHECK(std::isnan(c.state.under_way->so_far.force_residual));
+  CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
+  CHECK(c.recorder.steps_bytes == 12345);
+  CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
+}
+
+TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
+  const std::string bytes = encode(full());
+  REQUIRE(bytes.size() > 1000);
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    std::string other = bytes;
+    other[k] = static_cast<char>(other[k] ^ (1 << k % 8));
+    CAPTURE(k);
+    REQUIRE(error_of(other) != "");
+    REQUIRE(error_of(bytes.substr(0, k)) != "");
+  }
+  std::string other = bytes;
+  other[500] ^= 1;
+  CHECK(error_of(other) == "is damaged: its checksum does not fit");
+  CHECK(error_of(bytes + "x") == "is damaged: its checksum does not fit");
+  CHECK(error_of(bytes.substr(0, 900)) == "is cut short");
+  CHECK(error_of("") == "is cut short");
+  CHECK(error_of("ply\nformat ascii 1.0\n") == "is no checkpoint of drape");
+  other = bytes;
+  other[8] = 77;
+  CHECK(
+      error_of(other) ==
+      "is a checkpoint of format 77, but this drape reads format 3; resume it with the drape that wrote it");
+}
+
+TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
+  const Scratch folder;
+  CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
+  std::string warning;
+  for (int method = 0; method < 3; ++method) {
+    Checkpoint c = full();
+    c.method = method;
+    save_checkpoint(folder.path, c);
+    CHECK(load_checkpoint(folder.path, warning).method == method);
+    CHECK(warning == "");
+  }
+  const auto newest = folder / "checkpoint/state.bin", previous = folder / "checkpoint/previous.bin";
+  const std::string whole = text_of(newest);
+  std::filesystem::resize_file(newest, whole.size() - 1);
+  CHECK(load_checkpoint(folder.path, warning).method == 1);
+  CHECK(warning ==
+        newest.string() + ": is cut short; going on from the checkpoint before it, " + previous.string());
+
+  // Between the two renames of a save there is no newest one.
+  std::filesystem::remove(newest);
+  CHECK(load_checkpoint(folder.path, warning).method == 1);
+  CHECK(warning == "");
+
+  folder.write("checkpoint/state.bin", whole.substr(0, 100));
+  folder.write("checkpoint/previous.bin", "something else");
+  const std::string error = error_in(folder.path);
+  CHECK_THAT(error, Contains("state.bin: is cut short; ") && Contains("previous.bin: is no checkpoint"));
+  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment anew, as in drape run " +
+                             (folder / "config.yaml").string() + " --out ANOTHER"));
+}
