@@ -8,6 +8,7 @@
 #include "core/model/stretch_limit.h"
 #include "core/numerics/block_cholesky.h"
 #include "core/numerics/hard_positions.h"
+#include "core/numerics/newton_state.h"
 
 namespace drape {
 
@@ -257,9 +258,9 @@ class Newton {
   void change_conditions(bool settled) {
     const bool begins = conditions_->made();
     if (begins && (settled || conditions_->change() > 0)) report_change();
+    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     const BoundContacts before = model_.contacts();
     limit_ = conditions_->advance(result_.level, result_.x);
-    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     begun_at_ = middle();
     const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
     times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;

@@ -35,7 +35,7 @@ void run(Solved& s, Changes& changes) {
 TEST_CASE("A strip that is lifted by its end while its weight grows follows the cantilever's tables",
           "[physics]") {
   const int cells = 40;
-  Strip strip{cells};
+  BeamStrip strip{cells};
   strip.stiffness = strip.density * 9.81 * strip.thickness;  // Γ = 1 under full weight
   Solved s = scene_from(strip.yaml("[neo_hookean, hinge, gravity]", R"(
 newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}

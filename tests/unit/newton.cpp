@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/mesh/generate.h"
+#include "core/numerics/newton_state.h"
 
 using namespace drape;
 
