@@ -126,9 +126,11 @@ ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
   return map;
 }
 
-/// A file's path as it holds from the current folder, which is what one on the command line is relative to.
+/// A file's path, or those of a list, as it holds from the current folder, which is what one on the command
+/// line is relative to.
 ConfigNode from_here(const ConfigNode& node) {
   ConfigNode path = node;
+  for (ConfigNode& item : path.items) item = from_here(item);
   if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
     path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
   return path;
@@ -136,6 +138,7 @@ ConfigNode from_here(const ConfigNode& node) {
 
 /// The same as it holds from anywhere.
 ConfigNode from_anywhere(ConfigNode path) {
+  for (ConfigNode& item : path.items) item = from_anywhere(item);
   if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
   return path;
 }

@@ -6,6 +6,7 @@
 #include "core/contact/contact_kernel.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
+#include "plugins/contact/ipc/kept.h"
 #include "plugins/contact/ipc/obstacle_way.h"
 
 namespace drape {
@@ -34,26 +35,6 @@ std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positi
   std::sort(close.begin(), close.end());
   return close;
 }
-
-/// What was made before, for as long as somebody has it.
-template <class Part>
-class Kept {
- public:
-  template <class IsIt, class Make>
-  std::shared_ptr<const Part> find_or_make(const IsIt& is_it, const Make& make) {
-    const std::lock_guard lock(busy_);
-    std::erase_if(all_, [](const auto& part) { return part.expired(); });
-    for (const auto& weak : all_)
-      if (auto part = weak.lock(); part && is_it(*part)) return part;
-    auto part = std::make_shared<const Part>(make());
-    all_.push_back(part);
-    return part;
-  }
-
- private:
-  std::mutex busy_;
-  std::vector<std::weak_ptr<const Part>> all_;
-};
 
 /// Found pairs along a way, and the names of what they are made of.
 class IpcSweep final : public ContactSweep {

@@ -1,9 +1,10 @@
 #include "plugins/contact/ipc/ipc.h"
 
-#include <mutex>
+#include <algorithm>
 
 #include "core/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
+#include "plugins/contact/ipc/kept.h"
 
 namespace drape {
 
@@ -42,23 +43,22 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {
-  // The last ones that were made, for as long as somebody has them: where something else has changed, trees
-  // and areas are the same.
-  static std::mutex busy;
-  static std::weak_ptr<const Obstacles> last;
-  std::vector<Obstacle> bodies;
-  for (const ObstacleParameters& p : p_.obstacles)
-    bodies.push_back(Obstacle::of(p, static_cast<int>(bodies.size())));
-  const std::lock_guard lock(busy);
-  obstacles_ = last.lock();
-  if (!obstacles_ || !(obstacles_->bodies == bodies))
-    obstacles_ = std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies)));
-  last = obstacles_;
+  static Kept<Obstacles> all;
+  int levels = 1;
+  for (const ObstacleParameters& p : p_.obstacles) levels = std::max(levels, p.cages.count + 1);
+  for (int level = 0; level < levels; ++level) {
+    std::vector<Obstacle> bodies;
+    for (const ObstacleParameters& p : p_.obstacles)
+      bodies.push_back(Obstacle::of(p, static_cast<int>(bodies.size()), level));
+    obstacles_.push_back(all.find_or_make([&](const Obstacles& made) { return made.bodies == bodies; },
+                                          [&] { return Obstacles::of(bodies); }));
+  }
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
   if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
-  return std::make_unique<BoundIpc>(p_, obstacles_, level, material);
+  return std::make_unique<BoundIpc>(p_, obstacles_[std::min<std::size_t>(level.index, obstacles_.size() - 1)],
+                                    level, material);
 }
 
 }  // namespace drape

@@ -32,7 +32,7 @@ class Ipc final : public ContactModel {
 
  private:
   Parameters p_;
-  std::shared_ptr<const Obstacles> obstacles_;
+  std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer ones meet the last
 };
 
 }  // namespace drape

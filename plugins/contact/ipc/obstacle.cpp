@@ -9,6 +9,37 @@
 namespace drape {
 namespace {
 
+using Frames = std::vector<std::shared_ptr<const SoundMesh>>;
+
+/// What differs between the triangles of two files; empty if nothing does.
+std::string difference(const Triangles& first, const Triangles& other) {
+  const auto in_each = [](Eigen::Index a, Eigen::Index b, const std::string& what) {
+    return "has " + std::to_string(b) + what + " and not " + std::to_string(a);
+  };
+  if (first.rows() != other.rows()) return in_each(first.rows(), other.rows(), " triangles");
+  for (Eigen::Index t = 0; t < first.rows(); ++t)
+    if (first.row(t) != other.row(t)) return "has other vertices in triangle " + std::to_string(t);
+  return "";
+}
+
+Frames read_animation(const ObstacleParameters& p) {
+  if (!p.file.empty()) throw std::runtime_error("\"file\" and \"animation\" exclude each other");
+  if (p.cages.count > 0)
+    throw std::runtime_error("\"cages\" are made around a mesh that keeps its form: leave out \"animation\"");
+  Frames frames;
+  for (const std::string& file : p.animation) {
+    frames.push_back(sound_mesh_of(file));
+    if (const auto what = difference(frames[0]->mesh.triangles, frames.back()->mesh.triangles); !what.empty())
+      throw std::runtime_error(file + " " + what + " as " + p.animation[0] +
+                               " has; all files of an animation must have the same triangles");
+  }
+  const int last = static_cast<int>(frames.size()) - 1;
+  if (p.frame > last)
+    throw std::runtime_error("its animation ends with frame " + std::to_string(last) +
+                             ", the number of files less 1");
+  return frames;
+}
+
 Form form_of(const ObstacleParameters& p) {
   Form form;
   form.pose = {p.scale, p.rotate, p.translate};
@@ -18,8 +49,11 @@ Form form_of(const ObstacleParameters& p) {
   } else if (p.shape == "sphere") {
     form.frames = {unit_sphere(p.subdivisions)};
     form.stretch.setConstant(p.radius);
+  } else if (!p.animation.empty()) {
+    form.frames = read_animation(p);
+    form.frame = p.frame;
   } else if (p.file.empty()) {
-    throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
+    throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read, or \"animation\"");
   } else {
     form.frames = {sound_mesh_of(p.file)};
   }
@@ -44,6 +78,15 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .at_most(8)
       .meaning(
           "shape sphere: how often an icosahedron's triangles are cut in four, 20 · 4^subdivisions in all");
+  d.add("animation", &P::animation)
+      .path()
+      .meaning("in place of file: meshes with the same triangles, which it takes the form of in turn");
+  d.add("frame", &P::frame)
+      .unit("1")
+      .at_least(0)
+      .meaning("which mesh of the animation it is, from 0 and linear in between; for a schedule to change");
+  d.add_section("cages", &P::cages)
+      .meaning("closed surfaces around it that coarse levels of the cloth meet in its place");
   d.add("scale", &P::scale).unit("1").above(0).meaning("factor on its coordinates, the first of its moves");
   d.add("rotate", &P::rotate)
       .unit("degree")
@@ -68,13 +111,19 @@ Positions Form::own_places(double frame) const {
   return places;
 }
 
-Obstacle Obstacle::of(const ObstacleParameters& p, int number) {
+Obstacle Obstacle::of(const ObstacleParameters& p, int number, int level) {
   Obstacle body{p.name.empty() ? p.shape + " " + std::to_string(number) : p.name, {}, p.friction, {}};
   try {
     body.form = form_of(p);
+    if (p.cages.count > 0) {
+      const auto cages = cages_of(body.form.frames[0], p.cages);
+      if (level < p.cages.count)
+        body.form.frames = {std::shared_ptr<const SoundMesh>(cages, (*cages)[level].get())};
+    }
   } catch (const std::exception& error) {
     throw std::runtime_error("obstacle \"" + body.name + "\": " + error.what());
   }
+  if (level < p.cages.count) body.name += " (cage " + std::to_string(level) + ")";
   const Form& form = body.form;
   body.mesh.triangles = form.frames[0]->mesh.triangles;
   body.mesh.vertices = (form.own_places(form.frame) * form.pose.linear().transpose()).rowwise() +

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/plugin/parameters.h"
+#include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/sound_mesh.h"
 #include "plugins/contact/ipc/surface.h"
 
@@ -16,6 +18,9 @@ struct ObstacleParameters {
   Eigen::Vector3d size{1, 1, 1};
   double radius = 0.5;
   int subdivisions = 4;
+  std::vector<std::string> animation;
+  double frame = 0;
+  CageParameters cages;
   double scale = 1;
   Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
   std::optional<double> friction;
@@ -56,7 +61,9 @@ struct Obstacle {
     return !form.frames.empty() && form == other.form && name == other.name && friction == other.friction;
   }
   /// Throws std::runtime_error naming the obstacle if the file cannot be read or the mesh is not sound.
-  static Obstacle of(const ObstacleParameters& parameters, int number);
+  /// On a level that has a cage, it is that.
+  static Obstacle of(const ObstacleParameters& parameters, int number,
+                     int level = std::numeric_limits<int>::max());
 };
 
 /// All obstacles of a scene as one surface.

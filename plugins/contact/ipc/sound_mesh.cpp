@@ -1,13 +1,12 @@
 #include "plugins/contact/ipc/sound_mesh.h"
 
 #include <functional>
-#include <map>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 
 #include "core/mesh/check.h"
 #include "core/mesh/io.h"
+#include "plugins/contact/ipc/kept.h"
 
 namespace drape {
 namespace {
@@ -59,20 +58,23 @@ TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
   return fine;
 }
 
-/// What `make` makes, unless somebody still has what it made before.
+struct Named {
+  std::string key;
+  SoundMesh sound;
+};
+
+/// What `make` makes, once.
 std::shared_ptr<const SoundMesh> kept(const std::string& key, const std::function<TriangleMesh()>& make) {
-  static std::mutex busy;
-  static std::map<std::string, std::weak_ptr<const SoundMesh>> all;
-  const std::lock_guard lock(busy);
-  std::erase_if(all, [](const auto& entry) { return entry.second.expired(); });
-  if (const auto found = all.find(key); found != all.end())
-    if (auto mesh = found->second.lock()) return mesh;
-  auto made = std::make_shared<SoundMesh>();
-  made->mesh = make();
-  if (const auto faults = check_mesh(made->mesh); !faults.empty()) throw std::runtime_error(faults[0]);
-  made->topology = Topology::of(made->mesh.triangles, static_cast<int>(made->mesh.vertices.rows()));
-  all[key] = made;
-  return made;
+  static Kept<Named> all;
+  const auto found = all.find_or_make([&](const Named& named) { return named.key == key; },
+                                      [&] {
+                                        Named named{key, {make(), {}}};
+                                        const TriangleMesh& mesh = named.sound.mesh;
+                                        named.sound.topology = Topology::of(
+                                            mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+                                        return named;
+                                      });
+  return {found, &found->sound};
 }
 
 }  // namespace
@@ -83,7 +85,12 @@ std::shared_ptr<const SoundMesh> sound_mesh_of(const fs::path& file) {
   const auto size = fs::file_size(file, none);
   const auto changed = fs::last_write_time(file, none).time_since_epoch().count();
   key += " " + std::to_string(size) + " " + std::to_string(changed);
-  return kept(key, [&] { return read_mesh(file); });
+  return kept(key, [&] {
+    TriangleMesh mesh = read_mesh(file);
+    if (const auto faults = check_mesh(mesh); !faults.empty())
+      throw std::runtime_error(file.string() + ": " + faults[0]);
+    return mesh;
+  });
 }
 
 std::shared_ptr<const SoundMesh> unit_box() { return kept("box", box); }

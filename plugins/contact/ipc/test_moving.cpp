@@ -3,8 +3,11 @@
 
 #include "core/mesh/generate.h"
 #include "core/mesh/intersections.h"
+#include "core/mesh/io.h"
+#include "core/numerics/parallel.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_way.h"
+#include "tests/support/command.h"
 
 using namespace drape;
 using Vector = Eigen::Vector3d;
@@ -199,6 +202,112 @@ TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn")
   }
 }
 
+TEST_CASE("ipc: a sequence of meshes, linear in between, none of whose forms passes through the cloth") {
+  const Scratch folder;
+  const TriangleMesh flat = grid({0.3, 0.3}, 6, 6, Diagonals::one_way);
+  Bodies from(1);
+  from[0].name = "wing";
+  for (int k = 0; k < 4; ++k) {  // up, down, and up again further to the side
+    TriangleMesh mesh = flat;
+    for (int v = 0; v < mesh.vertices.rows(); ++v)
+      mesh.vertices(v, 2) = 0.4 * (k % 2 ? -1 : 1) * (mesh.vertices(v, 0) - 0.15) - 0.02;
+    mesh.vertices.col(0).array() += 0.01 * k - 0.15;
+    mesh.vertices.col(1).array() -= 0.15;
+    from[0].animation.push_back((folder / ("wing" + std::to_string(k) + ".ply")).string());
+    write_mesh(from[0].animation.back(), mesh);
+  }
+  from[0].frame = 1.25;
+  const Positions between = Obstacle::of(from[0], 0).mesh.vertices;
+  from[0].frame = 1;
+  Positions expected = 0.75 * Obstacle::of(from[0], 0).mesh.vertices;
+  from[0].frame = 2;
+  expected += 0.25 * Obstacle::of(from[0], 0).mesh.vertices;
+  CHECK((between - expected).norm() < 1e-14);
+
+  const Level level = square(9, 0.2);
+  Positions x = level.rest.vertices;
+  const auto at = [&](double frame) {
+    Bodies bodies = from;
+    bodies[0].frame = frame;
+    return bound(bodies, level);
+  };
+  // The wing's right end goes up in frames 1 to 2 and down in frames 2 to 3: highest in between.
+  x.col(2).setConstant(0.005);
+  x.col(0).array() += 0.12;
+  const double blocked = max_move(*at(1), *at(3), x).fraction;
+  CHECK(blocked > 0.1);
+  CHECK(blocked < 0.5);
+  for (int k = 0; k <= 500; ++k) CHECK(at(1 + 2 * blocked * k / 500)->intersections(x).empty());
+  CHECK(!at(1 + 2 * blocked + 0.05)->intersections(x).empty());
+  CHECK(max_move(*at(1), *at(1 + 2 * blocked), x).fraction == 1);
+  CHECK(at(3)->intersections(x).empty());
+  x.col(2).setConstant(0.05);
+  CHECK(max_move(*at(1), *at(3), x).fraction == 1);
+  CHECK(max_move(*at(3), *at(0), x).fraction == 1);
+  CHECK(max_move(*at(0.5), *at(0.5), x).fraction == 1);
+
+  ObstacleParameters wrong = from[0];
+  wrong.frame = 3.5;
+  CHECK_THROWS_WITH(Obstacle::of(wrong, 0),
+                    Catch::Contains("\"wing\"") && Catch::Contains("ends with frame 3"));
+  wrong.frame = 0;
+  wrong.animation.push_back((folder / "other.ply").string());
+  TriangleMesh other = flat;
+  std::swap(other.triangles(7, 0), other.triangles(7, 1));
+  std::swap(other.triangles(7, 1), other.triangles(7, 2));
+  write_mesh(wrong.animation.back(), other);
+  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("other.ply has other vertices in triangle 7"));
+  write_mesh(wrong.animation.back(), grid({0.3, 0.3}, 5, 6, Diagonals::one_way));
+  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("other.ply has 40 triangles and not 50"));
+  wrong.file = "x.obj";
+  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("exclude each other"));
+}
+
+TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of threads") {
+  const Level level = square(41, 0.4);
+  Positions x = wavy(level, 0.01);
+  Bodies from = {box({0.2, 0.2, 0.1}, {0, 0, -0.5}), box({0.05, 0.05, 0.1}, {0.1, 0, -0.12})}, to;
+  from[1].name = "mover";
+  ObstacleParameters ball;
+  ball.name = "ball";
+  ball.shape = "sphere";
+  ball.radius = 0.05;
+  ball.subdivisions = 3;
+  ball.translate = {-0.1, 0, -0.2};
+  from.push_back(ball);
+  // The first and the last touch almost, and stay.
+  from[0].translate.z() = x.col(2).minCoeff() - 0.05 - 1e-5;
+  const double up = max_move(*bound({ball}, level),
+                             *bound(
+                                 [&] {
+                                   Bodies high = {ball};
+                                   high[0].translate.z() += 0.3;
+                                   return high;
+                                 }(),
+                                 level),
+                             x)
+                        .fraction;
+  from[2].translate.z() += 0.3 * up;
+  to = from;
+  to[1].translate += Vector(0.02, 0.01, 0.3);
+  to[1].rotate = {20, 10, 40};
+  std::vector<double> fractions;
+  for (const int threads : {1, 2, 3}) {
+    set_thread_count(threads);
+    const StepLimit limit = max_move(*bound(from, level), *bound(to, level), x);
+    CHECK_THAT(limit.by, Catch::Contains("mover"));
+    fractions.push_back(limit.fraction);
+  }
+  set_thread_count(0);
+  CHECK(fractions[0] > 0.1);
+  CHECK(fractions[0] < 0.9);
+  CHECK(fractions[1] == fractions[0]);
+  CHECK(fractions[2] == fractions[0]);
+  to = from;
+  to[1].translate.z() -= 1;
+  CHECK(max_move(*bound(from, level), *bound(to, level), x).fraction == 1);
+}
+
 TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
   const Level level = square(3, 0.2);
   ObstacleParameters ball;
@@ -238,6 +347,18 @@ TEST_CASE("ipc: anchors of what is touched are carried along") {
     }
   }
   CHECK(carried >= 10);
+  // So a plate that slides below the cloth drags it by μ times the normal force.
+  to = from;
+  to[0].translate.x() += 0.01;
+  anchors = x;
+  const auto slid = bound(to, level, 0.3);
+  dynamic_cast<const MovableObstacles&>(*slid).carry(*before, x, anchors);
+  const auto set = slid->sweep(x, x)->build(x);
+  Positions push = Positions::Zero(x.rows(), 3), drag = push;
+  set->add_gradient(x, push);
+  set->friction(anchors)->add_gradient(x, drag);
+  CHECK(-push.col(2).sum() > 0);
+  CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
   // Without friction there is nothing to carry.
   anchors = x;
   dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, anchors);

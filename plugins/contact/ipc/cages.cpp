@@ -1,0 +1,158 @@
+#include "plugins/contact/ipc/cages.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/alpha_wrap_3.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/mesh/check.h"
+#include "core/mesh/intersections.h"
+#include "plugins/contact/ipc/kept.h"
+
+namespace drape {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using SurfaceMesh = CGAL::Surface_mesh<Point>;
+
+Point point(const TriangleMesh& mesh, int v) {
+  return {mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
+}
+
+SoundMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
+  std::vector<Point> points;
+  std::vector<std::array<std::size_t, 3>> faces;
+  for (int v = 0; v < mesh.vertices.rows(); ++v) points.push_back(point(mesh, v));
+  for (const auto& t : mesh.triangles.rowwise())
+    faces.push_back(
+        {static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
+  SurfaceMesh wrapped;
+  CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped);
+  wrapped.collect_garbage();
+  SoundMesh sound;
+  sound.mesh.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
+  for (const auto v : wrapped.vertices()) {
+    const Point& p = wrapped.point(v);
+    sound.mesh.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
+  }
+  sound.mesh.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
+  Eigen::Index row = 0;
+  for (const auto f : wrapped.faces()) {
+    int k = 0;
+    for (const auto v : wrapped.vertices_around_face(wrapped.halfedge(f)))
+      sound.mesh.triangles(row, k++) = static_cast<int>(v.idx());
+    ++row;
+  }
+  if (const auto faults = check_mesh(sound.mesh); !faults.empty()) throw std::runtime_error(faults[0]);
+  sound.topology = Topology::of(sound.mesh.triangles, static_cast<int>(sound.mesh.vertices.rows()));
+  return sound;
+}
+
+/// A vertex of each connected part.
+std::vector<int> one_of_each_part(const SoundMesh& mesh) {
+  const int n = static_cast<int>(mesh.mesh.vertices.rows());
+  std::vector<char> seen(n, 0);
+  std::vector<int> found, queue;
+  for (int v = 0; v < n; ++v) {
+    if (seen[v]) continue;
+    found.push_back(v);
+    seen[v] = 1;
+    queue = {v};
+    while (!queue.empty()) {
+      const int at = queue.back();
+      queue.pop_back();
+      for (const int* next = mesh.topology.vertex_vertices.begin(at);
+           next != mesh.topology.vertex_vertices.end(at); ++next)
+        if (!seen[*next]) seen[*next] = 1, queue.push_back(*next);
+    }
+  }
+  return found;
+}
+
+struct Cages {
+  std::shared_ptr<const SoundMesh> mesh;
+  CageParameters parameters;
+  std::vector<std::shared_ptr<const SoundMesh>> wraps;
+};
+
+Cages make_cages(const std::shared_ptr<const SoundMesh>& mesh, const CageParameters& p) {
+  const Positions& x = mesh->mesh.vertices;
+  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  Cages cages{mesh, p, std::vector<std::shared_ptr<const SoundMesh>>(p.count)};
+  double size = diagonal;
+  for (int k = p.count - 1; k >= 0; --k, size *= p.growth) {
+    const bool innermost = k == p.count - 1;
+    const std::shared_ptr<const SoundMesh>& inner = innermost ? mesh : cages.wraps[k + 1];
+    cages.wraps[k] = std::make_shared<const SoundMesh>(wrap(inner->mesh, p.alpha * size, p.offset * size));
+    if (const std::string fault = why_not_around(*cages.wraps[k], *inner); !fault.empty())
+      throw std::runtime_error("cage " + std::to_string(k) + " is not around " +
+                               (innermost ? "its mesh" : "cage " + std::to_string(k + 1)) + ": " + fault +
+                               "; change the cages' alpha or offset");
+  }
+  return cages;
+}
+
+}  // namespace
+
+void CageParameters::declare(Declaration<CageParameters>& d) {
+  using P = CageParameters;
+  d.add("count", &P::count)
+      .at_least(0)
+      .at_most(8)
+      .meaning("how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
+  d.add("alpha", &P::alpha)
+      .unit("1")
+      .above(0)
+      .below(1)
+      .meaning(
+          "of the innermost cage, in diagonals of the mesh's box: smaller holes are closed, and triangles "
+          "are about as large")
+      .source("Portaneri et al. 2022");
+  d.add("offset", &P::offset)
+      .unit("1")
+      .above(0)
+      .below(1)
+      .meaning("likewise, how far it is from the mesh")
+      .source("Portaneri et al. 2022");
+  d.add("growth", &P::growth)
+      .unit("1")
+      .at_least(1)
+      .meaning("alpha and offset of a cage over those of the next finer one");
+}
+
+std::string why_not_around(const SoundMesh& outer, const SoundMesh& inner) {
+  if ((outer.topology.edge_triangles.col(1).array() < 0).any()) return "it is not closed";
+  const auto text = [](const TrianglePair& pair, const std::string& what) {
+    return "its triangle " + std::to_string(pair.first) + what + std::to_string(pair.second);
+  };
+  if (const auto pairs = self_intersections(outer.mesh); !pairs.empty())
+    return text(pairs[0], " intersects its triangle ");
+  if (const auto pairs = intersections(outer.mesh, inner.mesh); !pairs.empty())
+    return text(pairs[0], " intersects that one's triangle ");
+  SurfaceMesh surface;
+  for (int v = 0; v < outer.mesh.vertices.rows(); ++v) surface.add_vertex(point(outer.mesh, v));
+  for (const auto& t : outer.mesh.triangles.rowwise())
+    surface.add_face(SurfaceMesh::Vertex_index(t[0]), SurfaceMesh::Vertex_index(t[1]),
+                     SurfaceMesh::Vertex_index(t[2]));
+  const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+  for (const int v : one_of_each_part(inner))
+    if (side(point(inner.mesh, v)) != CGAL::ON_BOUNDED_SIDE)
+      return "that one's vertex " + std::to_string(v) + " is outside";
+  return "";
+}
+
+std::shared_ptr<const std::vector<std::shared_ptr<const SoundMesh>>> cages_of(
+    const std::shared_ptr<const SoundMesh>& mesh, const CageParameters& parameters) {
+  static Kept<Cages> all;
+  const auto cages =
+      all.find_or_make([&](const Cages& made) { return made.mesh == mesh && made.parameters == parameters; },
+                       [&] { return make_cages(mesh, parameters); });
+  return {cages, &cages->wraps};
+}
+
+}  // namespace drape

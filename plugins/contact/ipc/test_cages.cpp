@@ -1,0 +1,104 @@
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/intersections.h"
+#include "core/mesh/io.h"
+#include "plugins/contact/ipc/bound_ipc.h"
+#include "tests/support/command.h"
+
+using namespace drape;
+using Vector = Eigen::Vector3d;
+using Catch::Contains;
+
+namespace {
+
+/// A ball with horns: not convex, and in two parts.
+TriangleMesh horned() {
+  TriangleMesh mesh = unit_sphere(3)->mesh;
+  for (int v = 0; v < mesh.vertices.rows(); ++v)
+    mesh.vertices.row(v) *=
+        0.1 * (1 + 0.4 * std::sin(5 * mesh.vertices(v, 0)) * std::sin(4 * mesh.vertices(v, 1)));
+  const TriangleMesh second = unit_box()->mesh;
+  const int n = static_cast<int>(mesh.vertices.rows()), m = static_cast<int>(mesh.triangles.rows());
+  mesh.vertices.conservativeResize(n + 8, 3);
+  mesh.vertices.bottomRows(8) = (0.05 * second.vertices).rowwise() + Eigen::RowVector3d(0.3, 0, 0);
+  mesh.triangles.conservativeResize(m + 12, 3);
+  mesh.triangles.bottomRows(12) = second.triangles.array() + n;
+  return mesh;
+}
+
+ObstacleParameters with_cages(const std::string& file, int count) {
+  ObstacleParameters p;
+  p.name = "horned";
+  p.file = file;
+  p.cages.count = count;
+  return p;
+}
+
+SoundMesh sound(const TriangleMesh& mesh) {
+  return {mesh, Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()))};
+}
+
+SoundMesh placed(SoundMesh mesh, double scale, const Eigen::RowVector3d& move) {
+  mesh.mesh.vertices = (scale * mesh.mesh.vertices).rowwise() + move;
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("ipc: cages are around each other, and moved as their obstacle is") {
+  const Scratch folder;
+  const std::string file = (folder / "horned.ply").string();
+  write_mesh(file, horned());
+  ObstacleParameters p = with_cages(file, 3);
+  p.scale = 2;
+  p.rotate = {10, 20, 30};
+  p.translate = {1, 2, 3};
+  std::vector<Obstacle> levels;
+  for (int l = 0; l < 5; ++l) levels.push_back(Obstacle::of(p, 0, l));
+  const Obstacle itself = Obstacle::of(p, 0);
+  CHECK(levels[0].name == "horned (cage 0)");
+  CHECK(levels[3].name == "horned");
+  CHECK(levels[3].mesh.vertices == itself.mesh.vertices);
+  CHECK(levels[4].mesh.vertices == itself.mesh.vertices);
+  for (int l = 0; l < 3; ++l) {
+    INFO(l);
+    CHECK(why_not_around(sound(levels[l].mesh), sound(levels[l + 1].mesh)).empty());
+    CHECK(!why_not_around(sound(levels[l + 1].mesh), sound(levels[l].mesh)).empty());
+    if (l < 2) CHECK(levels[l].mesh.triangles.rows() < levels[l + 1].mesh.triangles.rows());
+  }
+  CHECK(levels[0].form.frames == Obstacle::of(p, 0, 0).form.frames);  // not made twice
+}
+
+TEST_CASE("ipc: what is not around is said") {
+  const SoundMesh ball = *unit_sphere(2), box = *unit_box();
+  CHECK(why_not_around(ball, placed(box, 0.5, {0, 0, 0})).empty());
+  CHECK_THAT(why_not_around(ball, placed(box, 0.5, {3, 0, 0})), Contains("vertex 0 is outside"));
+  CHECK_THAT(why_not_around(ball, placed(box, 0.5, {0.9, 0, 0})),
+             Contains(" intersects that one's triangle "));
+  CHECK_THAT(why_not_around(placed(box, 0.5, {0, 0, 0}), ball), Contains("vertex 0 is outside"));
+  CHECK_THAT(why_not_around(sound(grid({1, 1}, 3, 3, Diagonals::one_way)), ball), Contains("not closed"));
+  // One part inside, one outside.
+  CHECK_THAT(why_not_around(placed(*unit_sphere(3), 0.2, {0, 0, 0}), sound(horned())),
+             Contains("is outside"));
+  // Touching is not around.
+  CHECK(!why_not_around(box, placed(box, 0.5, {0.25, 0, 0})).empty());
+}
+
+TEST_CASE("ipc: a level of the cloth meets the cage of its number") {
+  const Scratch folder;
+  const std::string file = (folder / "horned.ply").string();
+  write_mesh(file, horned());
+  Ipc::Parameters p;
+  p.obstacles = {with_cages(file, 1)};
+  const Ipc model(p);
+  const TriangleMesh cloth = grid({0.1, 0.1}, 4, 4, Diagonals::one_way);
+  const auto on = [&](int level) { return model.bind(Level::of(level, cloth), Material())->obstacles()[0]; };
+  const TriangleMesh itself = horned();
+  CHECK(on(1).vertices == itself.vertices);
+  CHECK(on(5).vertices == itself.vertices);
+  CHECK(why_not_around(sound(on(0)), sound(itself)).empty());
+  p.obstacles[0].animation = {"a.ply"};
+  p.obstacles[0].file.clear();
+  CHECK_THROWS_WITH(Ipc(p), Contains("\"horned\"") && Contains("leave out \"animation\""));
+}
