@@ -213,9 +213,10 @@ class Newton {
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
     if (s.analysis.count == 0) return;
-    BlockMatrix matrix(f_.restore(s.pattern, origin_));
-    cholesky_.restore(matrix.pattern, s.analysis);
+    const std::shared_ptr<const BlockPattern> pattern = f_.restore(s.pattern, origin_);
+    cholesky_.restore(pattern, s.analysis);
     if (s.factor_values.empty()) return;
+    BlockMatrix matrix(pattern);
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
     kept_ = std::move(matrix);
