@@ -8,6 +8,7 @@
 # make test     build and run every test
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
+# make hard     the hard cases (docs/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
 # make pictures the README's pictures, from the run that `make bench` has left in results/bench_sphere
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
@@ -21,7 +22,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 scenes test data bench pictures format fix-format lint clean
+.PHONY: all setup configure build demo table1 scenes test data bench hard pictures format fix-format lint clean
 all: build
 
 setup:
@@ -60,6 +61,11 @@ bench: build
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
 	-$(BUILD)/bin/drape run configs/sphere.yaml --out results/bench_sphere --overwrite
 	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square results/bench_sphere
+
+HARD = $(sort $(basename $(notdir $(wildcard configs/hard/sweeps/*.yaml))))
+hard: build
+	@ended=0; for s in $(HARD); do $(BUILD)/bin/drape sweep configs/hard/sweeps/$$s.yaml --out results/hard/$$s || ended=$$?; \
+	  [ $$ended -lt 128 ] || exit $$ended; done; configs/hard/write_tables $(BUILD)/bin/drape results/hard benchmarks/results; exit $$ended
 
 pictures: build
 	@tests/browser/install $(BUILD)/tests/browser

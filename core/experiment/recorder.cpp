@@ -223,6 +223,18 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   return entry;
 }
 
+void Recorder::change_finished(const ChangeRow& r, const Positions&) {
+  method_entry()["changes"].push_back({{"level", r.level},
+                                       {"change", r.change},
+                                       {"time", r.time},
+                                       {"steps", r.steps},
+                                       {"newton_iterations", r.iterations},
+                                       {"seconds", r.seconds},
+                                       {"energy", finite_or_null(r.energy)},
+                                       {"force_residual", finite_or_null(r.force_residual)},
+                                       {"farthest_missing", r.farthest_missing}});
+}
+
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
   const TriangleMesh mesh{r.x, scene_.hierarchy.levels[r.level].rest.triangles};

@@ -45,6 +45,9 @@ class RunObserver : public Observer {
     progress_.iteration(row, x);
     if (view_) view_->iteration(row, x);
   }
+  void change_finished(const ChangeRow& row, const Positions& x) override {
+    recorder_.change_finished(row, x);
+  }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
     if (resumable_) session_.level_finished(result);

@@ -1,6 +1,8 @@
 #include "core/model/level_model.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace drape {
@@ -136,10 +138,21 @@ double LevelModel::external_force_norm(const Positions& x) const {
   return sum;
 }
 
+namespace {
+
+/// Without a load, forces of this part of the weight that the cloth would have are still some.
+constexpr double least_part_of_weight = 1e-3;
+
+}  // namespace
+
 double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
   if (const double load = load_norm(x); load > 0) return load;
-  if (const double held = norm_where(gradient, fixed_, 1); held > 0) return held;
-  return 1;
+  double weight = 0;
+  for (int i = 0; i < masses_.size(); ++i)
+    if (!fixed_[i]) weight += masses_[i] * masses_[i];
+  constexpr double gravity = 9.81;  // [m/s²]
+  return std::max({norm_where(gradient, fixed_, 1), least_part_of_weight * gravity * std::sqrt(weight),
+                   std::numeric_limits<double>::min()});
 }
 
 double LevelModel::force_residual(const Positions& x) const {

@@ -71,7 +71,8 @@ class LevelModel {
   double force_residual(const Positions& x) const;
 
   /// What a gradient's norm is divided by: the external load, or without one the forces that hold the
-  /// fixed vertices, or without those 1 N.
+  /// fixed vertices, which are none where the cloth comes to lie without a force: then a thousandth of its
+  /// weight.
   double residual_scale(const Positions& x, const Positions& gradient) const;
 
  private:

@@ -8,6 +8,7 @@
 #include "core/model/stretch_limit.h"
 #include "core/numerics/block_cholesky.h"
 #include "core/numerics/hard_positions.h"
+#include "core/numerics/newton_state.h"
 
 namespace drape {
 
@@ -251,9 +252,9 @@ class Newton {
   void change_conditions(bool settled) {
     const bool begins = conditions_->made();
     if (begins && (settled || conditions_->change() > 0)) report_change();
+    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     const BoundContacts before = model_.contacts();
     limit_ = conditions_->advance(result_.level, result_.x);
-    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     begun_at_ = middle();
     times_held_up_ = settled && limit_.fraction < held_up ? times_held_up_ + 1 : 0;
     f_.model_changed(before, result_.x);

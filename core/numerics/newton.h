@@ -2,7 +2,6 @@
 
 #include "core/model/objective.h"
 #include "core/model/solver.h"
-#include "core/numerics/newton_state.h"
 #include "core/numerics/stopwatch.h"
 #include "core/plugin/parameters.h"
 

@@ -1,5 +1,6 @@
 #include "core/numerics/progression.h"
 
+#include "core/numerics/newton_state.h"
 #include "core/numerics/safe_refinement.h"
 
 namespace drape {

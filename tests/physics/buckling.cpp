@@ -12,7 +12,7 @@ double load_ratio(double angle) { return std::pow(2 * std::comp_ellint_1(std::si
 
 /// The column under `ratio` times its critical load π² EI / 4 L², from a start with smooth noise of 1 % of L.
 Solved column(int cells, double ratio) {
-  Strip strip{cells};
+  BeamStrip strip{cells};
   strip.stiffness = 100;
   strip.membrane_modulus = 1e9;
   const double load =

@@ -16,13 +16,13 @@ const std::string newton =
     "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n";
 
 /// A strip whose weight gives Γ = ρ g d L³ / D_eff.
-Strip strip_for_gamma(int cells, double gamma) {
-  Strip strip{cells};
+BeamStrip strip_for_gamma(int cells, double gamma) {
+  BeamStrip strip{cells};
   strip.stiffness = strip.density * gravity * strip.thickness * std::pow(strip.length, 3) / gamma;
   return strip;
 }
 
-Solved under_weight(const Strip& strip, const std::string& bending) {
+Solved under_weight(const BeamStrip& strip, const std::string& bending) {
   Solved s = solve_yaml(strip.yaml("[neo_hookean, " + bending + ", gravity]", newton));
   INFO(s.levels.back().message << "; " << strip.cells << " cells, " << bending);
   REQUIRE(s.levels.back().outcome == Outcome::converged);
@@ -67,7 +67,7 @@ TEST_CASE("A cantilever bends under a load at its end", "[physics]") {
     const double exact = cantilever_under_end_load(alpha).deflection;
     std::vector<double> errors;
     for (int cells : refinements) {
-      Strip strip{cells};
+      BeamStrip strip{cells};
       strip.stiffness = 100;
       const double load = alpha * strip.stiffness * strip.width() / std::pow(strip.length, 2);
       const Solved s =
@@ -93,7 +93,7 @@ TEST_CASE("Both bending models give linear beam theory at small angles", "[physi
   row("%8s %12s %18s", "cells", "hinge", "quadratic_bending");
   std::vector<double> errors[2];
   for (int cells : {5, 10, 20}) {
-    Strip strip = strip_for_gamma(cells, gamma);
+    BeamStrip strip = strip_for_gamma(cells, gamma);
     strip.slenderness = 0.1;  // narrower cells make quadratic_bending's rounding errors too large here
     double deflection[2];
     for (int model : {0, 1}) {

@@ -98,7 +98,7 @@ double relaxed_stiffness(double r) {
 
 /// D_eff / k of a strip under a small load at its end.
 double strip_stiffness(double r) {
-  Strip strip{20};
+  BeamStrip strip{20};
   strip.stiffness = 100;  // were it 6 k
   strip.slenderness = r;
   const double alpha = 0.01, load = alpha * strip.stiffness * strip.width();

@@ -22,7 +22,7 @@ inline std::string text(const Eigen::Vector3d& v) {
 /// The hinges of column j carry the curvature from half a cell before it to half a cell behind. With columns
 /// 0 and 1 pinned, the first hinges that can bend are those of column 1, and the clamp is at half a cell. The
 /// free end is column `cells`, so (cells - 1/2) cells make the free length.
-struct Strip {
+struct BeamStrip {
   int cells;
   double length = 1;              ///< L, free [m]
   double density = 1000;          ///< ρ [kg/m³]

@@ -44,14 +44,17 @@ double potential(double slid) {
   return mu * (q < 1 ? slid * q * (1 - q / 3) : slid - slip / 3);
 }
 
-/// Passes everything on to a real model; how often it was asked.
+/// Passes everything on to a real model; how often it was asked, and for the last time along which way.
 struct Counted : BoundContact {
   std::unique_ptr<BoundContact> real;
   mutable int sweeps = 0;
+  mutable Positions begin, end;
 
   explicit Counted(std::unique_ptr<BoundContact> contact) : real(std::move(contact)) {}
   std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override {
     ++sweeps;
+    begin = x0;
+    end = x1;
     return real->sweep(x0, x1);
   }
   std::vector<Touch> intersections(const Positions& x) const override { return real->intersections(x); }
@@ -390,4 +393,34 @@ methods: {newton: {}}
   CHECK(s.levels.back().message ==
         "energy or forces at the start are not finite: triangle 0, stretched to 1.2 (limit 1.1) and 7 more; "
         "start nearer to the rest shape, or raise the limit");
+}
+
+TEST_CASE("Contacts are found again along the way that they were found along, with the same anchors") {
+  const Level level = sheet();
+  std::vector<std::unique_ptr<BoundContact>> models;
+  models.push_back(std::make_unique<Counted>(std::move(bound(level, {a_floor()})[0])));
+  const auto& floor = static_cast<const Counted&>(*models[0]);
+
+  const Positions x0 = at(level, 0, 0.5 * range), x1 = at(level, 3e-4, 0.4 * range);
+  ActiveContacts contacts(models);
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  contacts.barrier(x1);
+  contacts.begin_step(x1);
+  REQUIRE(contacts.has_friction());
+  const ContactMemory memory = contacts.memory();
+  CHECK(memory.sweep_begin == x0);
+  CHECK(memory.sweep_end == x1);
+  CHECK(memory.anchors != x1);  // it slid further than it sticks
+
+  contacts.max_step(x1, x1);
+  ActiveContacts again(models);
+  again.restore(memory, x1);
+  CHECK(floor.begin == x0);  // on which the order of the contacts may depend
+  CHECK(floor.end == x1);
+  const Positions x2 = at(level, 4e-4, 0.4 * range);
+  REQUIRE(contacts.friction(x2) > 0);
+  CHECK(again.friction(x2) == contacts.friction(x2));
+  CHECK(again.barrier(x1) == contacts.barrier(x1));
+  CHECK(again.memory().anchors == memory.anchors);
 }

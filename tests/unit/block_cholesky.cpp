@@ -257,3 +257,50 @@ TEST_CASE("The work of a full matrix is a third of the cube of its size") {
   CHECK(cholesky.flops() == Approx(n * (n + 1) * (2 * n + 1) / 6));  // a column of k entries takes k²
   CHECK(cholesky.flops() == Approx(n * n * n / 3).epsilon(0.01));
 }
+
+TEST_CASE("An analysis made again from what it was made from goes on to the same bits") {
+  // A shell that gets more and more far neighbours, so that its order is kept for a while and then given up.
+  const int side = 12, n = side * side;
+  std::vector<char> fixed(n, 0);
+  fixed[5] = fixed[77] = 1;
+  std::vector<BlockMatrix> matrices;
+  for (int k = 0; k < 8; ++k) {
+    std::vector<Stencils> stencils = {shell(side, 2)};
+    if (k > 0) stencils.push_back(tangle(n, 25 * k, 1));
+    matrices.emplace_back(BlockPattern::of(n, stencils));
+    for (int i = 0; i < n; ++i)
+      for (int b = matrices[k].pattern->row_start[i]; b < matrices[k].pattern->row_start[i + 1]; ++b)
+        for (int e = 0; e < 9; ++e)
+          matrices[k].block(b)[e] =
+              matrices[k].pattern->columns[b] == i ? (e % 4 == 0 ? 500 : 0.25) : 1.0 / (1 + b % 7 + e);
+  }
+  const Positions right = Positions::Random(n, 3);
+  const auto solution = [&](BlockCholesky& cholesky, const BlockMatrix& matrix) {
+    cholesky.analyse(matrix.pattern, fixed);
+    REQUIRE(cholesky.factorise(matrix, Eigen::VectorXd::Ones(n)));
+    Positions x;
+    Positions r = right;
+    r.row(5).setZero(), r.row(77).setZero();
+    cholesky.solve(r, x);
+    return x;
+  };
+  BlockCholesky whole;
+  std::vector<BlockCholesky::Analysis> analyses;
+  std::vector<Positions> solutions;
+  int kept = 0, found = 0;
+  for (const BlockMatrix& matrix : matrices) {
+    solutions.push_back(solution(whole, matrix));
+    analyses.push_back(whole.analysis());
+    (analyses.back().order.empty() ? found : kept) += 1;
+  }
+  REQUIRE(kept > 1);
+  REQUIRE(found > 1);
+  for (std::size_t k = 0; k < matrices.size(); ++k) {
+    BlockCholesky again;
+    again.restore(matrices[k].pattern, analyses[k]);
+    CHECK_FALSE(again.has_factor());
+    for (std::size_t i = k; i < matrices.size(); ++i) REQUIRE(solution(again, matrices[i]) == solutions[i]);
+    CHECK(again.analyses() == whole.analyses());
+    CHECK(again.flops() == whole.flops());
+  }
+}

@@ -38,6 +38,10 @@ Checkpoint full() {
   s.so_far.force_residual = std::nan("");
   s.decrements = {1, 2, 3};
   s.held_by = "ball";
+  s.positions = {{3}, 1e4, 0.5, 2, false, true};
+  s.changed_at = {4, 5, 6};
+  s.begun_at = {7, 8, 9};
+  s.so_far.conditions = {3, {0.5, 0.25}};
   s.contacts = {Positions::Random(9, 3), Positions::Random(9, 3), Positions::Random(9, 3), 2};
   s.pattern.room = {{{0, 4}, {2, 7}}, {0, 3}};
   s.pattern.smooth_alone = false;
@@ -109,7 +113,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 1; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 3; resume it with the drape that wrote it");
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/mesh/generate.h"
+#include "core/numerics/newton_state.h"
 
 using namespace drape;
 
@@ -253,6 +254,24 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
   }
 }
 
+TEST_CASE(
+    "A cloth that comes to lie without a force is at equilibrium, though nothing is left to measure by") {
+  Case c;
+  const std::vector<HeldVertex> held = {{0, c.level.rest.vertices.row(0), 0}};
+  c.centres = c.level.rest.vertices;  // the held vertex is in its place
+  c.centres.bottomRows(15).array() += 0.01;
+  c.centres(0, 2) += 1e-12;  // but for a rounding
+  const LevelModel model(c.level, Material(), {{"bowl", std::make_shared<Wells>(c.centres, 10, 0)}}, held);
+  PlainObjective objective(model);
+  NewtonParameters p;
+  p.max_steps = 300;
+  const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
+  CAPTURE(r.message, r.steps);
+  CHECK(r.outcome == Outcome::converged);
+  const double weight = 9.81 * model.masses().tail(15).norm();
+  CHECK(model.residual_scale(r.x, Positions::Zero(16, 3)) == Approx(1e-3 * weight));
+}
+
 TEST_CASE("A minimisation goes on from the state at any of its steps to the same bits", "[newton]") {
   /// Keeps every state that it is offered.
   struct Keeping : Silent {
@@ -271,7 +290,7 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
         p.decrement_tolerance = 1e-7;
         const Positions centres = c.level.rest.vertices.array() + 0.05;
         const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
-                               {});
+                               {{0, c.level.rest.vertices.row(0), 0}});
         Keeping whole;
         PlainObjective first(model);
         const LevelResult expected =

@@ -102,3 +102,30 @@ TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone
   const Springs again({{2, 9}, {0, 5}});
   CHECK(dense(chain.with(again)) == chain.springs.expected(Chain::n) + again.expected(Chain::n));
 }
+
+TEST_CASE("from the room that it had, a matrix grows and forgets as if it had gone on", "[sum_matrix]") {
+  // Contacts that come, slide, lie idle for long and come again.
+  std::vector<Springs> passing;
+  for (int k = 0; k < 60; ++k)
+    passing.emplace_back(k % 25 < 3   ? std::vector<std::pair<int, int>>{{2, 9 - k % 3}}
+                         : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
+                                      : std::vector<std::pair<int, int>>{});
+  Chain whole;
+  std::vector<SumMatrix::Room> rooms;
+  std::vector<std::vector<int>> columns;
+  std::size_t most = 0, shrunk = 0;
+  for (const Springs& springs : passing) {
+    rooms.push_back(whole.sum.room());
+    columns.push_back(whole.with(springs).pattern->columns);
+    shrunk += columns.back().size() < most;
+    most = std::max(most, columns.back().size());
+  }
+  REQUIRE(shrunk > 0);
+  for (std::size_t k = 0; k < passing.size(); ++k) {
+    Chain again;
+    const auto pattern = again.sum.restore(again.pattern, rooms[k]);
+    if (k > 0) CHECK(pattern->columns == columns[k - 1]);
+    for (std::size_t i = k; i < passing.size(); ++i)
+      REQUIRE(again.with(passing[i]).pattern->columns == columns[i]);
+  }
+}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the meshes beside it: flat squares of side 1 that are hard to compute on."""
+"""Writes the meshes beside it: flat squares of side 1 that are hard to compute on, folded starts, sharp obstacles."""
 
 from math import cos, pi, sin
 from pathlib import Path
@@ -9,7 +9,7 @@ HERE = Path(__file__).resolve().parent
 
 def write(name, vertices, triangles):
     lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
-    lines += [f"{x:.9g} {y:.9g} 0" for x, y in vertices]
+    lines += [" ".join(f"{c:.9g}" for c in (*v, 0)[:3]) for v in vertices]
     lines += ["3 " + " ".join(map(str, t)) for t in triangles]
     (HERE / f"{name}.off").write_text("\n".join(lines) + "\n")
 
@@ -80,5 +80,46 @@ def faulty(n=9):
     write("no_area", moved, triangles)
 
 
-for make in (valence_3, valence_20, huge_and_tiny, faulty):
+def needle(sides=8, height=0.15, radius=0.005):
+    """A cone with its point at the origin."""
+    ring = [(radius * cos(2 * pi * k / sides), radius * sin(2 * pi * k / sides), -height) for k in range(sides)]
+    sheath = [(0, k + 1, (k + 1) % sides + 1) for k in range(sides)]
+    write("needle", [(0, 0, 0)] + ring, sheath + [(1, k + 1, k) for k in range(2, sides)])
+
+
+def layers(n=10, columns=31, rows=6, length=0.5, width=0.08, gap=0.004):
+    """A strip, flat, and folded to and fro in n layers: the same triangles."""
+    vertices, triangles = grid(2)
+    at = lambda i, j: j * columns + i
+    triangles = []
+    for j in range(rows - 1):
+        for i in range(columns - 1):
+            triangles += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    flat = [(length * i / (columns - 1), width * j / (rows - 1)) for j in range(rows) for i in range(columns)]
+    write("strip", flat, triangles)
+    leaf = length / n
+    run = (leaf**2 - gap**2) ** 0.5  # slanting, so that nothing is stretched
+    per = (columns - 1) // n
+    folded = []
+    for j in range(rows):
+        for i in range(columns):
+            k, part = divmod(i, per)
+            t = part / per
+            x = run * (t if k % 2 == 0 else 1 - t)
+            folded.append((x, width * j / (rows - 1), gap * (k + t)))
+    write("strip_folded", folded, triangles)
+
+
+def sleeve(around=24, along=13, radius=0.06, length=0.4):
+    """A tube about the z axis, open at both ends."""
+    at = lambda i, j: j * around + i % around
+    vertices = [(radius * cos(2 * pi * i / around), radius * sin(2 * pi * i / around), length * j / (along - 1)) for j in range(along) for i in range(around)]
+    triangles = []
+    for j in range(along - 1):
+        for i in range(around):
+            triangles += [(at(i, j), at(i + 1, j), at(i + 1, j + 1)), (at(i, j), at(i + 1, j + 1), at(i, j + 1))]
+    write("sleeve", vertices, triangles)
+
+
+for make in (valence_3, valence_20, huge_and_tiny, faulty, needle, layers, sleeve):
     make()

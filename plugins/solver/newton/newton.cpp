@@ -1,5 +1,6 @@
 #include "core/numerics/newton.h"
 
+#include "core/numerics/newton_state.h"
 #include "core/plugin/plugin.h"
 
 namespace drape {

@@ -1,3 +1,4 @@
+#include "core/numerics/newton_state.h"
 #include "core/numerics/progression.h"
 #include "core/plugin/plugin.h"
 #include "proxy_objective.h"

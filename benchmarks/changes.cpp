@@ -1,0 +1,132 @@
+// What a change of a parameter costs on the level that a designer looks at: the sphere scene's level 0 of 4,
+// at equilibrium, and how it gets to the next one. PCS against the direct coarse model, in one run:
+//
+//     drape_bench_changes [RESULT.json [SIDE]]
+//
+// SIDE is the number of level 0's vertices along a side (40).
+
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/experiment/experiment.h"
+#include "core/experiment/machine.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/loader.h"
+#include "core/version.h"
+
+using namespace drape;
+
+namespace {
+
+/// What changes, one after another, and stays so.
+struct Change {
+  const char* what;
+  const char* set;
+  double from, to;
+};
+constexpr Change changes[] = {
+    {"bending modulus / 10", "material.bending_modulus", 8e5, 8e4},
+    {"bending modulus back", "material.bending_modulus", 8e4, 8e5},
+    {"thickness x 1.5", "material.thickness", 3.18e-4, 4.77e-4},
+    {"density x 2", "material.density", 472.6, 945.2},
+    {"membrane modulus x 4", "material.membrane_modulus", 8e4, 3.2e5},
+    {"Poisson ratio 0.243 to 0.4", "material.poisson_ratio", 0.243, 0.4},
+};
+
+/// Each parameter jumps when its changes come.
+std::string schedule() {
+  std::string keys;
+  for (const Change& first : changes) {
+    if (keys.find(first.set) != std::string::npos) continue;
+    std::string at = "0", to = ConfigNode::of(first.from).scalar;
+    for (std::size_t k = 0; k < std::size(changes); ++k)
+      if (std::string(changes[k].set) == first.set) {
+        at += ", " + std::to_string(k + 1);
+        to += ", " + ConfigNode::of(changes[k].to).scalar;
+      }
+    keys += (keys.empty() ? "" : ", ") + ("{set: " + std::string(first.set)) + ", between: jump, at: [" + at +
+            "], to: [" + to + "]}";
+  }
+  return "{steps: " + std::to_string(std::size(changes)) + ", settle: true, keys: [" + keys + "]}";
+}
+
+/// Keeps what level 0 came to, and ends the method with it.
+class LevelZero : public Observer {
+ public:
+  std::vector<ChangeRow> rows;
+  void change_finished(const ChangeRow& row, const Positions&) override {
+    if (row.level == 0) rows.push_back(row);
+  }
+  void level_finished(const LevelResult& result) override {
+    ended_ = true;
+    if (result.outcome != Outcome::converged) std::cerr << "level 0: " << result.message << "\n";
+  }
+  bool stop_requested() override { return ended_; }
+
+ private:
+  bool ended_ = false;
+};
+
+int run(const char* result_file, const std::string& side) {
+  Registry registry;
+  load_plugins(registry, plugin_directories());
+  ConfigErrors errors;
+  const auto e = read_experiment(std::string(DRAPE_BENCHMARKS_DIR) + "/../configs/sphere.yaml",
+                                 {{"schedule", schedule()}, {"cloth.columns", side}, {"cloth.rows", side}},
+                                 registry, errors);
+  const auto scene = e ? build_scene(*e, errors) : nullptr;
+  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  if (!scene) return 2;
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  std::printf("%-28s %-9s %8s %12s %10s %14s\n", "change", "method", "steps", "ms a step", "seconds",
+              "energy [J]");
+  for (std::size_t k = 0; k <= std::size(changes); ++k) rows.push_back({});
+  std::vector<std::vector<ChangeRow>> all;
+  const char* methods[] = {"pcs", "newton"};
+  for (const char* name : methods)
+    for (const auto& [own, solver] : e->methods)
+      if (own == name) {
+        LevelZero level;
+        solver->solve(scene->problem(), level);
+        all.push_back(level.rows);
+      }
+  for (std::size_t k = 0; k <= std::size(changes); ++k) {
+    const char* what = k == 0 ? "from the start" : changes[k - 1].what;
+    rows[k]["change"] = what;
+    for (std::size_t m = 0; m < all.size(); ++m) {
+      if (k >= all[m].size()) continue;
+      const ChangeRow& r = all[m][k];
+      const double ms = 1e3 * r.seconds / std::max(r.steps, 1);
+      std::printf("%-28s %-9s %8d %12.2f %10.3f %14.8f\n", what, methods[m], r.steps, ms, r.seconds,
+                  r.energy);
+      rows[k][methods[m]] = {{"steps", r.steps},     {"newton_iterations", r.iterations},
+                             {"seconds", r.seconds}, {"milliseconds_a_step", ms},
+                             {"energy", r.energy},   {"force_residual", r.force_residual}};
+    }
+  }
+  if (result_file)
+    std::ofstream(result_file) << nlohmann::ordered_json(
+                                      {{"commit", commit()},
+                                       {"cpu", cpu_name()},
+                                       {"threads", thread_count()},
+                                       {"vertices", scene->hierarchy.levels[0].vertex_count()},
+                                       {"levels", e->parameters.levels},
+                                       {"rows", rows}})
+                                      .dump(1)
+                               << "\n";
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc > 1 ? argv[1] : nullptr, argc > 2 ? argv[2] : "40");
+  } catch (const std::exception& error) {
+    std::cerr << "error: " << error.what() << "\n";
+    return 2;
+  }
+}

@@ -1,0 +1,235 @@
+#include <catch2/catch.hpp>
+
+#include "core/model/stretch_limit.h"
+#include "tests/support/elastica.h"
+#include "tests/support/strip.h"
+
+using namespace drape;
+
+namespace {
+
+/// Keeps what a level came to under each of its conditions, and counts what it must not do on the way.
+struct Changes : Observer {
+  explicit Changes(const Solved& solved) : s(solved) {}
+  const Solved& s;
+  std::vector<ChangeRow> rows;
+  std::vector<Positions> states;
+  std::size_t intersections = 0;
+
+  void change_finished(const ChangeRow& row, const Positions& x) override {
+    rows.push_back(row);
+    states.push_back(x);
+  }
+  void iteration(const IterationRow& row, const Positions& x) override {
+    for (const auto& contact : s.scene->models[row.level]->contacts())
+      intersections += contact->intersections(x).size();
+  }
+};
+
+void run(Solved& s, Changes& changes) {
+  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), changes);
+}
+
+}  // namespace
+
+TEST_CASE("A strip that is lifted by its end while its weight grows follows the cantilever's tables",
+          "[physics]") {
+  const int cells = 40;
+  BeamStrip strip{cells};
+  strip.stiffness = strip.density * 9.81 * strip.thickness;  // Γ = 1 under full weight
+  Solved s = scene_from(strip.yaml("[neo_hookean, hinge, gravity]", R"(
+newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}
+schedule:
+  steps: 6
+  settle: true
+  keys:
+    - {set: energies.gravity.acceleration, at: [0, 3, 4, 5, 6], between: linear,
+       to: [[0, 0, -0.981], [0, 0, -9.81], [0, 0, -49.05], [0, 0, -196.2], [0, 0, -981]]}
+    - {set: pins.0.move, at: [0, 6], to: [[0, 0, 0], [0.3, -0.2, 0.9]]}
+)"));
+  Changes changes(s);
+  run(s, changes);
+  INFO(s.levels[0].message);
+  REQUIRE(s.levels[0].outcome == Outcome::converged);
+  REQUIRE(changes.rows.size() == 7);
+  row("\nTip angle [degrees] of a cantilever that is moved while its weight grows");
+  row("%8s %12s %12s %8s", "gamma", "hinge", "exact", "steps");
+  const std::pair<int, double> loads[] = {{0, 0.1}, {3, 1}, {4, 5}, {5, 20}, {6, 100}};
+  for (const auto& [change, gamma] : loads) {
+    const double exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
+    s.levels[0].x = changes.states[change];
+    const double angle = tip_angle(s, cells);
+    row("%8g %12.5f %12.5f %8d", gamma, angle, exact, changes.rows[change].steps);
+    CHECK(std::abs(angle - exact) < 0.02);
+    // The clamp is where it was told to be, to the bit.
+    const Eigen::Vector3d moved = Eigen::Vector3d(0.3, -0.2, 0.9) * (change / 6.0);
+    CHECK((changes.states[change].row(0) - s.rest().row(0) - moved.transpose()).norm() < 1e-15);
+  }
+}
+
+TEST_CASE("A ribbon that is twisted forth and back slowly has the energy that it had", "[physics]") {
+  Solved s = scene_from(R"(
+name: ribbon
+cloth: {shape: rectangle, size: [0.4, 0.05], triangulation: criss_cross, columns: 33, rows: 5}
+levels: 1
+material: {density: 400, thickness: 4e-4, membrane_modulus: 1e6, bending_modulus: 1e6, poisson_ratio: 0.3}
+start: {perturbation: 1e-3}
+pins:
+  - {region: box, lower: [-1, -1, -1], upper: [0.013, 1, 1], move: [0, 0, 0]}
+  - {region: box, lower: [0.387, -1, -1], upper: [1, 1, 1], move: [-0.02, 0, 0], about: [0.4, 0.025, 0]}
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-5}
+schedule:
+  steps: 12
+  settle: true
+  keys:
+    - {set: pins.1.turn, at: [0, 1, 2], to: [[0, 0, 0], [60, 0, 0], [0, 0, 0]]}
+methods: {newton: {}}
+)");
+  Changes changes(s);
+  run(s, changes);
+  INFO(s.levels[0].message);
+  REQUIRE(s.levels[0].outcome == Outcome::converged);
+  REQUIRE(changes.rows.size() == 13);
+  row("\nEnergy [J] of a ribbon, its end turned");
+  for (const ChangeRow& r : changes.rows)
+    row("%8.3f %14.8f %6d steps", 60 * (r.time <= 1 ? r.time : 2 - r.time), r.energy, r.steps);
+  const double before = changes.rows.front().energy, twisted = changes.rows[6].energy;
+  REQUIRE(std::abs(twisted - before) > 0.1 * std::abs(before));
+  CHECK(std::abs(changes.rows.back().energy - before) < 0.01 * std::abs(before));
+}
+
+TEST_CASE("Handles carry the weight that is on them, as far as they give way", "[physics]") {
+  const double stiffness = 2000;
+  for (const int levels : {1, 2}) {
+    Solved s = scene_from(R"(
+name: carried
+cloth: {shape: square, side: 0.2, columns: 9, rows: 9}
+levels: )" + std::to_string(levels) +
+                          R"(
+handles:
+  - {region: nearest, point: [0, 0, 0], stiffness: 2000}
+  - {region: nearest, point: [0.2, 0, 0], stiffness: 2000}
+  - {region: nearest, point: [0, 0.2, 0], stiffness: 2000}
+  - {region: nearest, point: [0.2, 0.2, 0], stiffness: 2000}
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-7}
+methods: {pcs: {}}
+)");
+    Changes changes(s);
+    run(s, changes);
+    REQUIRE(s.levels.back().outcome == Outcome::converged);
+    const Level& coarsest = s.scene->hierarchy.levels[0];
+    const double area_density = s.model().material().area_density();
+    double pull = 0;
+    for (const int v : {0, 8, 72, 80})
+      pull += stiffness * area_density * coarsest.vertex_area[v] * (s.rest()(v, 2) - s.x()(v, 2));
+    CHECK(pull == Approx(9.81 * area_density * 0.04).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("A pin that is dragged into an obstacle stops at it and is named", "[physics]") {
+  Solved s = scene_from(R"(
+name: dragged
+cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
+levels: 2
+start: {translate: [-0.25, -0.25, 0.22]}
+pins:
+  - {region: nearest, point: [0.222, 0.222, 0], move: [-0.25, -0.25, 0.22]}
+  - {region: nearest, point: [0, 0, 0]}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, {type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.2}]}]
+schedule:
+  steps: 3
+  keys: [{set: pins.0.move, at: [0, 1], to: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
+methods: {pcs: {}}
+)");
+  Changes changes(s);
+  run(s, changes);
+  REQUIRE(s.levels.size() == 2);
+  for (const LevelResult& level : s.levels) {
+    CHECK(level.outcome == Outcome::infeasible);
+    CHECK_THAT(level.message,
+               Catch::StartsWith("pin 0 stopped 0.0") &&
+                   Catch::Contains(" short of its place (vertex 44), held by cloth triangle ") &&
+                   Catch::EndsWith("and ball: sphere; the rest of the cloth is at equilibrium"));
+    CHECK(level.force_residual <= 1e-3);
+    const double above = level.x.row(44).norm() - 0.2;
+    CHECK(above > 0);
+    CHECK(above < 1e-3);
+  }
+  CHECK(changes.intersections == 0);
+}
+
+TEST_CASE("Loads, materials and limits that jump leave a state that is allowed", "[physics]") {
+  Solved s = scene_from(R"(
+name: jumps
+cloth: {shape: square, side: 0.4, columns: 10, rows: 10}
+levels: 2
+start: {perturbation: 1e-3}
+pins: [{region: nearest, point: [0, 0, 0]}, {region: nearest, point: [0.4, 0, 0]}]
+energies: [neo_hookean, hinge, gravity, {type: strain_limit, limit: 1.2}]
+contact: ipc
+schedule:
+  steps: 6
+  settle: true
+  keys:
+    - {set: energies.gravity.acceleration, between: jump, at: [0, 1, 2], to: [[0, 0, -9.81], [0, 0, -981], [0, 0, -9.81]]}
+    - {set: material.membrane_modulus, between: jump, at: [0, 3], to: [8e4, 80]}
+    - {set: material.bending_modulus, between: jump, at: [0, 3], to: [8e4, 80]}
+    - {set: energies.strain_limit.limit, between: jump, at: [0, 4], to: [1.2, 1.05]}
+    - {set: material.thickness, between: jump, at: [0, 5], to: [3e-4, 1e-3]}
+    - {set: material.density, between: jump, at: [0, 6], to: [470, 100]}
+methods: {pcs: {}}
+)");
+  Changes changes(s);
+  run(s, changes);
+  for (const LevelResult& level : s.levels) {
+    INFO(level.message);
+    CHECK(level.outcome == Outcome::converged);
+  }
+  CHECK(changes.intersections == 0);
+  REQUIRE(changes.rows.size() == 8);  // of level 0, and the last ones of level 1
+  CHECK(s.model().material().density == 100);
+  const auto& limit = dynamic_cast<const StretchLimited&>(*s.model().limits()[0]);
+  CHECK(limit.limit() == 1.05);
+  CHECK(limit.beyond(s.x()).empty());
+}
+
+TEST_CASE("A floor that rises under a cloth lifts it, and one that closes in is stopped", "[physics]") {
+  const auto scene = [](const std::string& keys) {
+    return scene_from(R"(
+name: lifted
+cloth: {shape: square, side: 0.3, columns: 10, rows: 10}
+levels: 1
+start: {translate: [-0.15, -0.15, 0.05], perturbation: 1e-4}
+energies: [neo_hookean, hinge, gravity]
+contact:
+  - {type: ipc, friction: 0.3, obstacles: [{name: plate, shape: box, size: [0.4, 0.4, 0.01], translate: [0, 0, 0.04]}]}
+  - {type: shapes, shapes: [{name: lid, shape: box, size: [0.4, 0.4, 0.01], centre: [0, 0, 0.5]}]}
+schedule:
+  steps: 10
+  keys: [)" + keys + R"(]
+methods: {newton: {}}
+)");
+  };
+  Solved s =
+      scene("{set: contact.ipc.obstacles.plate.translate, at: [0, 1], to: [[0, 0, 0.04], [0.05, 0, 0.24]]}");
+  Changes changes(s);
+  run(s, changes);
+  INFO(s.levels[0].message);
+  REQUIRE(s.levels[0].outcome == Outcome::converged);
+  CHECK(changes.intersections == 0);
+  const Eigen::RowVector3d middle = s.x().colwise().mean();
+  CHECK(middle.z() == Approx(0.245).margin(1.5e-3));
+  // It is carried sideways too, by friction, but for what slipped while it was lifted off the start.
+  CHECK(middle.x() > 0.03);
+
+  Solved closing =
+      scene("{set: contact.shapes.shapes.lid.centre, at: [0, 1], to: [[0, 0, 0.5], [0, 0, 0.045]]}");
+  Changes on_the_way(closing);
+  run(closing, on_the_way);
+  CHECK(closing.levels[0].outcome == Outcome::infeasible);
+  CHECK_THAT(closing.levels[0].message, Catch::Contains("cannot be reached") && Catch::Contains("lid: box"));
+  CHECK(on_the_way.intersections == 0);
+}
