@@ -38,12 +38,12 @@ void fields(A& a, ContactMemory& m) {
 
 template <class A>
 void fields(A& a, Objective::PatternMemory& m) {
-  a(m.room.blocks, m.room.idle, m.smooth_alone);
+  a(m.room.blocks, m.room.idle, m.smooth_alone, m.gone);
 }
 
 template <class A>
 void fields(A& a, BlockCholesky::Analysis& m) {
-  a(m.fixed, m.order, m.ordered_flops, m.count);
+  a(m.fixed, m.given, m.order, m.ordered_flops, m.count);
 }
 
 template <class A>
@@ -98,7 +98,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 2;
+constexpr std::uint32_t format = 3;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -78,6 +78,9 @@ constexpr double near_equilibrium = 10;
 /// and it is given up.
 constexpr double held_up = 1e-3;
 constexpr int most_held_up = 20;
+/// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
+/// not widen.
+constexpr double pinched = 1e-7;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
@@ -123,9 +126,12 @@ class Newton {
         const bool settled = !hard_.pulling() && converged();
         const bool changing = conditions_ && !conditions_->finished();
         if (settled && !changing) return finish_settled();
-        if (changing && !hard_.pulling() && (settled || !conditions_->settles())) {
+        // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
+        // widens them twofold.
+        const bool at_once = changing && !conditions_->settles() && conditions_->made();
+        if (changing && !hard_.pulling() && (settled || at_once)) {
           change_conditions(settled);
-          if (times_held_up_ == most_held_up)
+          if (times_held_up_ >= most_held_up)
             return finish(Outcome::infeasible, "the conditions of pseudo-time " + brief(conditions_->time()) +
                                                    " cannot be reached" + held());
         }
@@ -207,9 +213,10 @@ class Newton {
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
     if (s.analysis.count == 0) return;
-    BlockMatrix matrix(f_.restore(s.pattern, origin_));
-    cholesky_.restore(matrix.pattern, s.analysis);
+    const std::shared_ptr<const BlockPattern> pattern = f_.restore(s.pattern, origin_);
+    cholesky_.restore(pattern, s.analysis);
     if (s.factor_values.empty()) return;
+    BlockMatrix matrix(pattern);
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
     kept_ = std::move(matrix);
@@ -256,7 +263,8 @@ class Newton {
     const BoundContacts before = model_.contacts();
     limit_ = conditions_->advance(result_.level, result_.x);
     begun_at_ = middle();
-    times_held_up_ = settled && limit_.fraction < held_up ? times_held_up_ + 1 : 0;
+    const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
+    times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;
     f_.model_changed(before, result_.x);
     age_ = p_.refresh;
     bring_held_vertices();

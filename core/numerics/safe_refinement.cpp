@@ -14,7 +14,7 @@ namespace {
 constexpr double pull = 1e-3;
 /// The descent ends where the force left over is this part of what it was.
 constexpr double tolerance = 0.05;
-constexpr int most_steps = 20, most_rounds = 8;
+constexpr int most_steps = 20, most_rounds = 12;
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
 class PullToTarget : public Objective {
@@ -177,7 +177,6 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     newton.force_tolerance = tolerance;
     newton.max_steps = most_steps;
     Quiet quiet(observer);
-    int outside = objective.divide(refined.x);
     for (int round = 0; round < most_rounds; ++round) {
       LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, quiet});
       refined.x = std::move(result.x);
@@ -185,8 +184,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       const int left = objective.divide(refined.x);
       refined.cut_short = result.outcome == Outcome::cancelled;
       if (left == 0 || refined.cut_short) break;
-      if (left >= outside || result.iterations == 0) objective.loosen(refined.x);
-      outside = left;
+      objective.loosen(refined.x);
     }
     if (!refined.cut_short) refined.fault = name_outside(model, refined.x);
     if (!refined.fault.empty())
