@@ -141,7 +141,8 @@ class Newton {
         if (result_.steps - changed_at_.steps == p_.max_steps)
           return finish(Outcome::out_of_steps,
                         "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
-                            "; force residual " + brief(result_.force_residual));
+                            "; force residual " + brief(result_.force_residual) +
+                            (hard_.pulling() ? "; " + hard_.message(result_.x, limit_.by) : ""));
         begin_step();
       }
       if (observer_.checkpoint_due()) observer_.checkpoint(state());

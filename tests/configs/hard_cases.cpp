@@ -1,0 +1,85 @@
+// The hard cases that take seconds, on their coarsest level alone; `make hard` runs all, on two levels and by
+// every method. And what a scene's size and place may change of its shape: nothing.
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+namespace {
+
+const fs::path source = DRAPE_SOURCE_DIR;
+
+/// A copy of the suite whose sweeps run Newton on one level.
+void copy_suite(const Scratch& folder) {
+  fs::copy(source / "configs/hard", folder / "hard", fs::copy_options::recursive);
+  for (const auto& entry : fs::directory_iterator(folder / "hard/sweeps")) {
+    std::string text = text_of(entry.path());
+    if (text.find("\nmethods:") != std::string::npos) continue;
+    const std::string set = "\nset: {";
+    if (const std::size_t at = text.find(set); at != std::string::npos)
+      text.insert(at + set.size(), "levels: 1, ");
+    else
+      text += "set: {levels: 1}\n";
+    std::ofstream(entry.path()) << text << "methods: [newton]\n";
+  }
+}
+
+/// The last state of a method, as it was before the scene was scaled, turned and moved.
+Positions shape_of(const fs::path& run, const std::string& method, double scale, const Eigen::Matrix3d& turn,
+                   const Eigen::Vector3d& away) {
+  const Positions x = read_mesh(run / ("levels/" + method + "_l1.ply")).vertices;
+  return ((x.rowwise() - away.transpose()) * turn) / scale;
+}
+
+}  // namespace
+
+TEST_CASE("hard cases end as they should") {
+  const Scratch folder;
+  copy_suite(folder);
+  int rows = 0;
+  for (const std::string theme : {"friction", "contact", "steps", "closing", "folded", "sleeve"}) {
+    drape_with("sweep hard/sweeps/" + theme + ".yaml --out " + theme, folder.path);
+    const Ended table = drape_with("table " + theme + " --format json", folder.path);
+    for (const Json& row : Json::parse(table.out)) {
+      INFO(theme << ": " << row.dump());
+      CHECK(row["pass"] == true);
+      ++rows;
+    }
+  }
+  CHECK(rows >= 30);
+}
+
+TEST_CASE("a scene comes to the same shape at any size, turned, and a kilometre away") {
+  const Scratch folder;
+  const std::string sweep = (source / "configs/hard/sweeps/same_shape.yaml").string();
+  REQUIRE(drape_with("sweep " + sweep + " --out out", folder.path).exit_code == 0);
+  const auto run = [&](const std::string& name) { return folder / ("out/runs/" + name + "/seed_1"); };
+  const double degree = M_PI / 180;
+  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d turned = (Eigen::AngleAxisd(30 * degree, Eigen::Vector3d::UnitZ()) *
+                                  Eigen::AngleAxisd(20 * degree, Eigen::Vector3d::UnitY()) *
+                                  Eigen::AngleAxisd(50 * degree, Eigen::Vector3d::UnitX()))
+                                     .toRotationMatrix();
+  const Eigen::Vector3d here(0, 0, 0), far_off(600, -800, 300);
+  for (const std::string method : {"pcs", "cascadic", "newton"}) {
+    const Positions expected = shape_of(run("as_it_is"), method, 1, none, here);
+    const auto difference = [&](const std::string& name, double scale, const Eigen::Matrix3d& turn,
+                                const Eigen::Vector3d& away) {
+      const Positions x = shape_of(run(name), method, scale, turn, away);
+      return std::sqrt((x - expected).rowwise().squaredNorm().mean());
+    };
+    CAPTURE(method);
+    // What the force tolerance of 1e-6 leaves: rounding may take one iteration more or less to it.
+    CHECK(difference("silk_of_1_mm", 1e-3, none, here) < 1e-6);
+    CHECK(difference("tarpaulin_of_100_m", 100, none, here) < 1e-6);
+    CHECK(difference("a_kilometre_away", 1, none, far_off) < 1e-6);
+    CHECK(difference("turned,_a_kilometre_away", 1, turned, far_off) < 1e-6);
+    CHECK(difference("a_kilometre_away", 1, none, here) > 1);  // that the comparison says something
+  }
+}
