@@ -3,7 +3,7 @@
 # make demo     run configs/sphere.yaml to 25K vertices by three methods; its figures beside the supplement's
 # make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
-# make scenes   run every scene of the supplement's Table 2 by PCS, or go on with it, and write one table of them (needs
+# make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
 #               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
 # make test     build and run every test
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)

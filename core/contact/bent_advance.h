@@ -37,9 +37,16 @@ double bent_advance(const Widest& widest, const Width& width, double kept, doubl
   return t;
 }
 
-/// The two looks at a way that is shortened where it must be: as a whole, it may use up all but
-/// `kept_of_whole` of what a shortened one keeps. So a way that ends where this said is not shortened again.
-inline constexpr double kept_of_whole = 0.1;
+/// What obstacles that move leave of a cloth's gaps to them, of which `smallest` is the smallest [m]: a tenth
+/// of the range, but not much less than there is. Were it a small part of that, an obstacle that presses on
+/// would take up whatever the cloth gains, and gaps would shrink to nothing.
+inline double gap_left_by_moves(double range, double smallest) {
+  return 0.8 * std::min(0.125 * range, smallest);
+}
+
+/// A way is looked at twice: allowed as a whole where it leaves this part of that, else shortened to where
+/// all of it is left. So what was shortened is not shortened again.
+inline constexpr double left_by_whole = 0.9;
 inline constexpr int rounds_of_whole = 4096, rounds_of_part = 256;
 
 }  // namespace drape

@@ -38,19 +38,19 @@ void fields(A& a, ContactMemory& m) {
 
 template <class A>
 void fields(A& a, Objective::PatternMemory& m) {
-  a(m.room.blocks, m.room.idle, m.smooth_alone);
+  a(m.room.blocks, m.room.idle, m.smooth_alone, m.gone);
 }
 
 template <class A>
 void fields(A& a, BlockCholesky::Analysis& m) {
-  a(m.fixed, m.order, m.ordered_flops, m.count);
+  a(m.fixed, m.given, m.order, m.ordered_flops, m.count);
 }
 
 template <class A>
 void fields(A& a, NewtonState& s) {
   a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.positions, s.changed_at, s.times_held_up, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age,
-    s.factor_shift, s.factor_values);
+    s.positions, s.changed_at, s.times_held_up, s.iterations_of_step, s.begun_at, s.contacts, s.pattern,
+    s.analysis, s.factor_age, s.factor_shift, s.factor_values);
 }
 
 template <class A>
@@ -98,7 +98,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 2;
+constexpr std::uint32_t format = 3;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -101,7 +101,7 @@ std::vector<FileMark> marks_of_files(const ConfigNode& saved, const fs::path& fo
   // Parameters that are paths are absolute there, but for the copies in the folder.
   const std::string& path = saved.scalar;
   if (path.starts_with('/') && fs::exists(path)) marks.push_back(mark_of(path));
-  for (const char* copy : {"rest/l0.ply", "reference.ply"})
+  for (const char* copy : {"rest/l0.ply", "reference.ply", "start.ply"})
     if (path == copy) marks.push_back(mark_of(folder / copy)), marks.back().path = copy;
   const auto add = [&](const ConfigNode& part) {
     for (FileMark& mark : marks_of_files(part, folder)) marks.push_back(std::move(mark));

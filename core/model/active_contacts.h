@@ -32,6 +32,8 @@ class ActiveContacts {
   /// The models, `before` until now, are those of other conditions, and the cloth is at x, within both: what
   /// friction remembers moves along with the obstacles.
   void models_changed(const BoundContacts& before, const Positions& x);
+  /// Whether that has happened since the last step.
+  bool carried() const { return carried_; }
   /// Renews the normal forces and tangents at x; displacements count from where they did.
   void renew_lag(const Positions& x);
 

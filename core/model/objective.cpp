@@ -29,10 +29,16 @@ const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) 
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> local = contacts_.energies(x);
   smooth_alone_ = local.empty() && limits_.empty() && !penalty_;
+  gone_ = false;
   if (smooth_alone_) return smooth;
   std::vector<const BoundEnergy*> lasting = limits_;
   if (penalty_) lasting.push_back(penalty_);
   return sum_.add(smooth, lasting, local, x, projection);
+}
+
+void Objective::forget_room() {
+  gone_ = gone_ || !(smooth_alone_ || sum_.room().blocks.empty());
+  sum_ = SumMatrix();
 }
 
 void Objective::model_changed(const BoundContacts& before, const Positions& x) {
@@ -44,7 +50,8 @@ std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, con
   const std::shared_ptr<const BlockPattern> smooth = smooth_matrix(x, Projection::none).pattern;
   const std::shared_ptr<const BlockPattern>& whole = sum_.restore(smooth, std::move(memory.room));
   smooth_alone_ = memory.smooth_alone;
-  return smooth_alone_ ? smooth : whole;
+  gone_ = memory.gone;
+  return gone_ ? nullptr : smooth_alone_ ? smooth : whole;
 }
 
 StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {

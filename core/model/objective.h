@@ -35,10 +35,11 @@ class Objective {
   struct PatternMemory {
     SumMatrix::Room room;
     bool smooth_alone = true;  ///< nothing was added to the smooth part
+    bool gone = false;         ///< what is minimised has changed since, so that it will not come again
   };
-  PatternMemory pattern_memory() const { return {sum_.room(), smooth_alone_}; }
-  /// Is as the objective of the same level that remembers this; the pattern of its last matrix. x is any
-  /// state of the domain.
+  PatternMemory pattern_memory() const { return {sum_.room(), smooth_alone_, gone_}; }
+  /// Is as the objective of the same level that remembers this; the pattern of its last matrix, null where
+  /// that is gone. x is any state of the domain.
   std::shared_ptr<const BlockPattern> restore(PatternMemory memory, const Positions& x);
 
   /// How far from x0 towards x1 every limit holds and nothing touches. Until the next call the function may
@@ -49,7 +50,7 @@ class Objective {
   void model_changed(const BoundContacts& before, const Positions& x);
   /// Adds an energy that is no part of the model, such as a pull to a place; null for none.
   void set_penalty(const BoundEnergy* penalty) {
-    if (penalty || penalty_) sum_ = SumMatrix();
+    if (penalty || penalty_) forget_room();
     penalty_ = penalty;
   }
   /// Whether the vertices that the model holds are to be brought to their places.
@@ -74,16 +75,18 @@ class Objective {
   /// Restricts or replaces the limits of the model.
   void set_limits(std::vector<const BoundEnergy*> limits) {
     limits_ = std::move(limits);
-    sum_ = SumMatrix();  // which keeps the places of the elements that limits had
+    forget_room();  // the sum keeps the places of the elements that limits had
   }
 
  private:
+  void forget_room();
+
   const LevelModel& model_;
   std::vector<const BoundEnergy*> limits_;
   const BoundEnergy* penalty_ = nullptr;
   ActiveContacts contacts_;
   SumMatrix sum_;
-  bool smooth_alone_ = true;
+  bool smooth_alone_ = true, gone_ = false;  // of the last matrix' pattern
 };
 
 /// E_l itself.

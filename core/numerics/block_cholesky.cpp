@@ -95,9 +95,8 @@ SupernodalTree tree_of(const cholmod_factor& factor) {
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
-  const bool same_vertices = pattern_ && fixed == fixed_ && pattern->rows() == pattern_->rows();
   std::vector<int> order;
-  if (same_vertices) order.swap(order_);
+  if (fixed == fixed_) order.swap(order_);
   pattern_ = std::move(pattern);
   fixed_ = fixed;
   ++analyses_;
@@ -108,7 +107,9 @@ void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysi
   pattern_ = std::move(pattern);
   fixed_ = std::move(analysis.fixed);
   analyses_ = analysis.count;
-  lay_out(std::move(analysis.order), std::numeric_limits<double>::infinity());
+  order_ = std::move(analysis.order);
+  has_factor_ = false;
+  if (pattern_) lay_out(std::move(analysis.given), std::numeric_limits<double>::infinity());
   ordered_flops_ = analysis.ordered_flops;
 }
 

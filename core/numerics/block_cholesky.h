@@ -16,10 +16,11 @@ namespace drape {
 /// until the pattern changes, the order until it has become a bad one for it or the fixed vertices change.
 class BlockCholesky {
  public:
-  /// What an analysis was made from: the same pattern with it gives the same layout.
+  /// What an analysis was made from, the same pattern with which gives the same layout, and came to.
   struct Analysis {
     std::vector<char> fixed;
-    std::vector<int> order;    ///< of the free vertices that was kept; empty where a new one was found
+    std::vector<int> given;    ///< order of the free vertices that was kept; empty where one was found
+    std::vector<int> order;    ///< that came of it
     double ordered_flops = 0;  ///< what it cost where it was found
     int count = 0;             ///< of analyses so far, this one with them; 0 where none was made
   };
@@ -35,8 +36,9 @@ class BlockCholesky {
   /// Solves with the last factor; n×3 right-hand side and solution, whose fixed rows are zero.
   void solve(const Positions& right_hand_side, Positions& solution);
 
-  Analysis analysis() const { return {fixed_, given_, ordered_flops_, analyses_}; }
-  /// Is laid out as after that analysis of the pattern, without a factor.
+  Analysis analysis() const { return {fixed_, given_, order_, ordered_flops_, analyses_}; }
+  /// Is laid out as after that analysis of the pattern, without a factor. Where the pattern is null, being
+  /// used no more, there is only the order to begin the next analysis from.
   void restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis);
 
   bool has_factor() const { return has_factor_; }

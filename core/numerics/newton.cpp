@@ -81,6 +81,9 @@ constexpr int most_held_up = 20;
 /// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
 /// not widen.
 constexpr double pinched = 1e-7;
+/// Newton iterations of a step after obstacles have moved: friction's anchors follow what it ends with, and
+/// one iteration overshoots.
+constexpr int carried_iterations = 30;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
@@ -184,6 +187,7 @@ class Newton {
     if (conditions_) s.so_far.conditions = conditions_->state();
     s.changed_at = changed_at_;
     s.times_held_up = times_held_up_;
+    s.iterations_of_step = iterations_of_step_;
     s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
     s.contacts = f_.contacts().memory();
     s.pattern = f_.pattern_memory();
@@ -210,13 +214,15 @@ class Newton {
     take_positions();
     changed_at_ = s.changed_at;
     times_held_up_ = s.times_held_up;
+    iterations_of_step_ = s.iterations_of_step;
     begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
     if (s.analysis.count == 0) return;
-    BlockMatrix matrix(f_.restore(s.pattern, origin_));
-    cholesky_.restore(matrix.pattern, s.analysis);
+    const std::shared_ptr<const BlockPattern> pattern = f_.restore(s.pattern, origin_);
+    cholesky_.restore(pattern, s.analysis);
     if (s.factor_values.empty()) return;
+    BlockMatrix matrix(pattern);
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
     kept_ = std::move(matrix);
@@ -366,6 +372,9 @@ class Newton {
 
   void begin_step() {
     origin_ = result_.x;
+    iterations_of_step_ = p_.iterations_per_step;
+    if (f_.contacts().carried() && f_.contacts().has_friction())
+      iterations_of_step_ = std::max(iterations_of_step_, carried_iterations);
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
     if (had_friction || f_.contacts().has_friction()) evaluate();
@@ -374,9 +383,9 @@ class Newton {
   /// One implicit step, once begun. False when no descent was found.
   bool step() {
     fresh_alpha_ = no_fresh_direction;
-    for (int k = 0; k < p_.iterations_per_step; ++k) {
+    for (int k = 0; k < iterations_of_step_; ++k) {
       if (!iterate(k)) return false;
-      if (converged() || (k + 1 < p_.iterations_per_step && step_is_solved())) break;
+      if (converged() || (k + 1 < iterations_of_step_ && step_is_solved())) break;
     }
     ++result_.steps;
     if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
@@ -616,6 +625,7 @@ class Newton {
   std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
   ChangeBegun changed_at_;   // when the change under way was begun
   int times_held_up_ = 0;
+  int iterations_of_step_ = 1;  // that the step may take
 
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of

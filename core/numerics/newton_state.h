@@ -31,6 +31,7 @@ struct NewtonState {
   std::string held_by;  ///< what kept the last step short, in words
   HardPositions::Memory positions;
   ChangeBegun changed_at;
+  int iterations_of_step = 1;        ///< that the step to come may take
   int times_held_up = 0;             ///< in turn, the change of conditions under way
   std::array<double, 3> begun_at{};  ///< middle of the free vertices, at the start or the last change [m]
   ContactMemory contacts;

@@ -397,9 +397,9 @@ methods: {newton: {}}
 
 TEST_CASE("Contacts are found again along the way that they were found along, with the same anchors") {
   const Level level = sheet();
-  BoundContacts models;
-  models.push_back(std::make_shared<Counted>(a_floor()->bind(level, Material())));
-  const auto& floor = dynamic_cast<const Counted&>(*models[0]);
+  const auto counted = std::make_shared<Counted>(a_floor()->bind(level, Material()));
+  const Counted& floor = *counted;
+  const BoundContacts models = {counted};
 
   const Positions x0 = at(level, 0, 0.5 * range), x1 = at(level, 3e-4, 0.4 * range);
   ActiveContacts contacts(models);

@@ -45,7 +45,7 @@ Checkpoint full() {
   s.contacts = {Positions::Random(9, 3), Positions::Random(9, 3), Positions::Random(9, 3), 2};
   s.pattern.room = {{{0, 4}, {2, 7}}, {0, 3}};
   s.pattern.smooth_alone = false;
-  s.analysis = {{0, 1, 0}, {2, 0}, 123, 4};
+  s.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
   s.factor_values = {1, 2, 3};
   c.first_level = 1;
   c.own_start = Positions::Random(4, 3);

@@ -152,7 +152,8 @@ TEST_CASE("a path that leads nowhere is told") {
   CHECK(set("list: [x]", "list.1", "2") ==
         "--set list.1: \"1\" is not an index of a list of 1, counted from 0");
   CHECK(set("list: [x]", "list.k", "2") ==
-        "--set list.k: \"k\" is neither an index of a list of 1, counted from 0, nor the type or name of an item");
+        "--set list.k: \"k\" is neither an index of a list of 1, counted from 0, nor the type or name of an "
+        "item");
   CHECK(set("a: 1", "a", "[1") == "--set a:1:1: not valid YAML: end of sequence flow not found");
 }
 

@@ -185,7 +185,7 @@ std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positio
 StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) const {
   const Obstacles& from = *own_kind(before).obstacles_;
   if (&from == obstacles_.get()) return {};
-  return ObstacleWay(from, *obstacles_).max_move(cloth_, x, barrier_.range, keep_, broad_phase_);
+  return ObstacleWay(from, *obstacles_).max_move(cloth_, x, barrier_.range, broad_phase_);
 }
 
 void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& anchors) const {

@@ -196,53 +196,74 @@ Leg ObstacleWay::leg(double begin, double end) const {
   return leg;
 }
 
-StepLimit ObstacleWay::max_move(const Surface& cloth, const Positions& x, double range, double keep,
+/// What is looked for, and what was found on the last leg.
+struct ObstacleWay::Search {
+  Search(const Surface& cloth, const Positions& x, double range, BroadPhaseKind kind)
+      : cloth(cloth), x(x), range(range), cloth_tree(make_broad_phase(kind)), tree(make_broad_phase(kind)) {
+    cloth_boxes.update(cloth, x, x, 0.5 * range);
+    cloth_tree->update(cloth_boxes.triangles);
+  }
+
+  const Surface& cloth;
+  const Positions& x;
+  double range;
+  std::unique_ptr<BroadPhase> cloth_tree, tree;
+  SweptBoxes cloth_boxes, boxes;
+  AdjacencyList rows;
+  std::vector<ContactPair> pairs;
+};
+
+/// The pairs that come within the range on a leg; false if there are more than `limit`.
+bool ObstacleWay::find(const Leg& leg, Search& s, long limit) const {
+  s.boxes.update(after_.surface, leg.from, leg.to, 0.5 * s.range + leg.off_chord);
+  s.tree->update(s.boxes.triangles);
+  s.pairs.clear();
+  if (!s.cloth_tree->overlaps(*s.tree, limit, s.rows)) return false;
+  leave_moving(s.rows, leg, after_);
+  return find_obstacle_pairs(s.cloth, s.cloth_boxes, after_, s.boxes, s.rows,
+                             {s.x, s.x, s.range + leg.off_chord, leg.from, leg.to}, 0, limit, s.pairs);
+}
+
+double ObstacleWay::smallest_gap(Search& s) const {
+  find(leg(0, 0), s, std::numeric_limits<long>::max());
+  double gap = s.range;
+  for (const ContactPair& pair : s.pairs) {
+    const PairPositions at = positions_of(pair, s.x, before_.vertices);
+    gap = std::min(gap, connection(at, closest(pair.kind, at)).norm());
+  }
+  return gap;
+}
+
+StepLimit ObstacleWay::max_move(const Surface& cloth, const Positions& x, double range,
                                 BroadPhaseKind broad_phase) const {
   if (is_still()) return {};
-  StepLimit whole = advance(cloth, x, range, kept_of_whole * keep, rounds_of_whole, broad_phase);
+  Search search(cloth, x, range, broad_phase);
+  const double kept = gap_left_by_moves(range, smallest_gap(search));
+  StepLimit whole = advance(search, left_by_whole * kept, rounds_of_whole);
   if (whole.fraction == 1) return {};
-  StepLimit part = advance(cloth, x, range, keep, rounds_of_part, broad_phase);
+  StepLimit part = advance(search, kept, rounds_of_part);
   return part.fraction < whole.fraction ? part : whole;
 }
 
-StepLimit ObstacleWay::advance(const Surface& cloth, const Positions& x, double range, double keep,
-                               int rounds, BroadPhaseKind broad_phase) const {
-  const auto cloth_tree = make_broad_phase(broad_phase), tree = make_broad_phase(broad_phase);
-  SweptBoxes cloth_boxes, boxes;
-  cloth_boxes.update(cloth, x, x, 0.5 * range);
-  cloth_tree->update(cloth_boxes.triangles);
-  AdjacencyList rows;
-  std::vector<ContactPair> pairs;
+StepLimit ObstacleWay::advance(Search& s, double kept, int rounds) const {
   long limit = many_pairs;
   for (double time = 0, length = 1; time < 1;) {
     const double end = leg_end(time, std::min(1.0, time + length));
     const Leg leg = this->leg(time, end);
-    boxes.update(after_.surface, leg.from, leg.to, 0.5 * range + leg.off_chord);
-    tree->update(boxes.triangles);
-    pairs.clear();
-    bool few = cloth_tree->overlaps(*tree, limit, rows);
-    if (few) {
-      leave_moving(rows, leg, after_);
-      few = find_obstacle_pairs(cloth, cloth_boxes, after_, boxes, rows,
-                                {x, x, range + leg.off_chord, leg.from, leg.to}, 0, limit, pairs);
-    }
-    if (!few) {
+    if (!find(leg, s, limit)) {
       length = (end - time) / 4;
       limit *= 2;
       continue;
     }
-    std::vector<double> parts(pairs.size());
-    parallel_for(static_cast<int>(pairs.size()), 64, [&](int begin, int stop) {
-      for (int i = begin; i < stop; ++i) {
-        const PairPositions first = positions_of(pairs[i], x, before_.vertices);
-        const double gap = connection(first, closest(pairs[i].kind, first)).norm();
-        parts[i] = PairOnLeg(pairs[i], x, leg, after_).advance(keep * std::min(gap, range), rounds);
-      }
+    std::vector<double> parts(s.pairs.size());
+    parallel_for(static_cast<int>(parts.size()), 64, [&](int begin, int stop) {
+      for (int i = begin; i < stop; ++i)
+        parts[i] = PairOnLeg(s.pairs[i], s.x, leg, after_).advance(kept, rounds);
     });
     const auto least = std::min_element(parts.begin(), parts.end());
     if (least != parts.end() && *least < 1)
       return {between<double>(time, end, *least),
-              name_of(pairs[least - parts.begin()], after_, static_cast<int>(x.rows()))};
+              name_of(s.pairs[least - parts.begin()], after_, static_cast<int>(s.x.rows()))};
     length = 2 * (end - time);
     time = end;
   }

@@ -39,14 +39,16 @@ class ObstacleWay {
   double leg_end(double begin, double end) const;
   Leg leg(double begin, double end) const;
 
-  /// How far along the way the cloth at x stays apart from the obstacles by `keep` of its gaps, and of the
-  /// range at most. In the answer's words the name of what is in the way.
-  StepLimit max_move(const Surface& cloth, const Positions& x, double range, double keep,
+  /// How far along the way the cloth at x stays apart from the obstacles (core/contact/bent_advance.h says by
+  /// what). In the answer's words the name of what is in the way.
+  StepLimit max_move(const Surface& cloth, const Positions& x, double range,
                      BroadPhaseKind broad_phase) const;
 
  private:
-  StepLimit advance(const Surface& cloth, const Positions& x, double range, double keep, int rounds,
-                    BroadPhaseKind broad_phase) const;
+  struct Search;
+  bool find(const Leg& leg, Search& search, long limit) const;
+  double smallest_gap(Search& search) const;
+  StepLimit advance(Search& search, double kept, int rounds) const;
 
   const Obstacles &before_, &after_;
   std::vector<char> moves_;

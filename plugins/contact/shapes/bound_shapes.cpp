@@ -1,5 +1,6 @@
 #include "plugins/contact/shapes/bound_shapes.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/contact/bent_advance.h"
@@ -78,9 +79,10 @@ class BoundShapes final : public BoundContact, public MovableObstacles {
 
   StepLimit max_move(const BoundContact& before, const Positions& x) const override {
     const std::vector<SolidWay> ways = ways_of(solids_before(before), scene_->solids);
-    const StepLimit whole = advance(ways, x, kept_of_whole * scene_->keep, rounds_of_whole);
+    const double kept = gap_left_by_moves(scene_->barrier.range, smallest_gap(ways, x));
+    const StepLimit whole = advance(ways, x, left_by_whole * kept, rounds_of_whole);
     if (whole.fraction == 1) return {};
-    const StepLimit part = advance(ways, x, scene_->keep, rounds_of_part);
+    const StepLimit part = advance(ways, x, kept, rounds_of_part);
     return part.fraction < whole.fraction ? part : whole;
   }
 
@@ -90,14 +92,27 @@ class BoundShapes final : public BoundContact, public MovableObstacles {
   }
 
  private:
-  StepLimit advance(const std::vector<SolidWay>& ways, const Positions& x, double keep, int rounds) const {
+  double smallest_gap(const std::vector<SolidWay>& ways, const Positions& x) const {
+    const double range = scene_->barrier.range;
+    std::vector<double> gaps(scene_->triangles.rows());
+    double smallest = range;
+    for (const SolidWay& way : ways) {
+      if (way.is_still()) continue;
+      parallel_for(static_cast<int>(gaps.size()), 256, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) gaps[i] = way.gap(scene_->corners(i, x), range);
+      });
+      smallest = std::min(smallest, *std::min_element(gaps.begin(), gaps.end()));
+    }
+    return smallest;
+  }
+
+  StepLimit advance(const std::vector<SolidWay>& ways, const Positions& x, double kept, int rounds) const {
     StepLimit limit;
     std::vector<double> parts(scene_->triangles.rows());
     for (const SolidWay& way : ways) {
       if (way.is_still()) continue;
       parallel_for(static_cast<int>(parts.size()), 256, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i)
-          parts[i] = way.advance(scene_->corners(i, x), keep, scene_->barrier.range, rounds);
+        for (int i = begin; i < end; ++i) parts[i] = way.advance(scene_->corners(i, x), kept, rounds);
       });
       for (std::size_t i = 0; i < parts.size(); ++i)
         if (parts[i] < limit.fraction)

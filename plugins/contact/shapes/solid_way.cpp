@@ -23,6 +23,14 @@ double arm(const Solid& s) {
   return s.kind == SolidKind::cylinder ? std::hypot(s.radius, s.half.z()) : s.half.norm();
 }
 
+/// A lower bound of a triangle's distance, by the ball around it.
+double distance_of_ball(const Solid& solid, const Corners& triangle) {
+  const Vector3d middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
+  double radius = 0;
+  for (const Vector3d& corner : triangle) radius = std::max(radius, (corner - middle).norm());
+  return solid.distance(middle) - radius;
+}
+
 /// The first t in [0, 1] at which a + b t + c t² is not positive, 1 if there is none.
 double first_root(double a, double b, double c) {
   if (!(a > 0)) return 0;
@@ -61,14 +69,15 @@ Solid SolidWay::at(double t) const {
   return s;
 }
 
-double SolidWay::advance(const Corners& triangle, double keep, double range, int rounds) const {
-  if (from_.kind == SolidKind::half_space) return advance_plane(triangle, keep, range);
-  const Vector3d middle = (triangle[0] + triangle[1] + triangle[2]) / 3;
-  double radius = 0;
-  for (const Vector3d& corner : triangle) radius = std::max(radius, (corner - middle).norm());
-  if (from_.distance(middle) - radius > reach_ + range) return 1;
-  const double kept = keep * std::min(range, separate(from_, triangle).gap);
+double SolidWay::gap(const Corners& triangle, double range) const {
+  const double far = distance_of_ball(from_, triangle);
+  return far > range ? far : separate(from_, triangle).gap;
+}
+
+double SolidWay::advance(const Corners& triangle, double kept, int rounds) const {
   if (!(kept > 0)) return 0;
+  if (from_.kind == SolidKind::half_space) return advance_plane(triangle, kept);
+  if (distance_of_ball(from_, triangle) > reach_ + 2 * kept) return 1;
   const auto widest = [&](double t) {
     const Separation s = separate(at(t), triangle);
     return Slab{s.normal, s.gap};
@@ -79,20 +88,16 @@ double SolidWay::advance(const Corners& triangle, double keep, double range, int
 
 // With the normal's length at most what it is between its ends, (gap - kept) |N| ≥ N · (p - c) - kept |N| is
 // a polynomial of second degree.
-double SolidWay::advance_plane(const Corners& triangle, double keep, double range) const {
+double SolidWay::advance_plane(const Corners& triangle, double kept) const {
   const double length = from_.plane.norm(), longer = to_.plane.norm() - length;
   const Vector3d turn = to_.plane - from_.plane, move = to_.centre - from_.centre;
-  double gap = range;
-  for (const Vector3d& corner : triangle)
-    gap = std::min(gap, from_.plane.dot(corner - from_.centre) / length);
-  const double kept = keep * gap;
   double part = 1;
   for (const Vector3d& corner : triangle) {
     const Vector3d p = corner - from_.centre;
     part = std::min(part, first_root(from_.plane.dot(p) - kept * length,
                                      turn.dot(p) - from_.plane.dot(move) - kept * longer, -turn.dot(move)));
   }
-  return kept > 0 ? part : 0;
+  return part;
 }
 
 std::vector<SolidWay> ways_of(const std::vector<Solid>& from, const std::vector<Solid>& to) {

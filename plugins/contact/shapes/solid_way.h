@@ -16,13 +16,14 @@ class SolidWay {
 
   const std::string& name() const { return to_.name; }
   bool is_still() const;
-  /// The part of the way on which a triangle at rest stays apart by `keep` of the gap at its start, or of the
-  /// range [m] if that is less. 0 if they are not apart.
-  double advance(const Corners& triangle, double keep, double range, int rounds) const;
+  /// The triangle's gap at the start; some value above the range [m] for most that are farther away.
+  double gap(const Corners& triangle, double range) const;
+  /// The part of the way on which a triangle at rest stays apart by `kept` [m]; 0 if that is not positive.
+  double advance(const Corners& triangle, double kept, int rounds) const;
 
  private:
   Solid at(double t) const;
-  double advance_plane(const Corners& triangle, double keep, double range) const;
+  double advance_plane(const Corners& triangle, double kept) const;
 
   const Solid &from_, &to_;
   double bend_, reach_;  // of the solid's points: |p''| at most, |p(t) - p(0)| at most [m]

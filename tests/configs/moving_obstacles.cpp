@@ -1,0 +1,118 @@
+// Runs whose obstacles move as their schedule says.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+
+using drape::Positions;
+
+namespace {
+
+/// Runs, checks that no state has an intersection, and gives the finest state.
+Positions end_of(const std::string& experiment, const Scratch& folder, int finest) {
+  folder.write("e.yaml", experiment);
+  const Ended ended = drape_with("run e.yaml --out out --overwrite --quiet --no-report", folder.path);
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+  CHECK(all["methods"]["pcs"]["status"] == "converged");
+  REQUIRE(all["methods"]["pcs"]["levels"].size() == static_cast<std::size_t>(finest + 1));
+  for (const auto& level : all["methods"]["pcs"]["levels"]) CHECK(level["intersections"] == 0);
+  return drape::read_mesh(folder / ("out/levels/pcs_l" + std::to_string(finest) + ".ply")).vertices;
+}
+
+const std::string pinned = R"(name: pushed
+cloth: {shape: square, side: 0.4, columns: 9, rows: 9}
+levels: 2
+start: {translate: [-0.2, -0.2, 0]}
+pins:
+  - {region: ball, point: [0, 0, 0], radius: 0.01}
+  - {region: ball, point: [0, 0.4, 0], radius: 0.01}
+  - {region: ball, point: [0.4, 0, 0], radius: 0.01}
+  - {region: ball, point: [0.4, 0.4, 0], radius: 0.01}
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-2, step_size: 0.05}
+verify: every_step
+methods: {pcs: {}}
+)";
+
+}  // namespace
+
+TEST_CASE("a cloth that lies on a plate with friction goes with it, as far as it goes") {
+  const std::string on_plate = R"(name: dragged
+cloth: {shape: square, side: 0.2, columns: 6, rows: 6}
+levels: 1
+start: {translate: [-0.1, -0.1, 0.0009]}
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-2, step_size: 0.1, iterations_per_step: 30}
+verify: every_step
+methods: {pcs: {}}
+)";
+  const std::string ipc = R"(contact: {type: ipc, self_contact: false, friction: 0.3, obstacles: [
+  {name: plate, shape: box, size: [0.5, 0.5, 0.1], translate: [0.06, 0.07, -0.05]}]}
+schedule: {steps: 10, settle: true, keys: [
+  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0.06, 0.07, -0.05], [0.12, 0.04, -0.05]]}]}
+)";
+  const std::string shapes = R"(contact: {type: shapes, friction: 0.3, shapes: [
+  {name: plate, shape: box, size: [0.5, 0.5, 0.1], centre: [0, 0, -0.05]}]}
+schedule: {steps: 10, settle: true, keys: [
+  {set: contact.shapes.0.centre, at: [0, 1], to: [[0, 0, -0.05], [0.06, -0.03, -0.05]]}]}
+)";
+  const Eigen::RowVector3d way(0.06, -0.03, 0);
+  for (const std::string& contact : {ipc, shapes}) {
+    INFO(contact);
+    const Scratch folder;
+    const Positions still = end_of(on_plate + contact.substr(0, contact.find("schedule")), folder, 0);
+    const Positions moved = end_of(on_plate + contact, folder, 0);
+    CHECK((moved.colwise().mean() - still.colwise().mean() - way).norm() < 2e-4);
+  }
+}
+
+TEST_CASE("a plate that rises under a pinned cloth and turns there pushes it, and never passes through") {
+  for (const std::string contact :
+       {R"(contact: {type: ipc, friction: 0.1, obstacles: [
+  {name: plate, shape: box, size: [0.2, 0.1, 0.004], translate: [0, 0, -0.1]}]}
+schedule: {steps: 10, keys: [
+  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {set: contact.obstacles.0.rotate, at: [0, 1], to: [[0, 0, 0], [20, 0, 200]]}]}
+)",
+        R"(contact: [{type: ipc, friction: 0.1}, {type: shapes, friction: 0.1, shapes: [
+  {name: plate, shape: box, size: [0.2, 0.1, 0.004], centre: [0, 0, -0.1]}]}]
+schedule: {steps: 10, keys: [
+  {set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {set: contact.1.shapes.0.rotate, at: [0, 1], to: [[0, 0, 0], [20, 0, 200]]}]}
+)"}) {
+    INFO(contact);
+    const Scratch folder;
+    const Positions x = end_of(pinned + contact, folder, 1);
+    CHECK(x.col(2).minCoeff() < -0.02);  // it hangs over the plate's ends
+  }
+}
+
+TEST_CASE("a wing that flaps under a pinned cloth, and a ball with cages that rises into it") {
+  const Scratch folder;
+  for (int k = 0; k < 3; ++k) {
+    drape::TriangleMesh wing = drape::grid({0.2, 0.2}, 5, 5, drape::Diagonals::one_way);
+    wing.vertices.rowwise() -= Eigen::RowVector3d(0.1, 0.1, 0.1);
+    for (int v = 0; v < wing.vertices.rows(); ++v)
+      wing.vertices(v, 2) += (k == 1 ? 1.5 : -0.5) * wing.vertices(v, 0);
+    drape::write_mesh(folder / ("wing" + std::to_string(k) + ".ply"), wing);
+  }
+  end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
+  {name: wing, animation: [wing0.ply, wing1.ply, wing2.ply]}]}
+schedule: {steps: 12, keys: [{set: contact.obstacles.0.frame, at: [0, 1], to: [0, 2]}]}
+)",
+         folder, 1);
+  const Positions x = end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
+  {name: ball, shape: sphere, radius: 0.05, subdivisions: 2, translate: [0, 0, -0.2],
+   cages: {count: 1, alpha: 0.1, offset: 0.03}}]}
+schedule: {steps: 10, keys: [
+  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0, 0, -0.2], [0, 0, -0.05]]}]}
+)",
+                             folder, 1);
+  CHECK(x.col(2).maxCoeff() > 5e-4);  // on the ball's top, at 0, and not its cage's, at 5 mm
+  CHECK(x.col(2).maxCoeff() < 3e-3);
+}
