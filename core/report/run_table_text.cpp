@@ -57,7 +57,7 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
   for (const std::string& column : known)
     if (std::any_of(rows.begin(), rows.end(), [&](const TableRow& row) {
           const auto cell = row.find(column);
-          return cell != row.end() && !cell->is_null() && *cell != "";
+          return cell != row.end() && !cell->is_null() && !cell_text(*cell, true).empty();
         }))
       columns.push_back(column);
   return columns;
