@@ -61,6 +61,7 @@ bench: build
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
 	-$(BUILD)/bin/drape run configs/sphere.yaml --out results/bench_sphere --overwrite
 	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json results/bench_pinned_square results/bench_sphere
+	$(BUILD)/bin/drape_bench_changes benchmarks/results/changes.json
 
 HARD = $(sort $(basename $(notdir $(wildcard configs/hard/sweeps/*.yaml))))
 hard: build
