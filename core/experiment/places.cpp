@@ -1,21 +1,11 @@
 #include "core/experiment/places.h"
 
-#include <Eigen/Geometry>
-
+#include "core/mesh/turn.h"
 #include "core/model/position_penalty.h"
 
 namespace drape {
 
 namespace {
-
-/// About x, then y, then z [°].
-Eigen::Matrix3d turned(const Eigen::Vector3d& angles) {
-  const Eigen::Vector3d radians = M_PI / 180 * angles;
-  return (Eigen::AngleAxisd(radians.z(), Eigen::Vector3d::UnitZ()) *
-          Eigen::AngleAxisd(radians.y(), Eigen::Vector3d::UnitY()) *
-          Eigen::AngleAxisd(radians.x(), Eigen::Vector3d::UnitX()))
-      .toRotationMatrix();
-}
 
 void check_place(const std::string& word, std::size_t number, const PlaceParameters& p, const Location& where,
                  const Level& coarsest, ConfigErrors& errors) {

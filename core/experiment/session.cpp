@@ -5,7 +5,6 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
-#include "core/numerics/safe_refinement.h"
 #include "core/version.h"
 
 namespace drape {

@@ -94,7 +94,7 @@ class ElementEnergy final : public BoundEnergy {
 
   double add_gradient(const Positions& x, Positions& g) const override {
     Sums sums;
-    for_each_colour([&](int c) {
+    order_.for_each_chunk([&](int c) {
       sums[c] = sum_of_chunk(c, [&](const Elements& pack) {
         Vector d[k - 1], by_difference[k - 1];
         gather(pack, x, d);
@@ -109,7 +109,7 @@ class ElementEnergy final : public BoundEnergy {
   Stencils stencils() const override { return stencils_; }
 
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
-    for_each_colour([&](int c) {
+    order_.for_each_chunk([&](int c) {
       for (int p = first_pack_[c]; p < first_pack_[c + 1]; ++p) {
         Vector d[k - 1];
         Hessian h;
@@ -133,16 +133,6 @@ class ElementEnergy final : public BoundEnergy {
     int first;           ///< row of stencils_ in lane 0
     int active;          ///< lanes that count
   };
-
-  template <class Body>
-  void for_each_colour(const Body& body) const {
-    for (int colour = 0; colour < order_.colours(); ++colour) {
-      const int first = order_.colour_start[colour];
-      parallel_for(order_.colour_start[colour + 1] - first, 1, [&](int begin, int end) {
-        for (int c = first + begin; c < first + end; ++c) body(c);
-      });
-    }
-  }
 
   template <class Body>
   double sum_of_chunk(int chunk, const Body& body) const {

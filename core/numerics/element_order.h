@@ -5,6 +5,7 @@
 
 #include "core/mesh/triangle_mesh.h"
 #include "core/numerics/block_matrix.h"
+#include "core/numerics/parallel.h"
 
 namespace drape {
 
@@ -22,6 +23,17 @@ struct ElementOrder {
 
   int chunks() const { return static_cast<int>(chunk_start.size()) - 1; }
   int colours() const { return static_cast<int>(colour_start.size()) - 1; }
+
+  /// body(chunk) for every chunk, those of one colour at the same time, colour after colour.
+  template <class Body>
+  void for_each_chunk(const Body& body) const {
+    for (int colour = 0; colour < colours(); ++colour) {
+      const int first = colour_start[colour];
+      parallel_for(colour_start[colour + 1] - first, 1, [&](int begin, int end) {
+        for (int c = first + begin; c < first + end; ++c) body(c);
+      });
+    }
+  }
 };
 
 }  // namespace drape

@@ -58,7 +58,7 @@ class BoundPressure final : public BoundEnergy {
     const Vector origin = origin_at(x);
     const double scale = -pressure_ / 12;
     Sums sums;
-    for_each_colour([&](int c) {
+    order_.for_each_chunk([&](int c) {
       double sum = 0;
       for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
         const Edge edge(*this, x, origin, e);
@@ -79,7 +79,7 @@ class BoundPressure final : public BoundEnergy {
     const bool clamp = projection.kind == Projection::clamp;
     const double lifted = projection.is_exact() ? 0 : clamp ? projection.share / 2 : projection.share;
     const Vector origin = origin_at(x);
-    for_each_colour([&](int c) {
+    order_.for_each_chunk([&](int c) {
       for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
         const Vector w = Edge(*this, x, origin, e).across;
         const Vector s = (1 - lifted) * pressure_ / 6 * w;
@@ -120,16 +120,6 @@ class BoundPressure final : public BoundEnergy {
     double result = 0;
     for (int c = 0; c < order_.chunks(); ++c) result += sums[c];
     return -pressure_ * result / 18;
-  }
-
-  template <class Body>
-  void for_each_colour(const Body& body) const {
-    for (int colour = 0; colour < order_.colours(); ++colour) {
-      const int first = order_.colour_start[colour];
-      parallel_for(order_.colour_start[colour + 1] - first, 1, [&](int begin, int end) {
-        for (int c = first + begin; c < first + end; ++c) body(c);
-      });
-    }
   }
 
   double pressure_;
