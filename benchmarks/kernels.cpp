@@ -41,9 +41,8 @@ const BoundEnergy& energy() {
   static const ElementEnergy<Kernel> made = [] {
     const Positions& rest = cloth().level.rest.vertices;
     const bool triangles = Kernel::vertices == 3;
-    const Stencils elements = triangles
-                                  ? Stencils(cloth().level.rest.triangles)
-                                  : Stencils(cloth().level.topology.hinges(cloth().level.rest.triangles));
+    const Level& level = cloth().level;
+    const Stencils elements = triangles ? Stencils(level.rest.triangles) : level.hinges;
     std::vector<typename Kernel::Rest> numbers;
     for (Eigen::Index e = 0; e < elements.rows(); ++e) {
       Eigen::Vector3d d[3];
@@ -54,7 +53,7 @@ const BoundEnergy& energy() {
       else
         numbers.push_back(Kernel::rest(d, 1e-7));
     }
-    return ElementEnergy<Kernel>(elements, numbers, rest);
+    return ElementEnergy<Kernel>(elements, numbers, triangles ? level.triangle_order : level.hinge_order);
   }();
   return made;
 }

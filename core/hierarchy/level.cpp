@@ -20,6 +20,9 @@ Level Level::of(int index, TriangleMesh rest) {
     const double third = (b - a).cross(c - a).norm() / 6;
     for (int k = 0; k < 3; ++k) level.vertex_area[v[k]] += third;
   }
+  level.hinges = level.topology.hinges(level.rest.triangles);
+  level.triangle_order = ElementOrder::of(level.rest.triangles, level.rest.vertices);
+  level.hinge_order = ElementOrder::of(level.hinges, level.rest.vertices);
   return level;
 }
 

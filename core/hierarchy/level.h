@@ -4,6 +4,7 @@
 
 #include "core/mesh/topology.h"
 #include "core/mesh/triangle_mesh.h"
+#include "core/numerics/element_order.h"
 
 namespace drape {
 
@@ -13,8 +14,11 @@ struct Level {
   TriangleMesh rest;            ///< rest positions X_l [m] and triangles
   Topology topology;            ///< of rest.triangles
   Eigen::VectorXd vertex_area;  ///< n, a third of the adjacent rest areas [m²]
+  Stencils hinges;              ///< h×4, topology.hinges
+  ElementOrder triangle_order;  ///< in which energies of triangles sum them
+  ElementOrder hinge_order;     ///< likewise
 
-  /// Derives topology and areas from `rest`, which must have passed check_mesh.
+  /// Derives everything else from `rest`, which must have passed check_mesh.
   static Level of(int index, TriangleMesh rest);
 
   int vertex_count() const { return static_cast<int>(rest.vertices.rows()); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "core/model/energy.h"
@@ -58,10 +59,9 @@ void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projectio
 template <class Kernel, int W = native_pack_width>
 class ElementEnergy final : public BoundEnergy {
  public:
-  /// Elements m×k, the rest numbers of each, and rest positions n×3 to order the elements by.
-  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest,
-                const Positions& places)
-      : order_(ElementOrder::of(elements, places)), stencils_(elements.rows(), k) {
+  /// Elements m×k, the rest numbers of each, and an order of theirs.
+  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order)
+      : order_(std::move(order)), stencils_(elements.rows(), k) {
     for (Eigen::Index e = 0; e < elements.rows(); ++e) stencils_.row(e) = elements.row(order_.elements[e]);
     for (int c = 0; c < order_.chunks(); ++c) {
       first_pack_.push_back(static_cast<int>(packs_.size()));

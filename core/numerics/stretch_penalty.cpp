@@ -10,7 +10,6 @@ namespace drape {
 std::unique_ptr<BoundEnergy> make_stretch_penalty(const Level& level, double thickness, double stiffness,
                                                   const std::vector<char>& flags) {
   using Kernel = StretchKernel<StretchPenaltyLaw>;
-  const Positions& places = level.rest.vertices;
   if (static_cast<int>(flags.size()) != level.triangle_count())
     throw std::runtime_error("stretch penalty: " + std::to_string(flags.size()) + " flags for " +
                              std::to_string(level.triangle_count()) + " triangles");
@@ -24,7 +23,7 @@ std::unique_ptr<BoundEnergy> make_stretch_penalty(const Level& level, double thi
   }
   Stencils elements(chosen.size(), 3);
   for (std::size_t i = 0; i < chosen.size(); ++i) elements.row(i) = level.rest.triangles.row(chosen[i]);
-  return std::make_unique<ElementEnergy<Kernel>>(elements, rest, places);
+  return std::make_unique<ElementEnergy<Kernel>>(elements, rest, ElementOrder::of(elements, level.rest.vertices));
 }
 
 }  // namespace drape

@@ -60,9 +60,8 @@ Eigen::VectorXd mean_curvature(const Level& level, const Positions& x) {
     const double third = twice_normal(x, v[0], v[1], v[2]).norm() / 6;
     for (int k = 0; k < 3; ++k) area[v[k]] += third;
   }
-  const auto hinges = level.topology.hinges(triangles);
-  for (Eigen::Index e = 0; e < hinges.rows(); ++e) {
-    const auto h = hinges.row(e);
+  for (Eigen::Index e = 0; e < level.hinges.rows(); ++e) {
+    const auto h = level.hinges.row(e);
     const Eigen::Vector3d edge = x.row(h[1]) - x.row(h[0]);
     const Eigen::Vector3d n1 = twice_normal(x, h[0], h[1], h[2]), n2 = twice_normal(x, h[1], h[0], h[3]);
     const double angle = std::atan2(n1.cross(n2).dot(edge.normalized()), n1.dot(n2));

@@ -44,10 +44,10 @@ TEST_CASE("Chunks of one colour share no vertex") {
   for (const int n : {2, 5, 40, 157}) {
     const Level level = Level::of(0, grid({1, 2}, n, n, Diagonals::one_way));
     check_order(level.rest.triangles, level.rest.vertices, 12);
-    check_order(level.topology.hinges(level.rest.triangles), level.rest.vertices, 12);
+    check_order(level.hinges, level.rest.vertices, 12);
   }
   const Level disordered = Level::of(0, random_triangulation({1, 1}, 3000, 1));
-  check_order(disordered.topology.hinges(disordered.rest.triangles), disordered.rest.vertices, 12);
+  check_order(disordered.hinges, disordered.rest.vertices, 12);
 }
 
 TEST_CASE("Elements around one vertex cost colours, not correctness") {

@@ -13,7 +13,7 @@ std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& mat
   const double nu = material.poisson_ratio;
   const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
   const Positions& places = level.rest.vertices;
-  const Stencils hinges = level.topology.hinges(level.rest.triangles);
+  const Stencils& hinges = level.hinges;
   std::vector<HingeKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
     Eigen::Vector3d d[3];
@@ -24,7 +24,7 @@ std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& mat
                                " and " + std::to_string(hinges(h, 1)) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
   }
-  return std::make_unique<ElementEnergy<HingeKernel>>(hinges, rest, places);
+  return std::make_unique<ElementEnergy<HingeKernel>>(hinges, rest, level.hinge_order);
 }
 
 }  // namespace drape

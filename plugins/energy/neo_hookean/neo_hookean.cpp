@@ -21,7 +21,7 @@ std::unique_ptr<BoundEnergy> NeoHookean::bind(const Level& level, const Material
       throw std::runtime_error("neo_hookean: triangle " + std::to_string(t) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
   }
-  return std::make_unique<ElementEnergy<NeoHookeanKernel>>(level.rest.triangles, rest, places);
+  return std::make_unique<ElementEnergy<NeoHookeanKernel>>(level.rest.triangles, rest, level.triangle_order);
 }
 
 }  // namespace drape

@@ -23,7 +23,7 @@ class BoundPressure final : public BoundEnergy {
   BoundPressure(double pressure, Vector centre, const Level& level)
       : pressure_(pressure), centre_(std::move(centre)) {
     const Topology& topology = level.topology;
-    const Stencils inner = topology.hinges(level.rest.triangles);
+    const Stencils& inner = level.hinges;
     const Eigen::Index edges = topology.edges.rows();
     closed_ = inner.rows() == edges;
     Stencils all(edges, 4);

@@ -26,7 +26,7 @@ std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Ma
   const double nu = material.poisson_ratio;
   const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
   const Positions& places = level.rest.vertices;
-  const Stencils hinges = level.topology.hinges(level.rest.triangles);
+  const Stencils& hinges = level.hinges;
   std::vector<QuadraticBendingKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
     Eigen::Vector3d d[3];
@@ -34,7 +34,7 @@ std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Ma
     require_flat(d, level, hinges(h, 0), hinges(h, 1));
     rest.push_back(QuadraticBendingKernel::rest(d, k));
   }
-  return std::make_unique<ElementEnergy<QuadraticBendingKernel>>(hinges, rest, places);
+  return std::make_unique<ElementEnergy<QuadraticBendingKernel>>(hinges, rest, level.hinge_order);
 }
 
 }  // namespace drape

@@ -20,7 +20,7 @@ std::unique_ptr<BoundEnergy> Stvk::bind(const Level& level, const Material& mate
       throw std::runtime_error("stvk: triangle " + std::to_string(t) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
   }
-  return std::make_unique<ElementEnergy<StvkKernel>>(level.rest.triangles, rest, places);
+  return std::make_unique<ElementEnergy<StvkKernel>>(level.rest.triangles, rest, level.triangle_order);
 }
 
 }  // namespace drape
