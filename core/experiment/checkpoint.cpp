@@ -26,9 +26,8 @@ void fields(A& a, ChangeBegun& c) {
 
 template <class A>
 void fields(A& a, LevelResult& r) {
-  a(r.level, r.outcome, r.message, r.x, r.dead_end, r.afresh, r.steps, r.iterations, r.factorisations,
-    r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap,
-    r.conditions);
+  a(r.level, r.outcome, r.message, r.x, r.afresh, r.steps, r.iterations, r.factorisations, r.analyses,
+    r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap, r.conditions);
 }
 
 template <class A>
@@ -98,7 +97,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 3;
+constexpr std::uint32_t format = 4;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

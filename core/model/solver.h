@@ -51,8 +51,7 @@ struct LevelResult {
   Outcome outcome = Outcome::converged;
   std::string message;  ///< what stopped it, where that is not convergence
   Positions x;
-  bool dead_end = false;  ///< no finer level can begin from it
-  bool afresh = false;    ///< begun from the scene's start, so that no other level's work is in it
+  bool afresh = false;  ///< begun from the scene's start, so that no other level's work is in it
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
   double flops = 0;  ///< of the factorisations; one that breaks off counts in full
   double seconds = 0;

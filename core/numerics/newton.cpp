@@ -68,6 +68,8 @@ constexpr double shortest_step = 1e-6;
 constexpr double shortened = 0.25;
 /// An implicit step is solved to this part of the force tolerance.
 constexpr double solved_part = 0.1;
+/// Where no more than this part of it is left, rounding may hide the descent: then there is none to be made.
+constexpr double rounded_part = 1e-4;
 /// In place of a step length, where a step had none along the direction of a new matrix.
 constexpr double no_fresh_direction = 2;
 /// Differences of energies below this part of them are rounding, not descent.
@@ -111,6 +113,8 @@ class Newton {
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
+    result_.afresh = run.afresh;
+    result_.message = run.remark;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     take_positions();
@@ -385,7 +389,10 @@ class Newton {
     fresh_alpha_ = no_fresh_direction;
     for (int k = 0; k < iterations_of_step_; ++k) {
       if (!iterate(k)) return false;
-      if (converged() || (k + 1 < iterations_of_step_ && step_is_solved())) break;
+      if (converged()) break;
+      if (k + 1 == iterations_of_step_) continue;
+      shifted_gradient();
+      if (is_solved_to(solved_part)) break;
     }
     ++result_.steps;
     if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
@@ -393,11 +400,8 @@ class Newton {
     return true;
   }
 
-  /// Whether more iterations of the implicit step would be about less than its end is asked for.
-  bool step_is_solved() {
-    shifted_gradient();
-    return free_norm(r_, fixed_) <= solved_part * p_.force_tolerance * scale_;
-  }
+  /// Whether what is left of the implicit step's force is less than this part of what its end is asked for.
+  bool is_solved_to(double part) const { return free_norm(r_, fixed_) <= part * p_.force_tolerance * scale_; }
 
   bool iterate(int iteration) {
     while (true) {
@@ -409,6 +413,11 @@ class Newton {
         direction_ *= -1;
       }
       if (line_search()) break;
+      if (is_solved_to(rounded_part)) {
+        direction_.setZero();
+        alpha_ = 1;
+        break;
+      }
       // A factor kept from an earlier state may give no descent: once more with a fresh one. A step
       // too long for its quadratic model is damped more.
       if (age_ > 0) {
@@ -599,10 +608,11 @@ class Newton {
     observer_.iteration(row, result_.x);
   }
 
-  LevelResult finish(Outcome outcome, std::string message) {
+  LevelResult finish(Outcome outcome, const std::string& message) {
     result_.outcome = outcome;
     if (conditions_) result_.conditions = conditions_->state();
-    result_.message = std::move(message);
+    if (!result_.message.empty() && !message.empty()) result_.message += "; ";
+    result_.message += message;
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {

@@ -14,7 +14,7 @@ std::vector<LevelResult> solve_progressively(
   restore_conditions(problem, from);
   const int first = results.empty() ? from.level : results.front().level;
   for (int l = from.level; l <= problem.finest(); ++l) {
-    if (!results.empty() && results.back().dead_end) break;
+    if (!results.empty() && results.back().outcome == Outcome::cancelled) break;
     const NewtonState* state = from.of(l);
     if (problem.conditions && !state) problem.conditions->begin(l, l == first);
     Refined start;
@@ -27,19 +27,23 @@ std::vector<LevelResult> solve_progressively(
     if (!state) observer.level_started(l);
     std::map<std::string, double> spent;
     if (l > first) spent["refinement"] = start.seconds;
-    if (start.cut_short || !start.fault.empty()) {
+    std::string remark;
+    if (!start.fault.empty()) {
+      remark = start.fault + "; the level is begun from the scene's start instead";
+      start.x = problem.starts[l];
+      if (problem.conditions) problem.conditions->begin(l, true);
+    }
+    if (start.cut_short) {
       result.x = std::move(start.x);
-      result.outcome = start.cut_short ? Outcome::cancelled : Outcome::infeasible;
-      result.message = start.cut_short ? "stopped on request" : start.fault;
+      result.outcome = Outcome::cancelled;
+      result.message = "stopped on request";
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
-      result.dead_end = true;
     } else {
       result = minimise(*objective(l), std::move(start.x), newton,
-                        {clock, observer, l < problem.finest(), spent, state, problem.conditions});
-      result.dead_end = result.outcome == Outcome::cancelled;
+                        {clock, observer, l < problem.finest(), spent, state, problem.conditions,
+                         l == first || !remark.empty(), remark});
     }
-    result.afresh = l == first;
     results.push_back(std::move(result));
     observer.level_finished(results.back());
   }

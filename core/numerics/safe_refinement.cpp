@@ -14,7 +14,7 @@ namespace {
 constexpr double pull = 1e-3;
 /// The descent ends where the force left over is this part of what it was.
 constexpr double tolerance = 0.05;
-constexpr int most_steps = 20, most_rounds = 12;
+constexpr int most_steps = 100, most_rounds = 12;
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
 class PullToTarget : public Objective {
@@ -22,8 +22,8 @@ class PullToTarget : public Objective {
   PullToTarget(const LevelModel& model, const Positions& from, Positions target)
       : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
     contacts().leave_out_friction();
-    take_scale(from);
     divide(from);
+    take_scale(from);
   }
 
   /// Lets go of the target by so much, for what the pull keeps outside its limits: beside a vertex that is

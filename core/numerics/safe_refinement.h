@@ -20,7 +20,8 @@ struct Refined {
 /// limits. Where the finer level has neither contact nor limits this is weights · x. Otherwise it starts from
 /// the midpoint split, which leaves the surface where it is, and descends towards y^p = weights · x on
 ///   1/(2h²) ‖y − y^p‖²_M + B(y) + S(y)|_F + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i − 1)²,
-/// F the triangles within their limit (PCS section 4.3).
+/// F the triangles within their limit (PCS section 4.3). The target is let go of, tenfold a round, where it
+/// keeps triangles beyond their limit.
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer);
 

@@ -23,7 +23,8 @@ std::unique_ptr<BoundEnergy> make_stretch_penalty(const Level& level, double thi
   }
   Stencils elements(chosen.size(), 3);
   for (std::size_t i = 0; i < chosen.size(); ++i) elements.row(i) = level.rest.triangles.row(chosen[i]);
-  return std::make_unique<ElementEnergy<Kernel>>(elements, rest, ElementOrder::of(elements, level.rest.vertices));
+  return std::make_unique<ElementEnergy<Kernel>>(elements, rest,
+                                                 ElementOrder::of(elements, level.rest.vertices));
 }
 
 }  // namespace drape

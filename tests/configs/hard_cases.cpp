@@ -55,6 +55,20 @@ TEST_CASE("hard cases end as they should") {
   CHECK(rows >= 30);
 }
 
+TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
+  const Scratch folder;
+  copy_suite(folder);
+  drape_with(
+      "run hard/drape.yaml --set 'cloth={shape: file, file: hard/meshes/huge_and_tiny.off}' "
+      "--set start.perturbation=1e-6 --method pcs --out run --no-report",
+      folder.path);
+  const Json levels = Json::parse(text_of(folder / "run/results.json"))["methods"]["pcs"]["levels"];
+  REQUIRE(levels.size() == 2);
+  CHECK(levels[1]["status"] == "converged");
+  CHECK(levels[1]["afresh"] == false);
+  CHECK(levels[1]["largest_stretch"] < 1.0608);
+}
+
 TEST_CASE("a scene comes to the same shape at any size, turned, and a kilometre away") {
   const Scratch folder;
   const std::string sweep = (source / "configs/hard/sweeps/same_shape.yaml").string();

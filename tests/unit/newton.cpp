@@ -193,6 +193,49 @@ TEST_CASE("Forces that are not numbers are no equilibrium") {
   REQUIRE(r.message.find("not finite") != std::string::npos);
 }
 
+namespace {
+
+/// Changes that change nothing, each of them followed by one step.
+class Idle : public Conditions {
+ public:
+  int changes() const override { return 3; }
+  bool settles() const override { return false; }
+  void begin(int, bool) override { change_ = 0; }
+  ConditionsState state() const override { return {change_, {}}; }
+  void restore(int, const ConditionsState& state) override { change_ = state.change; }
+  int change() const override { return change_; }
+  bool made() const override { return true; }
+  double time() const override { return change_; }
+  StepLimit advance(int, const Positions&) override { return ++change_, StepLimit(); }
+
+ private:
+  int change_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("Steps from where nothing is left to gain lead nowhere, and no fault is found in that",
+          "[newton]") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
+    for (const double away : {0.0, 1e-15}) {
+      Case c;
+      NewtonParameters p;
+      p.form = form;
+      const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(c.centres, 1e7, 0.1)}},
+                             {});
+      PlainObjective objective(model);
+      Idle idle;
+      // At the minimum as nearly as doubles have it: in the ring about each centre.
+      Positions x = c.centres;
+      x.col(2).array() += 0.1 + away;
+      const LevelResult r = minimise(objective, x, p, {Stopwatch(), c.observer, false, {}, nullptr, &idle});
+      INFO(r.message);
+      CHECK(r.outcome == Outcome::converged);
+      CHECK(r.conditions.change == 3);
+      CHECK((r.x - x).cwiseAbs().maxCoeff() < 1e-12);
+    }
+}
+
 TEST_CASE("A matrix kept over several iterations reaches the same minimum with fewer factorisations",
           "[newton]") {
   Case fresh, kept;

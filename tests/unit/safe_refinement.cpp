@@ -6,6 +6,8 @@
 
 #include "core/mesh/generate.h"
 #include "core/model/stretch_limit.h"
+#include "core/numerics/newton_state.h"
+#include "core/numerics/progression.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -200,14 +202,24 @@ TEST_CASE("Strain limit, obstacle and self-contact at once") {
   CHECK(cloth.beyond_limit(1, refined.x) == 0);
 }
 
+namespace {
+
+/// Fine vertices 0 and 1 are two fine edges apart: pins that are held 1.5 times that.
+struct TornApart : TwoLevels {
+  const Eigen::Vector3d place{0.15, 0, 0};
+  TornApart()
+      : TwoLevels(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {}, {"{type: strain_limit, limit: 1.1}"},
+                  {0, 1}) {
+    hold({{0, starts[1].row(0), 0}, {1, place, 1}});
+  }
+};
+
+}  // namespace
+
 TEST_CASE("Triangles that cannot be within the strain limit are named") {
-  TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {}, {"{type: strain_limit, limit: 1.1}"},
-                  {0, 1});
-  // Fine vertices 0 and 1 are two fine edges apart: pins that are held 1.5 times that.
-  const Eigen::Vector3d place(0.15, 0, 0);
-  cloth.hold({{0, cloth.starts[1].row(0), 0}, {1, place, 1}});
+  const TornApart cloth;
   const Refined refined = cloth.refine(cloth.starts[0]);
-  CHECK(refined.x.row(1) == place.transpose());
+  CHECK(refined.x.row(1) == cloth.place.transpose());
   REQUIRE(cloth.beyond_limit(1, refined.x) > 0);
   CHECK_THAT(refined.fault,
              Catch::Matches("the refined state is beyond the strain limit: triangle [0-9]+, stretched to "
@@ -215,6 +227,26 @@ TEST_CASE("Triangles that cannot be within the strain limit are named") {
   const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
   const std::string first = to_string(limit.beyond(refined.x)[0], 1.1);
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
+}
+
+TEST_CASE("A level that cannot be begun from the coarser one is begun from the scene's start, and says so") {
+  const TornApart cloth;
+  const Problem problem = cloth.problem();
+  NewtonParameters newton;
+  newton.max_steps = 50;
+  Observer silent;
+  const std::vector<LevelResult> results = solve_progressively(
+      problem, cloth.hierarchy.midpoints,
+      [&](int level) { return std::make_unique<PlainObjective>(*problem.models[level]); }, newton, {},
+      silent);
+  REQUIRE(results.size() == 2);
+  CHECK(results[0].message.empty());
+  CHECK(results[1].afresh);
+  CHECK(results[1].outcome != Outcome::converged);  // what tears at it is still there
+  CHECK_THAT(results[1].message,
+             Catch::Matches("the refined state is beyond the strain limit: triangle .*; the level is begun "
+                            "from the scene's start instead; .*"));
+  CHECK(cloth.beyond_limit(1, results[1].x) == 0);
 }
 
 TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, within its strain limit") {

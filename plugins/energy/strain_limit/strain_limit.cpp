@@ -22,7 +22,7 @@ struct Limited {
   std::vector<int> triangles;  ///< by rising index
   Stencils corners;            ///< of each
   std::vector<Kernel::Rest> rest;
-  ElementOrder order;          ///< of them
+  ElementOrder order;  ///< of them
   std::shared_ptr<const Positions> places;
 };
 
@@ -122,8 +122,9 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
 }  // namespace
 
 std::unique_ptr<BoundEnergy> StrainLimit::bind(const Level& level, const Material& material) const {
-  Limited all{level.triangle_count(), {}, level.rest.triangles,
-              {},                     level.triangle_order, std::make_shared<Positions>(level.rest.vertices)};
+  Limited all{level.triangle_count(), {},
+              level.rest.triangles,   {},
+              level.triangle_order,   std::make_shared<Positions>(level.rest.vertices)};
   for (int t = 0; t < level.triangle_count(); ++t) {
     const RestTriangle triangle = RestTriangle::of(level, t);
     Kernel::Rest rest;
