@@ -16,6 +16,7 @@
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
 #include "core/numerics/block_cholesky.h"
+#include "core/numerics/newton.h"
 #include "core/numerics/parallel.h"
 #include "core/plugin/loader.h"
 #include "core/version.h"

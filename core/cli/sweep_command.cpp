@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <iostream>
 
+#include "core/cli/config_arguments.h"
+#include "core/cli/exit_codes.h"
 #include "core/experiment/machine.h"
 #include "core/report/run_table.h"
 #include "core/sweep/local_engine.h"
@@ -14,11 +16,9 @@ namespace drape {
 
 namespace {
 
-constexpr int exit_bad_input = 2;
-
 /// 0 if every run ended as it is expected to, else 1.
 int exit_code_of(const SweepFolder& folder) {
-  return all_pass(table_rows(read_runs({folder.path()}))) ? 0 : 1;
+  return all_pass(table_rows(read_runs({folder.path()}))) ? 0 : exit_not_converged;
 }
 
 /// What would be run, without a trace of it on disk.

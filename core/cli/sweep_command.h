@@ -37,7 +37,4 @@ class SweepCommand {
   bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false;
 };
 
-/// What an option that counts things must be, or "".
-std::string positive_integer(const std::string& text);
-
 }  // namespace drape

@@ -14,7 +14,7 @@
 #include "core/model/metric.h"
 #include "core/model/refiner.h"
 #include "core/model/solver.h"
-#include "core/numerics/newton.h"
+#include "core/numerics/newton_parameters.h"
 #include "core/plugin/registry.h"
 
 namespace drape {

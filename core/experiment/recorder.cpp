@@ -10,6 +10,7 @@
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
 #include "core/numerics/parallel.h"
+#include "core/numerics/stopwatch.h"
 #include "core/version.h"
 
 namespace drape {

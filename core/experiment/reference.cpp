@@ -1,6 +1,7 @@
 #include "core/experiment/reference.h"
 
 #include "core/mesh/io.h"
+#include "core/numerics/newton.h"
 
 namespace drape {
 

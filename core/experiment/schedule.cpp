@@ -76,14 +76,6 @@ double duration_of(const ScheduleParameters& p) {
   return duration;
 }
 
-/// A state that limits refuse: which of them first.
-std::string refused_by(const LevelModel& model, const Positions& x) {
-  for (const BoundEnergy* energy : model.limits())
-    if (const auto* limit = dynamic_cast<const StretchLimited*>(energy))
-      if (const auto beyond = limit->beyond(x); !beyond.empty()) return to_string(beyond[0], limit->limit());
-  return "";
-}
-
 /// The way of the obstacles from one model to the other with the cloth at x.
 StepLimit obstacles_way(const LevelModel& from, const LevelModel& to, const Positions& x) {
   StepLimit limit;
@@ -290,7 +282,7 @@ StepLimit Schedule::advance(int level, const Positions& x) {
     std::vector<std::string> made_from;
     Moment next = moment(numbers, made_from);
     LevelModel model = model_under(next, level);
-    if (std::string refused = refused_by(model, x); !refused.empty()) {
+    if (std::string refused = beyond_limits(model.limits(), x, 1); !refused.empty()) {
       limit.by = std::move(refused);
       part *= 0.5;
     } else if (StepLimit way = obstacles_way(*scene_.models[level], model, x); way.fraction < 1) {

@@ -1,5 +1,6 @@
 #include "core/model/stretch_limit.h"
 
+#include <algorithm>
 #include <cstdio>
 
 namespace drape {
@@ -8,6 +9,19 @@ std::string to_string(const StretchedTriangle& stretched, double limit) {
   char text[128];
   std::snprintf(text, sizeof text, "triangle %d, stretched to %.6g (limit %.6g)", stretched.triangle,
                 stretched.stretch, limit);
+  return text;
+}
+
+std::string beyond_limits(const std::vector<const BoundEnergy*>& energies, const Positions& x,
+                          std::size_t most_named) {
+  std::string text;
+  for (const BoundEnergy* energy : energies)
+    if (const auto* limit = dynamic_cast<const StretchLimited*>(energy)) {
+      const std::vector<StretchedTriangle> beyond = limit->beyond(x);
+      for (std::size_t k = 0; k < std::min(beyond.size(), most_named); ++k)
+        text += (text.empty() ? "" : ", ") + to_string(beyond[k], limit->limit());
+      if (beyond.size() > most_named) text += " and " + std::to_string(beyond.size() - most_named) + " more";
+    }
   return text;
 }
 

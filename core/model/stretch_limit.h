@@ -29,4 +29,9 @@ class StretchLimited {
   virtual std::unique_ptr<BoundEnergy> without(const std::vector<char>& skipped) const = 0;
 };
 
+/// Names what is beyond those of the energies that limit stretch, at most so many triangles; "" where none
+/// is.
+std::string beyond_limits(const std::vector<const BoundEnergy*>& energies, const Positions& x,
+                          std::size_t most_named);
+
 }  // namespace drape

@@ -12,54 +12,6 @@
 
 namespace drape {
 
-void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
-  d.add_choice("form", &NewtonParameters::form,
-               {{"quasistatic", NewtonForm::quasistatic}, {"static", NewtonForm::statics}})
-      .meaning("damped gradient flow in steps of h, or one minimisation (h infinite)")
-      .source("PCS section 4; supplement, Figure 4");
-  d.add("step_size", &NewtonParameters::step_size)
-      .unit("s")
-      .above(0)
-      .meaning("h of the first implicit step; the static form uses it for the decrement alone")
-      .source("PCS section 4");
-  d.add("step_growth", &NewtonParameters::step_growth)
-      .at_least(1)
-      .meaning("factor on h after a step taken in full; one cut below a quarter divides it. 1 keeps h")
-      .source("departure from the paper");
-  d.add("step_size_limit", &NewtonParameters::step_size_limit)
-      .unit("s")
-      .above(0)
-      .meaning("h grows no further");
-  d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
-      .at_least(1)
-      .meaning("Newton iterations an implicit step may take")
-      .source("PCS section 4");
-  d.add("max_steps", &NewtonParameters::max_steps).at_least(1).meaning("steps a level may take");
-  d.add("force_tolerance", &NewtonParameters::force_tolerance)
-      .above(0)
-      .meaning("a level is converged when the net force on its free vertices is below this part of the load")
-      .source("docs/method.md section 2");
-  d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
-      .unit("m/s")
-      .at_least(0)
-      .meaning("also asked of the largest of the last three decrements; 0 asks nothing")
-      .source("Li et al. 2021 (C-IPC)");
-  d.add_choice("projection", &NewtonParameters::projection,
-               {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
-      .meaning("what becomes of negative eigenvalues of an element's Hessian")
-      .source("Teran et al. 2005; Chen et al. 2024 for absolute");
-  d.add_choice("projection_share", &NewtonParameters::projection_share,
-               {{"full", ProjectionShare::full}, {"least", ProjectionShare::least}})
-      .meaning(
-          "how much of the projection is made: full, or the least of a few shares that leaves the matrix "
-          "positive definite, which tends to the exact Hessian near an equilibrium")
-      .source("departure from the paper");
-  d.add("refresh", &NewtonParameters::refresh)
-      .at_least(1)
-      .meaning("iterations that share one matrix and its factor")
-      .source("departure from the paper");
-}
-
 namespace {
 
 constexpr double sufficient_decrease = 1e-4;
@@ -360,12 +312,8 @@ class Newton {
   }
 
   std::string fault_at_start() const {
-    for (const BoundEnergy* energy : model_.limits())
-      if (const auto* limit = dynamic_cast<const StretchLimited*>(energy))
-        if (const auto beyond = limit->beyond(result_.x); !beyond.empty())
-          return to_string(beyond.front(), limit->limit()) +
-                 (beyond.size() > 1 ? " and " + std::to_string(beyond.size() - 1) + " more" : "") +
-                 "; start nearer to the rest shape, or raise the limit";
+    if (const std::string beyond = beyond_limits(model_.limits(), result_.x, 1); !beyond.empty())
+      return beyond + "; start nearer to the rest shape, or raise the limit";
     return "a triangle is degenerate there";
   }
 

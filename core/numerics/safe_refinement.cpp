@@ -15,6 +15,7 @@ constexpr double pull = 1e-3;
 /// The descent ends where the force left over is this part of what it was.
 constexpr double tolerance = 0.05;
 constexpr int most_steps = 100, most_rounds = 12;
+constexpr std::size_t most_named = 5;  // triangles, in a message
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
 class PullToTarget : public Objective {
@@ -140,19 +141,6 @@ void move_pins(const LevelModel& model, Positions& y) {
   y = limit.fraction == 1 ? placed : Positions(y + limit.fraction * (placed - y));
 }
 
-std::string name_outside(const LevelModel& model, const Positions& y) {
-  constexpr std::size_t most_named = 5;
-  std::string text;
-  for (const BoundEnergy* energy : model.limits())
-    if (const auto* limit = dynamic_cast<const StretchLimited*>(energy)) {
-      const std::vector<StretchedTriangle> beyond = limit->beyond(y);
-      for (std::size_t k = 0; k < std::min(beyond.size(), most_named); ++k)
-        text += (text.empty() ? "" : ", ") + to_string(beyond[k], limit->limit());
-      if (beyond.size() > most_named) text += " and " + std::to_string(beyond.size() - most_named) + " more";
-    }
-  return text;
-}
-
 }  // namespace
 
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
@@ -168,7 +156,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
   refined.x = problem.hierarchy.midpoints[level] * x;
   move_pins(model, refined.x);
   Positions target = problem.carry_up(weights, level, x);
-  const bool there = target == refined.x && name_outside(model, target).empty();
+  const bool there = target == refined.x && beyond_limits(model.limits(), target, 1).empty();
   if (!there) {
     PullToTarget objective(model, refined.x, std::move(target));
     NewtonParameters newton;
@@ -186,7 +174,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       if (left == 0 || refined.cut_short) break;
       objective.loosen(refined.x);
     }
-    if (!refined.cut_short) refined.fault = name_outside(model, refined.x);
+    if (!refined.cut_short) refined.fault = beyond_limits(model.limits(), refined.x, most_named);
     if (!refined.fault.empty())
       refined.fault = "the refined state is beyond the strain limit: " + refined.fault;
   }

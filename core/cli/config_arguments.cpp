@@ -1,0 +1,63 @@
+#include "core/cli/config_arguments.h"
+
+#include <cstdio>
+#include <iostream>
+
+#include "core/cli/exit_codes.h"
+#include "core/experiment/start_repair.h"
+
+namespace drape {
+
+std::string positive_integer(const std::string& text) {
+  const std::optional<int> number = parse_integer(text);
+  return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+}
+
+int report_errors(const ConfigErrors& errors) {
+  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  return exit_bad_input;
+}
+
+void ConfigArguments::add_to(CLI::App& command) {
+  config_option = command.add_option("config", config, "experiment file (YAML)")->required();
+  command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--levels", levels, "number of levels, in place of the experiment's")
+      ->check(positive_integer);
+  command.add_flag("--allow-start-repair", allow_start_repair,
+                   "move a start that touches something up or to a side until it does not");
+}
+
+Overrides ConfigArguments::overrides() const {
+  Overrides all;
+  for (const std::string& set : sets) {
+    const std::size_t equals = set.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw std::runtime_error("--set " + set + ": write it as key=value, as in --set newton.step_size=0.1");
+    all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+  }
+  if (levels > 0) all.emplace_back("levels", std::to_string(levels));
+  return all;
+}
+
+Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
+  ConfigErrors errors;
+  experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
+  if (errors.empty())
+    scene = build_scene(*experiment, errors,
+                        arguments.allow_start_repair ? TouchingStart::kept : TouchingStart::refused);
+  if (scene && arguments.allow_start_repair) repair(errors);
+  if (!errors.empty()) exit_code = report_errors(errors);
+}
+
+void Loaded::repair(ConfigErrors& errors) {
+  const Eigen::Vector3d way = repair_start(*experiment, *scene, errors);
+  if (way.isZero(0)) return;
+  scene = build_scene(*experiment, errors);
+  if (errors.empty())
+    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m so that it touches nothing\n", way.x(), way.y(),
+                 way.z());
+}
+
+}  // namespace drape

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/experiment/experiment.h"
+
+namespace drape {
+
+/// What an option that counts things must be, or "".
+std::string positive_integer(const std::string& text);
+
+/// Prints them and gives the exit code.
+int report_errors(const ConfigErrors& errors);
+
+/// An experiment file and what the command line changes of it.
+struct ConfigArguments {
+  std::string config;
+  std::vector<std::string> sets;
+  int levels = 0;
+  bool allow_start_repair = false;
+  CLI::Option* config_option = nullptr;
+
+  void add_to(CLI::App& command);
+  Overrides overrides() const;
+};
+
+/// An experiment and the scene built from it; errors are printed and leave both empty.
+struct Loaded {
+  std::optional<Experiment> experiment;
+  std::unique_ptr<Scene> scene;
+  int exit_code = 0;
+
+  Loaded(const ConfigArguments& arguments, const Registry& registry);
+
+ private:
+  void repair(ConfigErrors& errors);
+};
+
+}  // namespace drape

@@ -1,0 +1,169 @@
+#include "core/cli/run_command.h"
+
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include "core/cli/exit_codes.h"
+#include "core/experiment/run_folder.h"
+#include "core/numerics/parallel.h"
+#include "core/plugin/words.h"
+#include "core/view/live_view.h"
+
+namespace drape {
+
+RunCommand::RunCommand(CLI::App& app) {
+  command_ = app.add_subcommand("run", "run an experiment and write its results and report");
+  arguments_.add_to(*command_);
+  arguments_.config_option->required(false);
+  command_->add_option_function<std::string>(
+      "--out", [this](const std::string& folder) { options_.out = folder; },
+      "results folder (default: results/NAME)");
+  command_->add_option("--method", options_.methods, "only these of the experiment's methods")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command_->add_option("--threads", threads_, "threads (default: one a core)")->check(positive_integer);
+  command_->add_flag("--overwrite", options_.overwrite,
+                     "replace the results of an earlier run in the folder");
+  command_->add_option(
+      "--resume", resumed_,
+      "results folder of an interrupted run: go on with it; or, with --set, --levels, --level "
+      "or --method, and --out: flow on from a state of it in another folder");
+  command_->add_option("--level", level_, "of the state to flow on from (default: the last one of the run)");
+  command_
+      ->add_option("--checkpoint", options_.checkpoint,
+                   "seconds between saved states, about (default 5; 0: one at every step)")
+      ->check(CLI::NonNegativeNumber);
+  command_->add_flag("--quiet", options_.quiet, "no progress on standard error");
+  CLI::Option* show =
+      command_->add_flag("--view", view_, "serve a live view of the run on 127.0.0.1; prints its address");
+  command_->add_option("--port", port_, "port of the live view (default: one that is free)")
+      ->check([](const std::string& text) -> std::string {
+        const std::optional<int> number = parse_integer(text);
+        return number && *number >= 0 && *number <= 65535 ? "" : "must be a port, 0 to 65535, not " + text;
+      })
+      ->needs(show);
+  command_->add_flag("--view-keep", keep_view_, "go on serving the view after the run, until Ctrl-C")
+      ->needs(show);
+  command_->add_flag("!--no-report", options_.report, "leave out report.html and its pictures");
+}
+
+void RunCommand::check() const {
+  if (chosen() && arguments_.config.empty() && resumed_.empty())
+    throw CLI::RequiredError(arguments_.config_option->get_name());
+}
+
+int RunCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
+  set_thread_count(threads_);
+  if (resumed_.empty()) {
+    if (level_) throw std::runtime_error("--level is of a saved state; name its run with --resume");
+    return run_config(registry, stop_signal);
+  }
+  const auto refuse = [](const std::string& why) { throw std::runtime_error("--resume " + why); };
+  if (!arguments_.config.empty())
+    refuse("takes the experiment from the run's own config.yaml; leave out " + arguments_.config +
+           ", and change parameters with --set KEY=VALUE");
+  if (arguments_.allow_start_repair)
+    refuse("begins with a state that touches nothing; leave out --allow-start-repair");
+  const bool changed =
+      !arguments_.sets.empty() || arguments_.levels > 0 || level_ || !options_.methods.empty();
+  if (!changed && !options_.out.empty())
+    refuse(
+        "goes on in the run's own folder; leave out --out, or say with --set, --level or --method what "
+        "is to be another run");
+  if (!changed && options_.overwrite)
+    refuse("goes on with the results that are there; leave out --overwrite");
+  if (!changed) return resume(registry, stop_signal);
+  if (options_.out.empty())
+    refuse("with --set, --levels, --level or --method is another run; name its folder with --out");
+  std::error_code error;
+  if (std::filesystem::equivalent(options_.out, resumed_, error))
+    refuse(
+        "with --set, --levels, --level or --method leaves the run that it begins from as it is; name "
+        "another folder with --out");
+  return flow_on(registry, stop_signal);
+}
+
+int RunCommand::run_config(const Registry& registry, const std::function<int()>& stop_signal) const {
+  Loaded loaded(arguments_, registry);
+  if (loaded.exit_code) return loaded.exit_code;
+  RunOptions options = options_;
+  if (options.out.empty())
+    options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
+  return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt, stop_signal);
+}
+
+/// Goes on with an interrupted run, in its folder.
+int RunCommand::resume(const Registry& registry, const std::function<int()>& stop_signal) const {
+  const std::filesystem::path folder = resumed_;
+  if (is_complete(folder)) {
+    std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
+    return 0;
+  }
+  std::string warning;
+  Checkpoint checkpoint = checkpoint_to_resume(folder, warning);
+  if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
+  ConfigErrors errors;
+  const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  if (scene && checkpoint.own_start)
+    begin_from(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
+  if (!errors.empty()) return report_errors(errors);
+  RunOptions options = options_;
+  options.out = folder;
+  options.methods = checkpoint.methods;
+  return run(*experiment, *scene, std::move(options), std::move(checkpoint), stop_signal);
+}
+
+/// Flows on from a state of a run, under an experiment that may be changed, in a folder of its own.
+int RunCommand::flow_on(const Registry& registry, const std::function<int()>& stop_signal) const {
+  const std::filesystem::path folder = resumed_, config = folder / "config.yaml";
+  RunOptions options = options_;
+  if (options.methods.size() > 1)
+    throw std::runtime_error("--resume with --method: name one method, whose state is to flow on");
+  const SavedState state = saved_state(folder, options.methods.empty() ? "" : options.methods[0], level_);
+  ConfigErrors errors;
+  const auto before = read_experiment(config, {}, registry, errors);
+  if (!before) return report_errors(errors);
+  const auto experiment = read_experiment(config, arguments_.overrides(), registry, errors);
+  if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  if (scene) begin_from(*experiment, *scene, state.level, state.x, errors);
+  if (!errors.empty()) return report_errors(errors);
+  options.methods = {state.method};
+  options.first_level = state.level;
+  options.begun_from =
+      folder.string() + ", method " + state.method + ", level " + std::to_string(state.level);
+  return run(*experiment, *scene, std::move(options), std::nullopt, stop_signal);
+}
+
+/// Runs an experiment, or goes on with one where the checkpoint says.
+int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions options,
+                    std::optional<Checkpoint> checkpoint, const std::function<int()>& stop_signal) const {
+  options.stop = [&] { return stop_signal() != 0; };
+  std::optional<LiveView> view;
+  if (view_) {
+    view.emplace(experiment, scene, options.methods, port_);
+    options.view = &*view;
+    std::cout << "view: " << view->url() << std::endl;
+  }
+  const bool converged = checkpoint ? resume_experiment(experiment, scene, options, std::move(*checkpoint))
+                                    : run_experiment(experiment, scene, options);
+  if (options.report)
+    std::cout << "report: " << (options.out / "report.html").string() << "\n";
+  else
+    std::cout << "results: " << (options.out / "results.json").string() << "\n";
+  const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
+  const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop is a Ctrl-C
+  if (keep_view_ && !stop_signal()) {
+    std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
+    while (!stop_signal()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  if (stopped) {
+    std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
+    return 128 + as_signal;
+  }
+  return converged ? 0 : exit_not_converged;
+}
+
+}  // namespace drape

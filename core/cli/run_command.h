@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/cli/config_arguments.h"
+#include "core/experiment/runner.h"
+#include "core/experiment/session.h"
+
+namespace drape {
+
+/// `drape run`: an experiment, or with --resume what is left of one, or another one from a state of it.
+class RunCommand {
+ public:
+  explicit RunCommand(CLI::App& app);
+  RunCommand(const RunCommand&) = delete;  // options write into it
+
+  bool chosen() const { return command_->parsed(); }
+  /// After parsing: throws CLI::RequiredError where neither an experiment nor a run to resume is named.
+  void check() const;
+  /// `stop_signal` gives the signal that asks to stop, 0 before there is one. Returns the exit code.
+  int run(const Registry& registry, const std::function<int()>& stop_signal) const;
+
+ private:
+  int run_config(const Registry& registry, const std::function<int()>& stop_signal) const;
+  int resume(const Registry& registry, const std::function<int()>& stop_signal) const;
+  int flow_on(const Registry& registry, const std::function<int()>& stop_signal) const;
+  int run(const Experiment& experiment, const Scene& scene, RunOptions options,
+          std::optional<Checkpoint> checkpoint, const std::function<int()>& stop_signal) const;
+
+  CLI::App* command_;
+  ConfigArguments arguments_;
+  RunOptions options_;
+  std::string resumed_;       // the results folder of --resume
+  std::optional<int> level_;  // of the state to flow on from
+  bool view_ = false, keep_view_ = false;
+  int threads_ = 0, port_ = 0;
+};
+
+}  // namespace drape
