@@ -1,16 +1,16 @@
 // The `drape` command. Exit codes: 0 done and converged, 1 a run that ended otherwise, 2 bad input.
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <fstream>
 #include <iostream>
 
 #include "core/cli/config_arguments.h"
 #include "core/cli/exit_codes.h"
 #include "core/cli/run_command.h"
+#include "core/cli/stop_signals.h"
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
+#include "core/experiment/run_folder.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
 #include "core/plugin/words.h"
@@ -28,18 +28,6 @@ namespace {
 using namespace drape;
 
 constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metric"};
-
-volatile std::sig_atomic_t stop_signal = 0;
-
-void on_signal(int number) {
-  if (stop_signal) std::_Exit(128 + number);  // the second one does not wait
-  stop_signal = number;
-}
-
-void stop_on_signals() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-}
 
 int check(const ConfigArguments& arguments, const Registry& registry) {
   Loaded loaded(arguments, registry);
@@ -234,13 +222,12 @@ int main_checked(int argc, char** argv) {
     std::cout << table1_text(read_run(run_folder));
     return 0;
   }
-  if (run.chosen() || sweep.job_chosen() || sweep.chosen()) stop_on_signals();
-  const auto stop = [] { return int(stop_signal); };
-  if (sweep.job_chosen()) return sweep.run_job(stop);
+  if (sweep.job_chosen() || sweep.chosen()) stop_on_signals();
+  if (sweep.job_chosen()) return sweep.run_job(stop_signal);
   Registry registry;
   load_plugins(registry, plugin_directories());
-  if (run.chosen()) return run.run(registry, stop);
-  if (sweep.chosen()) return sweep.run(registry, stop);
+  if (run.chosen()) return run.run(registry);
+  if (sweep.chosen()) return sweep.run(registry, stop_signal);
   if (*check_command) return check(check_arguments, registry);
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);

@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "core/cli/exit_codes.h"
+#include "core/cli/stop_signals.h"
 #include "core/experiment/run_folder.h"
 #include "core/numerics/parallel.h"
-#include "core/plugin/words.h"
 #include "core/view/live_view.h"
 
 namespace drape {
@@ -53,11 +53,11 @@ void RunCommand::check() const {
     throw CLI::RequiredError(arguments_.config_option->get_name());
 }
 
-int RunCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
+int RunCommand::run(const Registry& registry) const {
   set_thread_count(threads_);
   if (resumed_.empty()) {
     if (level_) throw std::runtime_error("--level is of a saved state; name its run with --resume");
-    return run_config(registry, stop_signal);
+    return run_config(registry);
   }
   const auto refuse = [](const std::string& why) { throw std::runtime_error("--resume " + why); };
   if (!arguments_.config.empty())
@@ -73,7 +73,7 @@ int RunCommand::run(const Registry& registry, const std::function<int()>& stop_s
         "is to be another run");
   if (!changed && options_.overwrite)
     refuse("goes on with the results that are there; leave out --overwrite");
-  if (!changed) return resume(registry, stop_signal);
+  if (!changed) return resume(registry);
   if (options_.out.empty())
     refuse("with --set, --levels, --level or --method is another run; name its folder with --out");
   std::error_code error;
@@ -81,20 +81,20 @@ int RunCommand::run(const Registry& registry, const std::function<int()>& stop_s
     refuse(
         "with --set, --levels, --level or --method leaves the run that it begins from as it is; name "
         "another folder with --out");
-  return flow_on(registry, stop_signal);
+  return flow_on(registry);
 }
 
-int RunCommand::run_config(const Registry& registry, const std::function<int()>& stop_signal) const {
+int RunCommand::run_config(const Registry& registry) const {
   Loaded loaded(arguments_, registry);
   if (loaded.exit_code) return loaded.exit_code;
   RunOptions options = options_;
   if (options.out.empty())
     options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
-  return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt, stop_signal);
+  return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt);
 }
 
 /// Goes on with an interrupted run, in its folder.
-int RunCommand::resume(const Registry& registry, const std::function<int()>& stop_signal) const {
+int RunCommand::resume(const Registry& registry) const {
   const std::filesystem::path folder = resumed_;
   if (is_complete(folder)) {
     std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
@@ -112,11 +112,11 @@ int RunCommand::resume(const Registry& registry, const std::function<int()>& sto
   RunOptions options = options_;
   options.out = folder;
   options.methods = checkpoint.methods;
-  return run(*experiment, *scene, std::move(options), std::move(checkpoint), stop_signal);
+  return run(*experiment, *scene, std::move(options), std::move(checkpoint));
 }
 
 /// Flows on from a state of a run, under an experiment that may be changed, in a folder of its own.
-int RunCommand::flow_on(const Registry& registry, const std::function<int()>& stop_signal) const {
+int RunCommand::flow_on(const Registry& registry) const {
   const std::filesystem::path folder = resumed_, config = folder / "config.yaml";
   RunOptions options = options_;
   if (options.methods.size() > 1)
@@ -134,13 +134,14 @@ int RunCommand::flow_on(const Registry& registry, const std::function<int()>& st
   options.first_level = state.level;
   options.begun_from =
       folder.string() + ", method " + state.method + ", level " + std::to_string(state.level);
-  return run(*experiment, *scene, std::move(options), std::nullopt, stop_signal);
+  return run(*experiment, *scene, std::move(options), std::nullopt);
 }
 
 /// Runs an experiment, or goes on with one where the checkpoint says.
 int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions options,
-                    std::optional<Checkpoint> checkpoint, const std::function<int()>& stop_signal) const {
-  options.stop = [&] { return stop_signal() != 0; };
+                    std::optional<Checkpoint> checkpoint) const {
+  stop_on_signals();  // what has been loaded until now is nothing to be saved
+  options.stop = [] { return stop_signal() != 0; };
   std::optional<LiveView> view;
   if (view_) {
     view.emplace(experiment, scene, options.methods, port_);

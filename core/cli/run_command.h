@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,15 +19,15 @@ class RunCommand {
   bool chosen() const { return command_->parsed(); }
   /// After parsing: throws CLI::RequiredError where neither an experiment nor a run to resume is named.
   void check() const;
-  /// `stop_signal` gives the signal that asks to stop, 0 before there is one. Returns the exit code.
-  int run(const Registry& registry, const std::function<int()>& stop_signal) const;
+  /// Returns the exit code.
+  int run(const Registry& registry) const;
 
  private:
-  int run_config(const Registry& registry, const std::function<int()>& stop_signal) const;
-  int resume(const Registry& registry, const std::function<int()>& stop_signal) const;
-  int flow_on(const Registry& registry, const std::function<int()>& stop_signal) const;
+  int run_config(const Registry& registry) const;
+  int resume(const Registry& registry) const;
+  int flow_on(const Registry& registry) const;
   int run(const Experiment& experiment, const Scene& scene, RunOptions options,
-          std::optional<Checkpoint> checkpoint, const std::function<int()>& stop_signal) const;
+          std::optional<Checkpoint> checkpoint) const;
 
   CLI::App* command_;
   ConfigArguments arguments_;

@@ -48,8 +48,8 @@ void fields(A& a, BlockCholesky::Analysis& m) {
 template <class A>
 void fields(A& a, NewtonState& s) {
   a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.positions, s.changed_at, s.times_held_up, s.iterations_of_step, s.begun_at, s.contacts, s.pattern,
-    s.analysis, s.factor_age, s.factor_shift, s.factor_values);
+    s.positions, s.changed_at, s.times_held_up, s.iterations_of_step, s.strained_for, s.slowed, s.begun_at,
+    s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift, s.factor_values);
 }
 
 template <class A>

@@ -49,7 +49,7 @@ struct IterationRow {
 struct LevelResult {
   int level = 0;
   Outcome outcome = Outcome::converged;
-  std::string message;  ///< what stopped it, where that is not convergence
+  std::string message;  ///< what stopped it, if not convergence, after what is to be said of how it was begun
   Positions x;
   bool afresh = false;  ///< begun from the scene's start, so that no other level's work is in it
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;

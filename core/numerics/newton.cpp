@@ -38,6 +38,11 @@ constexpr double pinched = 1e-7;
 /// Newton iterations of a step after obstacles have moved: friction's anchors follow what it ends with, and
 /// one iteration overshoots.
 constexpr int carried_iterations = 30;
+/// A cloth that is a hair from a limit slides along it: each full step widens what it leaves of the limit no
+/// more than the limit's own curve takes away, and forces stay a thousand times the load. After so many such
+/// steps h is divided, again and again, until they are as large as loads are.
+constexpr double strained = 1e3, relaxed = 10, slowing = 16;
+constexpr int most_strained = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
@@ -65,7 +70,6 @@ class Newton {
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
-    result_.afresh = run.afresh;
     result_.message = run.remark;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
@@ -144,6 +148,8 @@ class Newton {
     s.changed_at = changed_at_;
     s.times_held_up = times_held_up_;
     s.iterations_of_step = iterations_of_step_;
+    s.strained_for = strained_for_;
+    s.slowed = slowed_;
     s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
     s.contacts = f_.contacts().memory();
     s.pattern = f_.pattern_memory();
@@ -171,6 +177,8 @@ class Newton {
     changed_at_ = s.changed_at;
     times_held_up_ = s.times_held_up;
     iterations_of_step_ = s.iterations_of_step;
+    strained_for_ = s.strained_for;
+    slowed_ = s.slowed;
     begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
@@ -343,9 +351,22 @@ class Newton {
       if (is_solved_to(solved_part)) break;
     }
     ++result_.steps;
+    adapt_step_size();
+    return true;
+  }
+
+  /// By how far the last fresh direction led, and by whether steps do any good.
+  void adapt_step_size() {
+    strained_for_ = result_.force_residual > strained ? strained_for_ + 1 : 0;
+    if (strained_for_ == most_strained) {
+      slowed_ = true;
+      strained_for_ = 0;
+      h_ = std::max(h_ / slowing, smallest_step_size);
+    }
+    if (result_.force_residual < relaxed) slowed_ = false;
+    if (slowed_) return;
     if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
     if (fresh_alpha_ < shortened) h_ /= p_.step_growth;
-    return true;
   }
 
   /// Whether what is left of the implicit step's force is less than this part of what its end is asked for.
@@ -362,8 +383,7 @@ class Newton {
       }
       if (line_search()) break;
       if (is_solved_to(rounded_part)) {
-        direction_.setZero();
-        alpha_ = 1;
+        alpha_ = 1;  // of a step that is nothing
         break;
       }
       // A factor kept from an earlier state may give no descent: once more with a fresh one. A step
@@ -583,6 +603,8 @@ class Newton {
   std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
   ChangeBegun changed_at_;   // when the change under way was begun
   int times_held_up_ = 0;
+  int strained_for_ = 0;        // steps in turn
+  bool slowed_ = false;         // h does not grow
   int iterations_of_step_ = 1;  // that the step may take
 
   BlockCholesky cholesky_;

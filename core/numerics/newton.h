@@ -15,7 +15,6 @@ struct LevelRun {
   std::map<std::string, double> spent = {};  ///< on the level before this, by phase [s]
   const NewtonState* from = nullptr;  ///< where an earlier minimisation of the same was, to go on there
   Conditions* conditions = nullptr;   ///< that change meanwhile
-  bool afresh = false;                ///< as LevelResult has it
   std::string remark = {};            ///< what the result's message begins with
 };
 

@@ -41,9 +41,9 @@ std::vector<LevelResult> solve_progressively(
       result.seconds_by_phase = spent;
     } else {
       result = minimise(*objective(l), std::move(start.x), newton,
-                        {clock, observer, l < problem.finest(), spent, state, problem.conditions,
-                         l == first || !remark.empty(), remark});
+                        {clock, observer, l < problem.finest(), spent, state, problem.conditions, remark});
     }
+    result.afresh = l == first;
     results.push_back(std::move(result));
     observer.level_finished(results.back());
   }

@@ -1,6 +1,7 @@
 #include "core/numerics/safe_refinement.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/model/stretch_limit.h"
 #include "core/numerics/newton.h"
@@ -15,6 +16,8 @@ constexpr double pull = 1e-3;
 /// The descent ends where the force left over is this part of what it was.
 constexpr double tolerance = 0.05;
 constexpr int most_steps = 100, most_rounds = 12;
+/// Or where so many rounds in turn have neither converged nor brought triangles into the limits.
+constexpr int most_idle = 4;
 constexpr std::size_t most_named = 5;  // triangles, in a message
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its limits on F.
@@ -165,13 +168,16 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     newton.force_tolerance = tolerance;
     newton.max_steps = most_steps;
     Quiet quiet(observer);
+    int fewest = model.level().triangle_count() + 1, idle = 0;
     for (int round = 0; round < most_rounds; ++round) {
       LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, quiet});
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
       const int left = objective.divide(refined.x);
       refined.cut_short = result.outcome == Outcome::cancelled;
-      if (left == 0 || refined.cut_short) break;
+      idle = left < fewest || result.outcome == Outcome::converged ? 0 : idle + 1;
+      fewest = std::min(fewest, left);
+      if (left == 0 || refined.cut_short || idle == most_idle) break;
       objective.loosen(refined.x);
     }
     if (!refined.cut_short) refined.fault = beyond_limits(model.limits(), refined.x, most_named);

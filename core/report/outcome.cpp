@@ -102,17 +102,23 @@ std::optional<Verdict> intersection_verdict(const RunData& run) {
 }
 
 std::string troubles(const RunData& run) {
-  std::string items;
+  std::string items, remarks;
   for (const MethodRecord& method : run.methods) {
     for (const LevelRecord& level : method.levels) {
-      if (level.status == "converged" || level.status.empty()) continue;
-      items += "<li><b>" + escape(method.name) + "</b>, level " + std::to_string(level.level) + ": " +
-               escape(level.status) + " after " + html::count(level.newton_iterations) +
-               " iterations at force residual " + figure(level.force_residual) +
-               (level.message.empty() ? "" : ": " + escape(level.message)) + "</li>\n";
+      const std::string where =
+          "<li><b>" + escape(method.name) + "</b>, level " + std::to_string(level.level);
+      const std::string message = level.message.empty() ? "" : ": " + escape(level.message);
+      if (level.status != "converged" && !level.status.empty())
+        items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
+                 " iterations at force residual " + figure(level.force_residual) + message + "</li>\n";
+      else if (!message.empty())
+        remarks += where + message + "</li>\n";
     }
   }
-  return items.empty() ? "" : "<p>What did not converge:</p>\n<ul>\n" + items + "</ul>\n";
+  const auto list = [](const std::string& title, const std::string& rows) {
+    return rows.empty() ? "" : "<p>" + title + "</p>\n<ul>\n" + rows + "</ul>\n";
+  };
+  return list("What did not converge:", items) + list("To be known of what converged:", remarks);
 }
 
 Figure final_energy(const RunData& run, const MethodRecord& method) {

@@ -48,18 +48,21 @@ std::string outcomes(const MethodRecord& method) {
   return same ? method.status : joined(words);
 }
 
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
 Json row_of(const RunData& run, const MethodRecord& method) {
   OnTheWay way(run, method.name);
   Figure stretch;
-  std::string message;
+  std::string fault, remark;
   for (const LevelRecord& level : method.levels) {
     if (level.smallest_gap)
       way.smallest_gap = std::min(way.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
     if (level.intersections) way.intersections = way.intersections.value_or(0) + *level.intersections;
     if (level.largest_stretch) stretch = std::max(stretch.value_or(0), *level.largest_stretch);
-    if (message.empty() && !level.message.empty())
-      message =
-          (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message;
+    if (level.message.empty()) continue;
+    (level.status == "converged" ? remark : fault) +=
+        (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
+        "\n";
   }
   const ConsistencyRecord* pair = method.levels.size() > 1
                                       ? method.pair(method.levels.front().level, method.levels.back().level)
@@ -75,7 +78,7 @@ Json row_of(const RunData& run, const MethodRecord& method) {
   row["largest_stretch"] = json_of(stretch);
   row["intersections"] = json_of(way.intersections);
   row["d_H_fit"] = pair ? json_of(pair->d_H_fit) : Json();
-  row["message"] = message;
+  row["message"] = first_line(fault + remark);
   return row;
 }
 

@@ -22,16 +22,16 @@ struct Limited {
   std::vector<int> triangles;  ///< by rising index
   Stencils corners;            ///< of each
   std::vector<Kernel::Rest> rest;
-  ElementOrder order;  ///< of them
   std::shared_ptr<const Positions> places;
 };
 
 class BoundStrainLimit final : public BoundEnergy, public StepFilter, public StretchLimited {
  public:
-  BoundStrainLimit(double limit, Limited limited)
+  /// `order` is of limited.corners.
+  BoundStrainLimit(double limit, Limited limited, ElementOrder order)
       : limit_(limit),
         limited_(std::move(limited)),
-        energy_(limited_.corners, limited_.rest, limited_.order) {}
+        energy_(limited_.corners, limited_.rest, std::move(order)) {}
 
   double value(const Positions& x) const override { return energy_.value(x); }
   double add_gradient(const Positions& x, Positions& g) const override { return energy_.add_gradient(x, g); }
@@ -75,7 +75,7 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
     if (static_cast<int>(skipped.size()) != limited_.level_triangles)
       throw std::runtime_error("strain_limit: " + std::to_string(skipped.size()) + " flags for " +
                                std::to_string(limited_.level_triangles) + " triangles");
-    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, {}, limited_.places};
+    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, limited_.places};
     for (int i = 0; i < count(); ++i) {
       if (skipped[limited_.triangles[i]]) continue;
       left.corners.row(left.triangles.size()) = limited_.corners.row(i);
@@ -83,8 +83,8 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
       left.rest.push_back(limited_.rest[i]);
     }
     left.corners.conservativeResize(left.triangles.size(), 3);
-    left.order = ElementOrder::of(left.corners, *left.places);
-    return std::make_unique<BoundStrainLimit>(limit_, std::move(left));
+    ElementOrder order = ElementOrder::of(left.corners, *left.places);
+    return std::make_unique<BoundStrainLimit>(limit_, std::move(left), std::move(order));
   }
 
  private:
@@ -122,9 +122,8 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
 }  // namespace
 
 std::unique_ptr<BoundEnergy> StrainLimit::bind(const Level& level, const Material& material) const {
-  Limited all{level.triangle_count(), {},
-              level.rest.triangles,   {},
-              level.triangle_order,   std::make_shared<Positions>(level.rest.vertices)};
+  Limited all{
+      level.triangle_count(), {}, level.rest.triangles, {}, std::make_shared<Positions>(level.rest.vertices)};
   for (int t = 0; t < level.triangle_count(); ++t) {
     const RestTriangle triangle = RestTriangle::of(level, t);
     Kernel::Rest rest;
@@ -133,7 +132,7 @@ std::unique_ptr<BoundEnergy> StrainLimit::bind(const Level& level, const Materia
     all.triangles.push_back(t);
     all.rest.push_back(rest);
   }
-  return std::make_unique<BoundStrainLimit>(p_.limit, std::move(all));
+  return std::make_unique<BoundStrainLimit>(p_.limit, std::move(all), level.triangle_order);
 }
 
 }  // namespace drape

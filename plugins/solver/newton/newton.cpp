@@ -26,9 +26,9 @@ class NewtonSolver : public ResumableSolver {
       if (!state) observer.level_started(l);
       if (problem.conditions && !state) problem.conditions->begin(l, true);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(
-          minimise(objective, problem.starts[l], p_.newton,
-                   {clock, observer, l < problem.finest(), {}, state, problem.conditions, true}));
+      results.push_back(minimise(objective, problem.starts[l], p_.newton,
+                                 {clock, observer, l < problem.finest(), {}, state, problem.conditions}));
+      results.back().afresh = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
     }

@@ -1,0 +1,26 @@
+#include "core/cli/stop_signals.h"
+
+#include <csignal>
+#include <cstdlib>
+
+namespace drape {
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void on_signal(int number) {
+  if (received) std::_Exit(128 + number);
+  received = number;
+}
+
+}  // namespace
+
+void stop_on_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+int stop_signal() { return received; }
+
+}  // namespace drape
