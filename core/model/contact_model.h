@@ -46,7 +46,7 @@ class ContactSweep {
   virtual ~ContactSweep() = default;
   /// How far along the way nothing touches, a part of every gap kept.
   virtual StepLimit max_step() const = 0;
-  /// The contacts at x, a state on the way.
+  /// The contacts at x, a state on the way, no farther than max_step.
   virtual std::unique_ptr<ContactSet> build(const Positions& x) const = 0;
 };
 

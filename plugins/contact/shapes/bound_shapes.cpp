@@ -18,23 +18,15 @@ std::string triangle_name(int i) { return "cloth triangle " + std::to_string(i);
 class ShapeSweep final : public ContactSweep {
  public:
   ShapeSweep(std::shared_ptr<const ShapeScene> scene, const Positions& x0, const Positions& x1)
-      : scene_(std::move(scene)), x0_(x0), x1_(x1), candidates_(find_candidates(*scene_, x0, x1)) {}
-
-  StepLimit max_step() const override {
-    const auto& pairs = candidates_.triangles;
-    std::vector<double> fractions(pairs.size());
-    parallel_for(static_cast<int>(pairs.size()), 256, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        fractions[i] = advance(scene_->solids[pairs[i].solid], scene_->corners(pairs[i].triangle, x0_),
-                               scene_->corners(pairs[i].triangle, x1_), scene_->keep);
-    });
-    StepLimit limit;
-    for (std::size_t i = 0; i < pairs.size(); ++i)
-      if (fractions[i] < limit.fraction)
-        limit = {fractions[i],
-                 triangle_name(pairs[i].triangle) + " and " + scene_->solids[pairs[i].solid].name};
-    return limit;
+      : scene_(std::move(scene)) {
+    const std::vector<TrianglePair> triangles = find_triangles(*scene_, x0, x1);
+    if (x0 != x1) limit_ = filter(triangles, x0, x1);
+    // Long ways are mostly cut short, and contacts are asked for no farther.
+    candidates_ = find_candidates(*scene_, triangles, x0,
+                                  limit_.fraction < 1 ? Positions(x0 + limit_.fraction * (x1 - x0)) : x1);
   }
+
+  StepLimit max_step() const override { return limit_; }
 
   std::unique_ptr<ContactSet> build(const Positions& x) const override {
     std::vector<std::unique_ptr<ContactSet>> parts;
@@ -47,8 +39,23 @@ class ShapeSweep final : public ContactSweep {
   }
 
  private:
+  StepLimit filter(const std::vector<TrianglePair>& pairs, const Positions& x0, const Positions& x1) const {
+    std::vector<double> fractions(pairs.size());
+    parallel_for(static_cast<int>(pairs.size()), 256, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        fractions[i] = advance(scene_->solids[pairs[i].solid], scene_->corners(pairs[i].triangle, x0),
+                               scene_->corners(pairs[i].triangle, x1), scene_->keep);
+    });
+    StepLimit limit;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (fractions[i] < limit.fraction)
+        limit = {fractions[i],
+                 triangle_name(pairs[i].triangle) + " and " + scene_->solids[pairs[i].solid].name};
+    return limit;
+  }
+
   std::shared_ptr<const ShapeScene> scene_;
-  Positions x0_, x1_;
+  StepLimit limit_;
   Candidates candidates_;
 };
 
@@ -62,7 +69,7 @@ class BoundShapes final : public BoundContact, public MovableObstacles {
 
   std::vector<Touch> intersections(const Positions& x) const override {
     std::vector<Touch> found;
-    for (const TrianglePair& pair : find_candidates(*scene_, x, x).triangles) {
+    for (const TrianglePair& pair : find_triangles(*scene_, x, x)) {
       const Corners c = scene_->corners(pair.triangle, x);
       if (touches(scene_->solids[pair.solid], c))
         found.push_back(

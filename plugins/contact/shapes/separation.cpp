@@ -9,6 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double hard_to_tell = 1e-7;  // [m]
+/// Steps that shrink the gap tenfold each soon come to where doubles end: from here on [m] they leave most of
+/// it.
+constexpr double hardly_any = 1e-9, most = 0.9;
+
 Corners between(const Corners& a, const Corners& b, double t) {
   Corners c;
   for (int k = 0; k < 3; ++k) c[k] = a[k] + t * (b[k] - a[k]);
@@ -46,9 +51,12 @@ Separation separate(const Solid& solid, const Corners& triangle) {
     const Separation s = with(n);
     if (s.gap > best.gap) best = s;
   };
+  Vector3d across[3];  // edges and what they cross of the solid
   for (int k = 0; k < 3; ++k) {
     const Vector3d &a = triangle[k], &b = triangle[(k + 1) % 3];
-    take(solid.nearest(a + solid.nearest_on_edge(a, b) * (b - a)).normal);
+    const Nearest nearest = solid.nearest(a + solid.nearest_on_edge(a, b) * (b - a));
+    take(nearest.normal);
+    across[k] = (b - a).cross(nearest.tangent);
   }
   const Vector3d up = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
   const double length = up.norm();
@@ -56,6 +64,13 @@ Separation separate(const Solid& solid, const Corners& triangle) {
     take(up / length);
     take(-up / length);
   }
+  // So near an edge or a rim, the direction to its nearest point is mostly rounding; that across both is not.
+  if (best.gap < hard_to_tell)
+    for (const Vector3d& n : across)
+      if (const double size = n.norm(); size > 0) {
+        take(n / size);
+        take(-n / size);
+      }
   return best;
 }
 
@@ -74,7 +89,7 @@ double advance(const Solid& solid, const Corners& from, const Corners& to, doubl
 
   Separation s = separate(solid, from);
   if (!(s.gap > 0)) return 0;
-  const double kept = keep * s.gap;
+  const double kept = std::max(keep * s.gap, std::min(most * s.gap, hardly_any));
   double t = 0;
   for (int round = 0; round < 128 && s.gap > 1.01 * kept; ++round) {
     t = reach(solid, from, to, t, s.normal, kept);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/numerics/parallel.h"
 
@@ -14,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr int grain = 2048;
 constexpr double parallel_edges = 1e-3;  // (Li et al. 2020, eq. 18): sin² of the angle that fading begins at
-constexpr double slack = 0.0005;         // of the range: how far a cylinder's features are inside it
+constexpr double slack = 5e-5;           // of the range: how far a cylinder's features are inside it
 constexpr double half = 0.5;             // the share of edges and of triangles' insides
 
 /// A ball that an element stays in.
@@ -39,13 +40,17 @@ class Finder {
   Finder(const ShapeScene& scene, int solid, const Positions& x0, const Positions& x1)
       : scene_(scene), solid_(scene.solids[solid]), features_(scene.features[solid]), x0_(x0), x1_(x1) {}
 
-  /// Triangles that the range may be entered by, ascending.
-  std::vector<int> near_triangles() const {
-    std::vector<char> near(scene_.triangles.rows());
+  /// Those of the triangles, ascending, that the range may be entered by.
+  std::vector<int> near_triangles(const std::vector<int>& among) const {
+    std::vector<char> near(among.size());
     parallel_for(static_cast<int>(near.size()), grain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) near[i] = is_near(ball_of(&scene_.triangles(i, 0), 3, x0_, x1_));
+      for (int i = begin; i < end; ++i)
+        near[i] = is_near(ball_of(&scene_.triangles(among[i], 0), 3, x0_, x1_));
     });
-    return marked(near);
+    std::vector<int> result;
+    for (std::size_t i = 0; i < among.size(); ++i)
+      if (near[i]) result.push_back(among[i]);
+    return result;
   }
 
   std::vector<int> vertices_of(const std::vector<int>& triangles) const {
@@ -172,13 +177,25 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   return s;
 }
 
-Candidates find_candidates(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+std::vector<TrianglePair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
+  std::vector<TrianglePair> found;
+  std::vector<int> all(scene.triangles.rows());
+  std::iota(all.begin(), all.end(), 0);
+  for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
+    for (const int i : Finder(scene, k, x0, x1).near_triangles(all)) found.push_back({i, k});
+  return found;
+}
+
+Candidates find_candidates(const ShapeScene& scene, const std::vector<TrianglePair>& found,
+                           const Positions& x0, const Positions& x1) {
   Candidates c;
+  std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
     const Solid& solid = scene.solids[k];
     const Finder finder(scene, k, x0, x1);
-    const std::vector<int> triangles = finder.near_triangles();
-    for (const int i : triangles) c.triangles.push_back({i, k});
+    std::vector<int> triangles;
+    for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].triangle);
+    triangles = finder.near_triangles(triangles);
     finder.add_insides(triangles, scene.first_point[k], c.pairs);
     if (solid.kind == SolidKind::sphere) continue;
     for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, &solid, scene.vertex_area[i]});

@@ -37,14 +37,17 @@ struct TrianglePair {
   int triangle, solid;
 };
 
-/// All that may come within range between two states.
+/// Triangles that may come within range of a solid on the straight way from x0 to x1, solid by solid.
+std::vector<TrianglePair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1);
+
+/// All contacts that may be within range between two states.
 struct Candidates {
-  std::vector<TrianglePair> triangles;
   std::vector<VertexPair> vertices;
   std::vector<ContactPair> pairs;
 };
 
-/// The candidates on the straight way from x0 to x1.
-Candidates find_candidates(const ShapeScene& scene, const Positions& x0, const Positions& x1);
+/// Those of the triangles on the straight way from x0 to x1.
+Candidates find_candidates(const ShapeScene& scene, const std::vector<TrianglePair>& triangles,
+                           const Positions& x0, const Positions& x1);
 
 }  // namespace drape

@@ -120,7 +120,7 @@ void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, co
     moved.row(vertex) += weight * (to[solid].to_world(from.to_local(touched)) - touched);
     weights[vertex] += weight;
   };
-  const Candidates near = find_candidates(scene, x, x);
+  const Candidates near = find_candidates(scene, find_triangles(scene, x, x), x, x);
   const double range = scene.barrier.range;
   for (const VertexPair& pair : near.vertices) {
     const Vector3d p = x.row(pair.vertex);
