@@ -40,7 +40,8 @@ constexpr double pinched = 1e-7;
 constexpr int carried_iterations = 30;
 /// A cloth that is a hair from a limit slides along it: each full step widens what it leaves of the limit no
 /// more than the limit's own curve takes away, and forces stay a thousand times the load. After so many such
-/// steps h is divided, again and again, until they are as large as loads are.
+/// steps h is divided, again and again, until they are as large as loads are, or have been well below that
+/// for as long.
 constexpr double strained = 1e3, relaxed = 10, slowing = 16;
 constexpr int most_strained = 20;
 constexpr double smallest_step_size = 1e-8;
@@ -357,13 +358,14 @@ class Newton {
 
   /// By how far the last fresh direction led, and by whether steps do any good.
   void adapt_step_size() {
-    strained_for_ = result_.force_residual > strained ? strained_for_ + 1 : 0;
+    strained_for_ =
+        result_.force_residual > strained ? std::max(strained_for_, 0) + 1 : std::min(strained_for_, 0) - 1;
     if (strained_for_ == most_strained) {
       slowed_ = true;
       strained_for_ = 0;
       h_ = std::max(h_ / slowing, smallest_step_size);
     }
-    if (result_.force_residual < relaxed) slowed_ = false;
+    if (result_.force_residual < relaxed || strained_for_ == -most_strained) slowed_ = false;
     if (slowed_) return;
     if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
     if (fresh_alpha_ < shortened) h_ /= p_.step_growth;

@@ -31,10 +31,10 @@ struct NewtonState {
   std::string held_by;  ///< what kept the last step short, in words
   HardPositions::Memory positions;
   ChangeBegun changed_at;
-  int iterations_of_step = 1;        ///< that the step to come may take
-  int strained_for = 0;              ///< steps in turn that ended with forces far beyond the load
-  bool slowed = false;               ///< for that, so that h does not grow
-  int times_held_up = 0;             ///< in turn, the change of conditions under way
+  int iterations_of_step = 1;  ///< that the step to come may take
+  int strained_for = 0;   ///< steps in turn that ended with forces far beyond the load; negative: without
+  bool slowed = false;    ///< for that, so that h does not grow
+  int times_held_up = 0;  ///< in turn, the change of conditions under way
   std::array<double, 3> begun_at{};  ///< middle of the free vertices, at the start or the last change [m]
   ContactMemory contacts;
   Objective::PatternMemory pattern;
