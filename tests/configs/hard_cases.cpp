@@ -37,6 +37,18 @@ Positions shape_of(const fs::path& run, const std::string& method, double scale,
   return ((x.rowwise() - away.transpose()) * turn) / scale;
 }
 
+/// The levels of a run on the mesh of huge and tiny triangles.
+Json huge_beside_tiny(const std::string& method, const std::string& options) {
+  const Scratch folder;
+  copy_suite(folder);
+  drape_with(
+      "run hard/drape.yaml --set 'cloth={shape: file, file: hard/meshes/huge_and_tiny.off}' "
+      "--set start.perturbation=1e-6 --method " +
+          method + options + " --out run --no-report",
+      folder.path);
+  return Json::parse(text_of(folder / "run/results.json"))["methods"][method]["levels"];
+}
+
 }  // namespace
 
 TEST_CASE("hard cases end as they should") {
@@ -56,13 +68,7 @@ TEST_CASE("hard cases end as they should") {
 }
 
 TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
-  const Scratch folder;
-  copy_suite(folder);
-  drape_with(
-      "run hard/drape.yaml --set 'cloth={shape: file, file: hard/meshes/huge_and_tiny.off}' "
-      "--set start.perturbation=1e-6 --method pcs --out run --no-report",
-      folder.path);
-  const Json levels = Json::parse(text_of(folder / "run/results.json"))["methods"]["pcs"]["levels"];
+  const Json levels = huge_beside_tiny("pcs", "");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
   CHECK(levels[1]["message"] == "");
@@ -70,14 +76,7 @@ TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
 }
 
 TEST_CASE("a triangle that is a hair from its strain limit is drawn back from it, not slid along it") {
-  const Scratch folder;
-  copy_suite(folder);
-  drape_with(
-      "run hard/drape.yaml --set 'cloth={shape: file, file: hard/meshes/huge_and_tiny.off}' --set "
-      "refiner=midpoint "
-      "--set start.perturbation=1e-6 --set newton.max_steps=1000 --method cascadic --out run --no-report",
-      folder.path);
-  const Json levels = Json::parse(text_of(folder / "run/results.json"))["methods"]["cascadic"]["levels"];
+  const Json levels = huge_beside_tiny("cascadic", " --set refiner=midpoint --set newton.max_steps=1000");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
 }
