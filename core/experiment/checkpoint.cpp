@@ -16,7 +16,7 @@ void fields(A& a, ConditionsState& s) {
 
 template <class A>
 void fields(A& a, HardPositions::Memory& m) {
-  a(m.missing, m.stiffness, m.best, m.idle, m.given_up, m.pulled);
+  a(m.missing, m.stiffness, m.best, m.idle, m.given_up, m.pulled, m.held_by);
 }
 
 template <class A>
@@ -97,7 +97,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 4;
+constexpr std::uint32_t format = 5;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -2,49 +2,73 @@
 
 #include <fstream>
 #include <stdexcept>
+#include <string_view>
 
 namespace drape {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 // What a run writes; the only names that --overwrite may remove.
-constexpr const char* own_names[] = {"config.yaml",   "results.json", "report.html", "steps.csv",
-                                     "log.jsonl",     "levels",       "fields",      "rest",
-                                     "pictures",      "obstacles",    "frames",      "errors.csv",
-                                     "reference.ply", "checkpoint",   "start.ply"};
+constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv",
+                                     "log.jsonl",   "levels",       "fields",       "rest",
+                                     "pictures",    "obstacles",    "frames",       "errors.csv",
+                                     "start.ply",   "checkpoint",   "reference.ply"};
+constexpr const char* lock_name = "checkpoint/lock";
+
+/// Whether a run has begun there: its lock is the first thing that it makes, and nothing takes it away.
+bool is_begun(const RunFolder& folder) {
+  const fs::path checkpoint = folder.file("checkpoint");
+  return fs::exists(folder.file(lock_name)) || (fs::is_directory(checkpoint) && fs::is_empty(checkpoint));
+}
+
+void refuse_files_of_others(const RunFolder& folder) {
+  for (const char* own : own_names)
+    if (fs::exists(folder.file(own)))
+      throw std::runtime_error(folder.file(own).string() +
+                               ": is there already, and not from a run; "
+                               "name another results folder with --out");
+}
+
+void check_writable(const RunFolder& folder) {
+  const fs::path probe = folder.file("writable.part");
+  {
+    std::ofstream out(probe);
+    if (!out.put('\n'))
+      throw std::runtime_error(folder.path().string() +
+                               ": cannot write to the results folder; name another with --out");
+  }
+  std::error_code error;
+  fs::remove(probe, error);
+}
+
+void clear(const RunFolder& folder) {
+  std::error_code error;
+  for (const char* own : own_names)
+    if (own != std::string_view("checkpoint")) fs::remove_all(folder.file(own), error);
+  for (const auto& entry : fs::directory_iterator(folder.file("checkpoint")))
+    if (entry.path() != folder.file(lock_name)) fs::remove_all(entry.path(), error);
+}
 
 }  // namespace
 
 RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
-  namespace fs = std::filesystem;
   std::error_code error;
   fs::create_directories(path_, error);
   const std::string name = path_.string();
   if (error || !fs::is_directory(path_))
     throw std::runtime_error(name + ": cannot make the results folder" +
                              (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  const bool earlier_run = fs::exists(file("results.json"));
-  if (earlier_run && !overwrite)
+  if (fs::exists(file("results.json")) && !overwrite)
     throw std::runtime_error(name +
                              ": holds the results of another run; name another folder with --out, or "
                              "replace them with --overwrite");
-  for (const char* own : own_names)
-    if (!earlier_run && fs::exists(file(own)))
-      throw std::runtime_error(file(own).string() +
-                               ": is there already, and not from a run; "
-                               "name another results folder with --out");
-  const fs::path probe = file("writable.part");
-  {
-    std::ofstream out(probe);
-    if (!out.put('\n'))
-      throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
-  }
-  fs::remove(probe, error);
-  if (earlier_run) lock();
-  if (earlier_run)
-    for (const char* own : own_names) fs::remove_all(file(own), error);
-  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
+  if (!fs::exists(file("results.json")) && !is_begun(*this)) refuse_files_of_others(*this);
+  check_writable(*this);
   lock();
+  clear(*this);
+  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
 }
 
 RunFolder RunFolder::of_run(std::filesystem::path path) {
@@ -57,7 +81,7 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
 
 void RunFolder::lock() {
   std::filesystem::create_directories(file("checkpoint"));
-  lock_ = std::make_unique<FileLock>(file("checkpoint/lock"));
+  lock_ = std::make_unique<FileLock>(file(lock_name));
   if (!lock_->acquire(0))
     throw std::runtime_error(path_.string() + ": " + lock_->holder() +
                              " is at this run; wait for it, or stop it");

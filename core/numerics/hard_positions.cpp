@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace drape {
 
@@ -9,6 +10,9 @@ namespace {
 
 /// A doubling that leaves more than this part of the distance has not helped.
 constexpr double helped = 0.95;
+/// Nor has one that shortens it by less than this part of a vertex's share of the cloth: what is pulled
+/// against contact or a strain limit comes nearer with every doubling, without end and without ever arriving.
+constexpr double noticed = 1e-4;
 /// Doublings without help after which nothing more is expected, once the pull is far above what the cloth
 /// can hold.
 constexpr int most_idle = 4;
@@ -41,11 +45,13 @@ Positions HardPositions::way(const Positions& x) const {
 
 void HardPositions::arrive() {
   fixed_ = model_.fixed();
+  held_by_.clear();
   missing_.clear();
   penalty_.reset();
 }
 
-void HardPositions::pull() {
+void HardPositions::pull(const std::string& held_by) {
+  held_by_ = held_by;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
   stiffness_ = std::max(model_.material().membrane_modulus, to_begin_with * membrane() / least_mass());
@@ -63,6 +69,10 @@ double HardPositions::least_mass() const {
   return least;
 }
 
+double HardPositions::width() const {
+  return std::sqrt(least_mass() / (model_.material().density * model_.material().thickness));
+}
+
 void HardPositions::restore(const Memory& m) {
   fixed_ = model_.fixed();
   missing_ = m.missing;
@@ -70,6 +80,7 @@ void HardPositions::restore(const Memory& m) {
   best_ = m.best;
   idle_ = m.idle;
   given_up_ = m.given_up;
+  held_by_ = m.held_by;
   if (m.pulled) let_go();
 }
 
@@ -87,9 +98,10 @@ void HardPositions::make_penalty() {
   penalty_ = std::make_unique<PositionPenalty>(std::move(pulls));
 }
 
-bool HardPositions::pull_harder(const Positions& x) {
+bool HardPositions::pull_harder(const Positions& x, const std::string& held_by) {
+  held_by_ = held_by;
   const double distance = farthest(x);
-  if (distance <= helped * best_) {
+  if (distance <= helped * best_ && best_ - distance > noticed * width()) {
     best_ = distance;
     idle_ = 0;
   } else {
@@ -106,28 +118,31 @@ bool HardPositions::pull_harder(const Positions& x) {
   return true;
 }
 
+double HardPositions::distance(const Positions& x, int missing) const {
+  const HeldVertex& h = model_.held()[missing];
+  return (x.row(h.vertex) - h.place.transpose()).norm();
+}
+
 double HardPositions::farthest(const Positions& x) const {
   double most = 0;
-  for (int k : missing_) {
-    const HeldVertex& h = model_.held()[k];
-    most = std::max(most, (x.row(h.vertex) - h.place.transpose()).norm());
-  }
+  for (int k : missing_) most = std::max(most, distance(x, k));
   return most;
 }
 
-std::string HardPositions::message(const Positions& x, const std::string& held_by) const {
-  std::string text;
-  int last = -1;
+std::string HardPositions::message(const Positions& x) const {
+  std::map<int, int> farthest_of_pin;
   for (int k : missing_) {
-    const HeldVertex& h = model_.held()[k];
-    if (h.pin == last) continue;
-    last = h.pin;
-    char distance[32];
-    std::snprintf(distance, sizeof distance, "%.3g", (x.row(h.vertex) - h.place.transpose()).norm());
-    text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(h.pin)) + " stopped " + distance +
-            " m short of its place (vertex " + std::to_string(h.vertex) + ")";
+    const auto [it, first] = farthest_of_pin.try_emplace(model_.held()[k].pin, k);
+    if (!first && distance(x, k) > distance(x, it->second)) it->second = k;
   }
-  return text + (held_by.empty() ? "" : ", held by " + held_by);
+  std::string text;
+  for (const auto& [pin, k] : farthest_of_pin) {
+    char short_by[32];
+    std::snprintf(short_by, sizeof short_by, "%.3g", distance(x, k));
+    text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " + short_by +
+            " m short of its place (vertex " + std::to_string(model_.held()[k].vertex) + ")";
+  }
+  return text + (held_by_.empty() ? "" : ", held by " + held_by_);
 }
 
 }  // namespace drape

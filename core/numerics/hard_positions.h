@@ -21,8 +21,11 @@ class HardPositions {
     double stiffness = 0, best = 0;
     int idle = 0;
     bool given_up = false, pulled = false;
+    std::string held_by;
   };
-  Memory memory() const { return {missing_, stiffness_, best_, idle_, given_up_, penalty_ != nullptr}; }
+  Memory memory() const {
+    return {missing_, stiffness_, best_, idle_, given_up_, penalty_ != nullptr, held_by_};
+  }
   void restore(const Memory& memory);
 
   /// The model has other places, or a new level begins at x.
@@ -36,10 +39,11 @@ class HardPositions {
 
   /// All have arrived: x has been put on their places.
   void arrive();
-  /// Lets those that are missing go, and pulls them.
-  void pull();
+  /// Lets those that are missing go, and pulls them; `held_by` kept them from being moved there, and may be
+  /// empty.
+  void pull(const std::string& held_by);
   /// Pulls twice as hard; false, with them fixed where they are, once that has long ceased to help.
-  bool pull_harder(const Positions& x);
+  bool pull_harder(const Positions& x, const std::string& held_by);
 
   /// One flag a vertex: 1 where it is fixed now.
   const std::vector<char>& fixed() const { return fixed_; }
@@ -47,14 +51,16 @@ class HardPositions {
   const BoundEnergy* penalty() const { return penalty_.get(); }
   /// Largest distance from x to a place [m].
   double farthest(const Positions& x) const;
-  /// "pin 0 stopped 0.012 m short of its place (vertex 7)", and how many more; `held_by` may be empty.
-  std::string message(const Positions& x, const std::string& held_by) const;
+  /// "pin 0 stopped 0.012 m short of its place (vertex 7)", the farthest of each pin, and what held them.
+  std::string message(const Positions& x) const;
 
  private:
   void let_go();
+  double distance(const Positions& x, int missing) const;
   void make_penalty();
   double membrane() const;    // stiffness in its plane [N/m]
   double least_mass() const;  // of the vertices that are missing [kg]
+  double width() const;       // of the cloth that goes with it [m]
 
   const LevelModel& model_;
   std::vector<char> fixed_;
@@ -64,6 +70,7 @@ class HardPositions {
   double best_ = 0;       // distance when pulling harder last helped
   int idle_ = 0;          // doublings since
   bool given_up_ = false;
+  std::string held_by_;
 };
 
 }  // namespace drape

@@ -103,7 +103,7 @@ class Newton {
           return finish(Outcome::out_of_steps,
                         "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
                             "; force residual " + brief(result_.force_residual) +
-                            (hard_.pulling() ? "; " + hard_.message(result_.x, limit_.by) : ""));
+                            (hard_.pulling() ? "; " + hard_.message(result_.x) : ""));
         begin_step();
       }
       if (observer_.checkpoint_due()) observer_.checkpoint(state());
@@ -223,7 +223,7 @@ class Newton {
     if (conditions_) report_change();
     if (!hard_.given_up()) return finish(Outcome::converged, "");
     return finish(Outcome::infeasible,
-                  hard_.message(result_.x, limit_.by) + "; the rest of the cloth is at equilibrium");
+                  hard_.message(result_.x) + "; the rest of the cloth is at equilibrium");
   }
 
   /// The next change of conditions, or what is left of the one under way, as far as it is allowed.
@@ -262,7 +262,7 @@ class Newton {
     take_positions();
     if (!hard_.pulling()) return;
     if (move_with_held_vertices() < 1) {
-      hard_.pull();
+      hard_.pull(limit_.by);
       take_positions();
     }
   }
@@ -271,7 +271,7 @@ class Newton {
   /// pulled harder, or given up.
   void pull_on() {
     if (move_with_held_vertices(true) < 1) {
-      hard_.pull_harder(result_.x);
+      hard_.pull_harder(result_.x, limit_.by);
       take_positions();
     }
   }

@@ -304,6 +304,22 @@ TEST_CASE("earlier results stay unless --overwrite is given, and then only the r
   CHECK(text_of(folder / "out/notes.txt") == "mine");
 }
 
+TEST_CASE("a run that was killed before it had written anything is in nobody's way") {
+  // What it makes, in its order; with all of it an earlier run is being overwritten.
+  for (int made = 1; made <= 4; ++made) {
+    const Scratch folder;
+    folder.write("e.yaml", small_experiment());
+    fs::create_directories(folder / "out/checkpoint");
+    if (made > 1) folder.write("out/checkpoint/lock", "");
+    if (made > 2) fs::create_directory(folder / "out/levels");
+    if (made > 3) folder.write("out/start.ply", "of the run before");
+    CAPTURE(made);
+    CHECK(drape_with("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder.path)
+              .exit_code == 0);
+    CHECK_FALSE(fs::exists(folder / "out/start.ply"));
+  }
+}
+
 TEST_CASE("plugin libraries that do not fit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());

@@ -55,7 +55,7 @@ TEST_CASE("hard cases end as they should") {
   const Scratch folder;
   copy_suite(folder);
   int rows = 0;
-  for (const std::string theme : {"friction", "contact", "steps", "closing", "folded", "sleeve"}) {
+  for (const std::string theme : {"friction", "contact", "steps", "closing", "folded", "sleeve", "pins"}) {
     drape_with("sweep hard/sweeps/" + theme + ".yaml --out " + theme, folder.path);
     const Ended table = drape_with("table " + theme + " --format json", folder.path);
     for (const Json& row : Json::parse(table.out)) {
@@ -64,7 +64,7 @@ TEST_CASE("hard cases end as they should") {
       ++rows;
     }
   }
-  CHECK(rows >= 30);
+  CHECK(rows >= 36);
 }
 
 TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {

@@ -38,7 +38,7 @@ Checkpoint full() {
   s.so_far.force_residual = std::nan("");
   s.decrements = {1, 2, 3};
   s.held_by = "ball";
-  s.positions = {{3}, 1e4, 0.5, 2, false, true};
+  s.positions = {{3}, 1e4, 0.5, 2, false, true, "post"};
   s.changed_at = {4, 5, 6};
   s.begun_at = {7, 8, 9};
   s.so_far.conditions = {3, {0.5, 0.25}};
@@ -87,6 +87,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
   CHECK(c.state.under_way.value().pattern.room.blocks.at(1) == std::pair(2, 7));
   CHECK(std::isnan(c.state.under_way->so_far.force_residual));
+  CHECK(c.state.under_way->positions.held_by == "post");
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
   CHECK(c.recorder.steps_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
@@ -113,7 +114,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 4; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 5; resume it with the drape that wrote it");
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
