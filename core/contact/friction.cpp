@@ -58,6 +58,22 @@ class Friction final : public FrictionEnergy {
     }
   }
 
+  void keep_slips(const Positions& x, Positions& anchors) const override {
+    for (int i = 0; i < size(); ++i) {
+      const FrictionContact& contact = contacts_[i];
+      Vector3d wanted = slip(i, x);
+      if (const double y = wanted.norm(); y > epsilon_) wanted *= epsilon_ / y;
+      const Vector3d u = place(contact, x) - place(contact, anchors);
+      const Vector3d missing = wanted - (u - contact.normal.dot(u) * contact.normal);
+      double squares = 0;
+      for (int k = 0; k < 4; ++k)
+        if (contact.vertices[k] >= 0) squares += contact.c[k] * contact.c[k];
+      for (int k = 0; k < 4; ++k)
+        if (contact.vertices[k] >= 0)
+          anchors.row(contact.vertices[k]) -= contact.c[k] / squares * missing.transpose();
+    }
+  }
+
   Stencils stencils() const override {
     Stencils result(size(), 4);
     for (int i = 0; i < size(); ++i)

@@ -25,6 +25,10 @@ class FrictionEnergy : public BoundEnergy {
   /// Where displacements count from after a step that ended at x. Overwrites the rows of `anchors` (n×3,
   /// filled with x) of vertices in contact: `from` stays their anchor, dragged behind where they slid.
   virtual void drag(const Positions& x, const Positions& from, Positions& anchors) const = 0;
+  /// Moves anchors of the vertices in contact, each contact in turn, so that counted from them it has slipped
+  /// as it has from those of the step, by its slip distance at most: what sticks or slides on is held by the
+  /// same force.
+  virtual void keep_slips(const Positions& x, Positions& anchors) const = 0;
 };
 
 /// The contacts within range at one state: a value that is built, evaluated and looked at. As an energy it

@@ -48,7 +48,7 @@ std::string shrunk(const fs::path& config) {
   const bool from_file = shape && shape->scalar == "file";
   const std::string tolerance = " --set newton.force_tolerance=1e-2";
   if (from_file) return tolerance + " --set levels=1";
-  return tolerance + " --set levels=2 --set cloth.columns=10 --set cloth.rows=10 --set cloth.vertices=100";
+  return tolerance + " --set levels=2 --set cloth.columns=12 --set cloth.rows=12 --set cloth.vertices=144";
 }
 
 }  // namespace

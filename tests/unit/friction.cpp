@@ -87,6 +87,30 @@ TEST_CASE("friction of a single point: nothing at rest, its full force from the 
   CHECK(make_friction({}, from, slip_distance) == nullptr);
 }
 
+TEST_CASE("friction's forces after a step are those at its end, also between layers that slide together") {
+  // Two points on the ground, a point on each of them, and a triangle's middle over all four.
+  const auto contact = [](std::array<int, 4> vertices, Eigen::Vector4d c) {
+    return FrictionContact{vertices, c, Vector3d::UnitZ(), 0.25};
+  };
+  const std::vector<FrictionContact> contacts = {
+      contact({0, -1, -1, -1}, {1, -1, 0, 0}), contact({1, -1, -1, -1}, {1, -1, 0, 0}),
+      contact({2, 0, -1, -1}, {1, -1, 0, 0}), contact({3, 1, -1, -1}, {1, -1, 0, 0}),
+      contact({4, 5, 2, 3}, {0.5, 0.5, -0.5, -0.5})};
+  const Positions from = Positions::Zero(6, 3);
+  Positions x = from;
+  for (int i = 0; i < 6; ++i)  // each layer half a slip distance ahead of the one below it
+    x.row(i) = slip_distance * Eigen::RowVector3d(5 + 0.5 * static_cast<double>(i / 2), 0.1 * i, 0);
+  const auto before = make_friction(contacts, from, slip_distance);
+  Positions anchors = x;
+  before->drag(x, from, anchors);
+  for (int sweep = 0; sweep < 16; ++sweep) before->keep_slips(x, anchors);
+  const auto after = make_friction(contacts, anchors, slip_distance);
+  const Positions f = gradient_of(*before, x);
+  REQUIRE(f.row(4).norm() > 0.05);
+  CHECK((gradient_of(*after, x) - f).norm() <= 1e-2 * f.norm());
+  CHECK((x - anchors).rowwise().norm().maxCoeff() < 3 * slip_distance);
+}
+
 TEST_CASE("friction has the same bits with any number of threads") {
   const Sliding sliding(5000);
   check_threads(*sliding.energy(), sliding.moved(slip_distance, 3));

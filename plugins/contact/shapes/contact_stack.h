@@ -58,6 +58,9 @@ class FrictionStack final : public Stacked<FrictionEnergy> {
   void drag(const Positions& x, const Positions& from, Positions& anchors) const override {
     for (const auto& part : parts_) part->drag(x, from, anchors);
   }
+  void keep_slips(const Positions& x, Positions& anchors) const override {
+    for (const auto& part : parts_) part->keep_slips(x, anchors);
+  }
 };
 
 class ContactStack final : public Stacked<ContactSet> {
