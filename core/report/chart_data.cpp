@@ -113,6 +113,24 @@ Json errors_json(const RunData& run) {
   return all;
 }
 
+Json changes_json(const RunData& run) {
+  Json all = Json::array();
+  for (const ConditionSeries& series : run.changes) {
+    Json time = Json::array(), steps = time, energy = time;
+    for (const ConditionRow& row : series.rows) {
+      time.push_back(rounded(row.time));
+      steps.push_back(rounded(row.steps));
+      energy.push_back(rounded(row.energy));
+    }
+    all.push_back({{"method", series.method},
+                   {"level", series.level},
+                   {"time", time},
+                   {"steps", steps},
+                   {"energy", energy}});
+  }
+  return all;
+}
+
 }  // namespace
 
 Json rounded(const Figure& value) {
@@ -144,6 +162,7 @@ std::string chart_data(const RunData& run) {
                      {"tolerance", rounded(run.force_tolerance)},
                      {"series", series_json(run)},
                      {"errors", errors_json(run)},
+                     {"changes", changes_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
                      {"parts", bars_json(run, &LevelRecord::energy_parts)}};
   return script_json(data);

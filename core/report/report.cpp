@@ -117,6 +117,10 @@ std::string verdict_line(const RunData& run) {
          escape(verdict->text) + "</p>\n";
 }
 
+std::string conditions_section(const RunData& run) {
+  return run.changes.empty() ? "" : std::string(Embedded::conditions_html());
+}
+
 std::string machine_line(const RunData& run) {
   std::string text;
   if (!run.version.empty()) text += escape(run.version);
@@ -187,6 +191,7 @@ void write_report(const std::filesystem::path& run_directory) {
                   {"H_differences", H_difference_grid(run, gallery, set)},
                   {"fold_quantile", html::count(100 * fold_quantile)},
                   {"folds", fold_grid(run, gallery, set)},
+                  {"conditions", conditions_section(run)},
                   {"energies", energy_table(run)},
                   {"configuration",
                    run.configuration.empty() ? "config.yaml was not stored." : escape(run.configuration)},

@@ -98,6 +98,11 @@ MethodRecord method_record(const std::string& name, const Json& json) {
   return method;
 }
 
+ConditionRow change_row(const Json& json) {
+  return {figure(at(json, "time")), figure(at(json, "steps")), figure(at(json, "energy")),
+          figure(at(json, "force_residual"))};
+}
+
 std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
 }
@@ -138,6 +143,15 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
     series_of(all, csv.text(k, "method"), static_cast<int>(csv.figure(k, "level").value_or(0)))
         .rows.push_back(row);
   }
+  return all;
+}
+
+std::vector<ConditionSeries> changes_of(const std::string& method, const Json& changes) {
+  std::vector<ConditionSeries> all;
+  if (!changes.is_array()) return all;
+  for (const Json& change : changes)
+    series_of(all, method, static_cast<int>(figure(at(change, "level")).value_or(0)))
+        .rows.push_back(change_row(change));
   return all;
 }
 
@@ -247,7 +261,11 @@ RunData read_run(const std::filesystem::path& folder) {
   run.force_tolerance = figure(at(at(json, "tolerance"), "force_residual"));
   const Json& methods = at(json, "methods");
   if (methods.is_object()) {
-    for (const auto& [name, value] : methods.items()) run.methods.push_back(method_record(name, value));
+    for (const auto& [name, value] : methods.items()) {
+      run.methods.push_back(method_record(name, value));
+      const std::vector<ConditionSeries> changes = changes_of(name, at(value, "changes"));
+      run.changes.insert(run.changes.end(), changes.begin(), changes.end());
+    }
   }
   // The progressive method leads, whatever the order in the file; the others keep theirs.
   std::stable_partition(run.methods.begin(), run.methods.end(),
@@ -263,6 +281,8 @@ RunData read_run(const std::filesystem::path& folder) {
   run.errors = read_errors(folder / "errors.csv");
   std::stable_sort(run.errors.begin(), run.errors.end(),
                    [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
+  std::stable_sort(run.changes.begin(), run.changes.end(),
+                   [&](const ConditionSeries& a, const ConditionSeries& b) { return place(a) < place(b); });
   run.configuration = file_if_there(folder / "config.yaml");
   add_last_contacts(run);
   add_step_sizes(run);

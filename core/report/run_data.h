@@ -66,6 +66,18 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
+/// A change of conditions, at the equilibrium that it came to.
+struct ConditionRow {
+  Figure time, steps, energy, force_residual;  ///< pseudo-time; the others as of a level
+};
+
+/// All changes of one level of one method, in order.
+struct ConditionSeries {
+  std::string method;
+  int level = 0;
+  std::vector<ConditionRow> rows;
+};
+
 /// One row of errors.csv: what a state cost, and its error against each target in each measure.
 struct ErrorRow {
   std::array<Figure, error_works.size()> work;
@@ -88,6 +100,7 @@ struct RunData {
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
+  std::vector<ConditionSeries> changes;     ///< likewise; none without a schedule
   std::string reference;                    ///< the method, or file, that errors are measured against
   Figure reference_tolerance;               ///< of the force residual, to which it was solved further
 

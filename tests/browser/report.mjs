@@ -54,6 +54,16 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await page.context().close();
 });
 
+test('a schedule has plots of its own', async () => {
+  const schedule = '{steps: 4, keys: [{set: material.bending_modulus, at: [0, 1], to: [8e4, 8e5]}]}';
+  run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--threads', '1', '--set', 'frames=0', '--method', 'newton',
+    '--set', 'schedule=' + schedule);
+  const {page, heard} = await openPage(chrome, pathToFileURL(path.join(folder, 'changing/report.html')).href);
+  for (const plot of ['#change-energy', '#change-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+});
+
 test('the progression plays, frames between the levels included', async () => {
   addFrames();
   run(folder, 'report', 'out');

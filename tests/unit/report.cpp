@@ -342,6 +342,25 @@ TEST_CASE("chart data compares energies of one level only, and never the proxy w
   CHECK(data["tolerance"] == 1e-3);
 }
 
+TEST_CASE("a report has plots of a schedule's changes where there is one") {
+  SampleRun run;
+  CHECK_FALSE(contains(run.page(), "id=\"conditions\""));
+  Json& changes = run.results["methods"]["pcs"]["changes"];
+  for (const int level : {1, 0})
+    for (const double time : {0.5, 1.0})
+      changes.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy", -time}});
+  const std::string page = run.page();
+  CHECK(contains(page, "id=\"conditions\""));
+  CHECK(contains(page, "id=\"change-energy\""));
+  const Json data = Json::parse(chart_data(read_run(run.folder)))["changes"];
+  REQUIRE(data.size() == 2);
+  CHECK(data[0]["level"] == 0);
+  CHECK(data[1]["level"] == 1);
+  CHECK(data[1]["time"] == Json({0.5, 1}));
+  CHECK(data[1]["steps"] == Json({5, 10}));
+  CHECK(data[1]["energy"] == Json({-0.5, -1}));
+}
+
 TEST_CASE("Table 1 says what the supplement says: PCS lower in every measure") {
   int rows = 0;
   for (const Table1Block& block : table1()) {

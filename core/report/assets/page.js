@@ -23,10 +23,11 @@
       borderDash: [[], [9, 5], [2, 3], [12, 4, 2, 4]][Math.max(k, 0) % 4]});
   }
 
-  function lines(id, x, y, titles, logarithmicX, withTolerance, chosen = data.series, style = lineStyle) {
+  function lines(id, x, y, titles, logarithmicX, withTolerance, chosen = data.series, style = lineStyle,
+    logarithmicY = true) {
     const datasets = chosen.map(series => Object.assign(style(series), {
       data: series[x].map((value, k) => ({x: value, y: series[y][k]}))
-        .filter(p => p.x !== null && p.y !== null && p.y > 0 && (!logarithmicX || p.x > 0)),
+        .filter(p => p.x !== null && p.y !== null && (!logarithmicY || p.y > 0) && (!logarithmicX || p.x > 0)),
     })).filter(set => set.data.length > 0);
     const all = datasets.flatMap(set => set.data.map(p => p.x));
     if (withTolerance && data.tolerance && all.length) {
@@ -38,7 +39,7 @@
       type: 'scatter',
       data: {datasets: datasets.map(set => Object.assign(set, {showLine: true}))},
       options: {
-        scales: {x: axis(titles[0], logarithmicX), y: axis(titles[1], true)},
+        scales: {x: axis(titles[0], logarithmicX), y: axis(titles[1], logarithmicY)},
         plugins: {tooltip: drape.tooltip},
       },
     }, all.length);
@@ -67,6 +68,12 @@
     }, count);
   }
 
+  /// Against pseudo-time, a point a change.
+  function changes(id, y, title) {
+    lines(id, 'time', y, ['pseudo-time', title], false, false, data.changes,
+      s => Object.assign(lineStyle(Object.assign({iteration: s.time}, s)), {pointRadius: 2.5}), false);
+  }
+
   /// Levels that build on each other go on where the last one ends; a method's colour is its own.
   function drawErrors() {
     const {measure, target, work} = chosenError();
@@ -86,6 +93,8 @@
       coarsest, methodStyle);
     lines('coarsest-residual', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true,
       coarsest, methodStyle);
+    changes('change-energy', 'energy', 'energy [J]');
+    changes('change-steps', 'steps', 'steps');
     bars('phases', data.phases, 's');
     bars('parts', data.parts, 'J');
   }
