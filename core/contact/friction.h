@@ -22,8 +22,9 @@ struct FrictionContact {
 /// f₁, f₁(y) = 2y/ε - (y/ε)² below ε = slip_distance [m] and 1 beyond (Li et al. 2020, eq. 14), f₀(0) = 0.
 /// Its Hessian is positive semidefinite as it is. Null without contacts.
 ///
-/// An anchor follows its vertex, along the surface, so that no contact has slipped more than slip_distance
-/// from its anchors: what sticks is held by a force that lasts, and does not creep from step to step.
+/// An anchor follows its vertex, along the surface, so that contacts keep the slip that they have, by
+/// slip_distance at most: what sticks is held by a force that lasts, and does not creep from step to step.
+/// Kept approximately where many contacts meet at a vertex, and in stacks of more than some three layers.
 /// Departure from the paper, whose displacements count from the last step, so that a cloth at rest creeps by
 /// up to ε_v h in each.
 std::unique_ptr<FrictionEnergy> make_friction(const std::vector<FrictionContact>& contacts,

@@ -17,18 +17,37 @@ constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html
                                      "start.ply",   "checkpoint",   "reference.ply"};
 constexpr const char* lock_name = "checkpoint/lock";
 
-/// Whether a run has begun there: its lock is the first thing that it makes, and nothing takes it away.
-bool is_begun(const RunFolder& folder) {
-  const fs::path checkpoint = folder.file("checkpoint");
-  return fs::exists(folder.file(lock_name)) || (fs::is_directory(checkpoint) && fs::is_empty(checkpoint));
+/// Whether it is a run's: its lock is the first thing that one makes, and nothing takes it away.
+bool is_of_a_run(const RunFolder& folder) {
+  return fs::exists(folder.file("results.json")) || fs::exists(folder.file(lock_name));
 }
 
-void refuse_files_of_others(const RunFolder& folder) {
-  for (const char* own : own_names)
-    if (fs::exists(folder.file(own)))
-      throw std::runtime_error(folder.file(own).string() +
-                               ": is there already, and not from a run; "
-                               "name another results folder with --out");
+/// A run's file or folder there that is not empty; "" where there is none.
+fs::path left_there(const RunFolder& folder) {
+  for (const char* own : own_names) {
+    const fs::path path = folder.file(own);
+    if (!fs::is_directory(path)) {
+      if (fs::exists(path)) return path;
+      continue;
+    }
+    for (const auto& entry : fs::directory_iterator(path))
+      if (entry.path() != folder.file(lock_name)) return path;
+  }
+  return {};
+}
+
+/// What is there may be lost only if it is a run's and `overwrite` says so.
+void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
+  const fs::path left = left_there(folder);
+  if (left.empty()) return;
+  if (!is_of_a_run(folder))
+    throw std::runtime_error(left.string() +
+                             ": is there already, and not from a run; "
+                             "name another results folder with --out");
+  if (!overwrite)
+    throw std::runtime_error(folder.path().string() +
+                             ": holds the results of another run; name another folder with --out, or "
+                             "replace them with --overwrite");
 }
 
 void check_writable(const RunFolder& folder) {
@@ -60,13 +79,10 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
   if (error || !fs::is_directory(path_))
     throw std::runtime_error(name + ": cannot make the results folder" +
                              (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  if (fs::exists(file("results.json")) && !overwrite)
-    throw std::runtime_error(name +
-                             ": holds the results of another run; name another folder with --out, or "
-                             "replace them with --overwrite");
-  if (!fs::exists(file("results.json")) && !is_begun(*this)) refuse_files_of_others(*this);
+  refuse_what_is_there(*this, overwrite);
   check_writable(*this);
   lock();
+  refuse_what_is_there(*this, overwrite);  // by another run, that has ended just now
   clear(*this);
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
 }

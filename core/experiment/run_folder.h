@@ -15,9 +15,9 @@ void write_atomically(const std::filesystem::path& file, const std::string& text
 /// half-written stands under a final name.
 class RunFolder {
  public:
-  /// Makes the folder. Throws std::runtime_error when it cannot be written to, or when it holds results
-  /// already and `overwrite` is false, or other files under the names that a run uses; with `overwrite`, an
-  /// earlier run's files in it are removed.
+  /// Makes the folder, and takes away what an earlier run has left in it. Throws std::runtime_error when it
+  /// cannot be written to, when there is something left and `overwrite` is false, or when it holds files of
+  /// others under the names that a run uses.
   RunFolder(std::filesystem::path path, bool overwrite);
   /// The folder of a run that is to go on. Throws std::runtime_error when it holds none, or one that a
   /// process is still at.

@@ -99,8 +99,7 @@ MethodRecord method_record(const std::string& name, const Json& json) {
 }
 
 ConditionRow change_row(const Json& json) {
-  return {figure(at(json, "time")), figure(at(json, "steps")), figure(at(json, "energy")),
-          figure(at(json, "force_residual"))};
+  return {figure(at(json, "time")), figure(at(json, "steps")), figure(at(json, "energy"))};
 }
 
 std::string file_if_there(const std::filesystem::path& path) {

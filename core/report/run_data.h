@@ -66,9 +66,9 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
-/// A change of conditions, at the equilibrium that it came to.
+/// A change of conditions, where it ended.
 struct ConditionRow {
-  Figure time, steps, energy, force_residual;  ///< pseudo-time; the others as of a level
+  Figure time, steps, energy;  ///< pseudo-time; the others as of a level
 };
 
 /// All changes of one level of one method, in order.
