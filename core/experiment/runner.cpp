@@ -177,6 +177,9 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
 
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
   require_methods(experiment, options.methods);
+  const std::string& start_file = experiment.parameters.start.file;
+  TriangleMesh start;
+  if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
   const RunFolder folder(options.out, options.overwrite);
   const ConfigNode config = saved_config(experiment);
   Checkpoint begun;
@@ -185,8 +188,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   begun.first_level = options.first_level;
   if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
   folder.write_text("config.yaml", begun.config);
-  if (!experiment.parameters.start.file.empty())
-    write_ply(folder.file("start.ply"), read_mesh(experiment.parameters.start.file));
+  if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
   Recorder recorder(folder, experiment, scene);
   if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
   begun.files = marks_of_files(config, folder.path());

@@ -331,6 +331,23 @@ TEST_CASE("what a run has left is lost by --overwrite alone, also where its resu
   CHECK_FALSE(fs::exists(folder / "out/levels/pcs_l0.ply"));
 }
 
+TEST_CASE("a run may be overwritten by one of its own config.yaml") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string options = " --quiet --no-report --levels 1 --method pcs --out ";
+  REQUIRE(drape_with("run e.yaml" + options + "first", folder.path).exit_code == 0);
+  REQUIRE(
+      drape_with("run e.yaml --set start.file=first/rest/l0.ply" + options + "out", folder.path).exit_code ==
+      0);
+  const std::string start = text_of(folder / "out/start.ply"),
+                    state = text_of(folder / "out/levels/pcs_l0.ply");
+  const Ended again = drape_with("run out/config.yaml --overwrite" + options + "out", folder.path);
+  CHECK(again.err == "");
+  CHECK(again.exit_code == 0);
+  CHECK(text_of(folder / "out/start.ply") == start);
+  CHECK(text_of(folder / "out/levels/pcs_l0.ply") == state);
+}
+
 TEST_CASE("plugin libraries that do not fit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
