@@ -1,6 +1,8 @@
 #include "core/contact/friction.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/numerics/parallel.h"
 
@@ -19,11 +21,22 @@ Vector3d place(const FrictionContact& contact, const Positions& x) {
   return sum;
 }
 
+Vector3d slipped(const ContactKey& key, const Slips& slips) {
+  const auto place =
+      std::lower_bound(slips.begin(), slips.end(), key,
+                       [](const Slip& slip, const ContactKey& wanted) { return slip.contact < wanted; });
+  return place != slips.end() && place->contact == key ? place->by : Vector3d::Zero();
+}
+
 class Friction final : public FrictionEnergy {
  public:
-  Friction(const std::vector<FrictionContact>& contacts, const Positions& from, double slip_distance)
-      : contacts_(contacts), epsilon_(slip_distance) {
-    for (const FrictionContact& contact : contacts) start_.push_back(place(contact, from));
+  Friction(std::vector<FrictionContact> contacts, const Positions& from, const Slips& slips,
+           double slip_distance)
+      : contacts_(std::move(contacts)), start_(contacts_.size()), epsilon_(slip_distance) {
+    parallel_for(size(), grain, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        start_[i] = place(contacts_[i], from) - slipped(contacts_[i].key, slips);
+    });
   }
 
   double value(const Positions& x) const override {
@@ -43,34 +56,10 @@ class Friction final : public FrictionEnergy {
     return value(x);
   }
 
-  void drag(const Positions& x, const Positions& from, Positions& anchors) const override {
-    std::vector<Vector3d> normals(x.rows(), Vector3d::Zero());  // of each vertex, weighted by force
-    for (const FrictionContact& contact : contacts_)
-      for (int k = 0; k < 4; ++k)
-        if (contact.vertices[k] >= 0)
-          normals[contact.vertices[k]] += contact.c[k] * contact.force * contact.normal;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const double length = normals[i].norm();
-      if (length == 0) continue;
-      const Vector3d n = normals[i] / length, moved = (x.row(i) - from.row(i)).transpose();
-      const Vector3d slid = moved - n.dot(moved) * n;
-      anchors.row(i) = x.row(i) - std::min(1.0, epsilon_ / slid.norm()) * slid.transpose();
-    }
-  }
-
-  void keep_slips(const Positions& x, Positions& anchors) const override {
+  void add_slips(const Positions& x, Slips& slips) const override {
     for (int i = 0; i < size(); ++i) {
-      const FrictionContact& contact = contacts_[i];
-      Vector3d wanted = slip(i, x);
-      if (const double y = wanted.norm(); y > epsilon_) wanted *= epsilon_ / y;
-      const Vector3d u = place(contact, x) - place(contact, anchors);
-      const Vector3d missing = wanted - (u - contact.normal.dot(u) * contact.normal);
-      double squares = 0;
-      for (int k = 0; k < 4; ++k)
-        if (contact.vertices[k] >= 0) squares += contact.c[k] * contact.c[k];
-      for (int k = 0; k < 4; ++k)
-        if (contact.vertices[k] >= 0)
-          anchors.row(contact.vertices[k]) -= contact.c[k] / squares * missing.transpose();
+      const Vector3d u = slip(i, x);
+      slips.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u});
     }
   }
 
@@ -127,10 +116,10 @@ class Friction final : public FrictionEnergy {
 
 }  // namespace
 
-std::unique_ptr<FrictionEnergy> make_friction(const std::vector<FrictionContact>& contacts,
-                                              const Positions& from, double slip_distance) {
+std::unique_ptr<FrictionEnergy> make_friction(std::vector<FrictionContact> contacts, const Positions& from,
+                                              const Slips& slips, double slip_distance) {
   if (contacts.empty()) return nullptr;
-  return std::make_unique<Friction>(contacts, from, slip_distance);
+  return std::make_unique<Friction>(std::move(contacts), from, slips, slip_distance);
 }
 
 }  // namespace drape

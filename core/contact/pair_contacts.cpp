@@ -62,18 +62,20 @@ class PairContacts final : public ContactSet {
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
     std::vector<FrictionContact> result;
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
       if (contact.pair.friction == 0) continue;
       const auto vertex = [&](int k) { return cloth_vertex(contact, k); };
-      result.push_back({{vertex(0), vertex(1), vertex(2), vertex(3)},
+      const auto& v = contact.pair.vertices;
+      result.push_back({{v[0], v[1], v[2], v[3], static_cast<int>(contact.pair.kind)},
+                        {vertex(0), vertex(1), vertex(2), vertex(3)},
                         contact.closest.c,
                         contact.normal,
                         contact.pair.friction * parameters_.stiffness * contact.pressure()});
     }
-    return make_friction(result, from, parameters_.slip_distance);
+    return make_friction(std::move(result), from, slips, parameters_.slip_distance);
   }
 
  private:

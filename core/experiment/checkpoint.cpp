@@ -31,8 +31,13 @@ void fields(A& a, LevelResult& r) {
 }
 
 template <class A>
+void fields(A& a, Slip& s) {
+  a(s.contact, s.by.x(), s.by.y(), s.by.z());
+}
+
+template <class A>
 void fields(A& a, ContactMemory& m) {
-  a(m.anchors, m.sweep_begin, m.sweep_end, m.seconds_building);
+  a(m.from, m.slips, m.sweep_begin, m.sweep_end, m.seconds_building);
 }
 
 template <class A>
@@ -97,7 +102,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 5;
+constexpr std::uint32_t format = 6;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

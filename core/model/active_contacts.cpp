@@ -5,14 +5,6 @@
 
 namespace drape {
 
-namespace {
-
-/// A vertex has several contacts. So many rounds over all of them leave less than a hundredth of the forces
-/// in three layers that slide; a stack of n layers would take in the order of n² rounds.
-constexpr int slip_sweeps = 16;
-
-}  // namespace
-
 void ActiveContacts::sweep(const Positions& x0, const Positions& x1) {
   sweeps_.clear();
   for (const auto& model : models_) sweeps_.push_back(model->sweep(x0, x1));
@@ -33,23 +25,31 @@ void ActiveContacts::build(const Positions& x) {
 void ActiveContacts::begin_step(const Positions& x) {
   if (models_.empty()) return;
   build(x);
-  // Anchors that an obstacle has taken along are ahead of a cloth that has had no step to follow.
-  if (!carried_) from_ = dragged(x);
+  // What an obstacle has taken along is ahead of a cloth that has had no step to follow.
+  if (!carried_) remember_slips(x);
   carried_ = false;
   lag();
 }
 
-Positions ActiveContacts::dragged(const Positions& x) const {
-  Positions anchors = x;
-  for (const auto& friction : friction_) friction->drag(x, from_, anchors);
-  for (int k = 0; k < slip_sweeps; ++k)
-    for (const auto& friction : friction_) friction->keep_slips(x, anchors);
-  return anchors;
+void ActiveContacts::remember_slips(const Positions& x) {
+  slips_.assign(models_.size(), {});
+  for (std::size_t k = 0; k < friction_.size(); ++k) {
+    if (!friction_[k]) continue;
+    friction_[k]->add_slips(x, slips_[k]);
+    std::sort(slips_[k].begin(), slips_[k].end(),
+              [](const Slip& a, const Slip& b) { return a.contact < b.contact; });
+  }
+  from_ = x;
+}
+
+bool ActiveContacts::has_friction() const {
+  return std::any_of(friction_.begin(), friction_.end(),
+                     [](const auto& friction) { return friction != nullptr; });
 }
 
 void ActiveContacts::models_changed(const BoundContacts& before, const Positions& x) {
   if (models_ == before) return;
-  if (!carried_) from_ = dragged(x);
+  if (!carried_) remember_slips(x);
   for (std::size_t k = 0; k < models_.size(); ++k)
     if (const auto* movable = dynamic_cast<const MovableObstacles*>(models_[k].get());
         movable && models_[k] != before[k])
@@ -71,13 +71,12 @@ void ActiveContacts::renew_lag(const Positions& x) {
 void ActiveContacts::lag() {
   friction_.clear();
   if (!with_friction_) return;
-  for (const auto& set : sets_)
-    if (auto friction = set->friction(from_)) friction_.push_back(std::move(friction));
+  for (std::size_t k = 0; k < sets_.size(); ++k) friction_.push_back(sets_[k]->friction(from_, slips_[k]));
 }
 
 ContactMemory ActiveContacts::memory() const {
   if (models_.empty()) return {};
-  return {from_, built_along_->begin, built_along_->end, seconds_building_};
+  return {from_, slips_, built_along_->begin, built_along_->end, seconds_building_};
 }
 
 void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
@@ -86,7 +85,8 @@ void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
   sweep(memory.sweep_begin, memory.sweep_end);
   state_.resize(0, 3);
   build(x);
-  from_ = memory.anchors;
+  from_ = memory.from;
+  slips_ = memory.slips;
   lag();
 }
 
@@ -110,7 +110,8 @@ double ActiveContacts::barrier(const Positions& x) {
 
 double ActiveContacts::friction(const Positions& x) const {
   double sum = 0;
-  for (const auto& friction : friction_) sum += friction->value(x);
+  for (const auto& friction : friction_)
+    if (friction) sum += friction->value(x);
   return sum;
 }
 
@@ -119,7 +120,8 @@ double ActiveContacts::add_gradient(const Positions& x, Positions& g) {
   build(x);
   double sum = 0;
   for (const auto& set : sets_) sum += set->add_gradient(x, g);
-  for (const auto& friction : friction_) sum += friction->add_gradient(x, g);
+  for (const auto& friction : friction_)
+    if (friction) sum += friction->add_gradient(x, g);
   return sum;
 }
 
@@ -128,7 +130,8 @@ std::vector<const BoundEnergy*> ActiveContacts::energies(const Positions& x) {
   std::vector<const BoundEnergy*> all;
   for (const auto& set : sets_)
     if (set->contact_count() > 0) all.push_back(set.get());
-  for (const auto& friction : friction_) all.push_back(friction.get());
+  for (const auto& friction : friction_)
+    if (friction) all.push_back(friction.get());
   return all;
 }
 

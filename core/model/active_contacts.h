@@ -10,7 +10,8 @@ namespace drape {
 
 /// What the contacts of a level remember at the beginning of a step.
 struct ContactMemory {
-  Positions anchors;                 ///< n×3, where friction's displacements count from [m]
+  Positions from;                    ///< n×3, where friction's displacements count from [m]
+  std::vector<Slips> slips;          ///< of each model's contacts, there
   Positions sweep_begin, sweep_end;  ///< the way that the contacts of the step were found along [m]
   double seconds_building = 0;
 };
@@ -22,12 +23,12 @@ class ActiveContacts {
   explicit ActiveContacts(const BoundContacts& models) : models_(models) {}
 
   bool any() const { return !models_.empty(); }
-  bool has_friction() const { return !friction_.empty(); }
+  bool has_friction() const;
   /// For motions that are no sliding, as from a level to the next.
   void leave_out_friction() { with_friction_ = false; }
 
-  /// A step begins at x: friction takes the normal forces and tangents there, and its anchors, which are
-  /// where displacements count from, have followed what slid in the last one.
+  /// A step begins at x: friction takes the normal forces and tangents there, and remembers how far each
+  /// contact has slipped.
   void begin_step(const Positions& x);
   /// The models, `before` until now, are those of other conditions, and the cloth is at x, within both: what
   /// friction remembers moves along with the obstacles.
@@ -65,14 +66,15 @@ class ActiveContacts {
   void sweep(const Positions& x0, const Positions& x1);
   void build(const Positions& x);
   void lag();
-  /// Anchors that have followed what slid in the last step.
-  Positions dragged(const Positions& x) const;
+  /// Displacements count from x, where contacts keep what they have slipped.
+  void remember_slips(const Positions& x);
 
   const BoundContacts& models_;
   std::vector<std::unique_ptr<ContactSweep>> sweeps_;
-  std::vector<std::unique_ptr<ContactSet>> sets_;   // at state_
-  std::shared_ptr<const Way> swept_, built_along_;  // of sweeps_, and of those that sets_ come from
-  std::vector<std::unique_ptr<FrictionEnergy>> friction_;
+  std::vector<std::unique_ptr<ContactSet>> sets_;          // at state_
+  std::shared_ptr<const Way> swept_, built_along_;         // of sweeps_, and of those that sets_ come from
+  std::vector<std::unique_ptr<FrictionEnergy>> friction_;  // of each model, or null; empty before a step
+  std::vector<Slips> slips_;                               // of each model
   Positions state_, from_;
   bool with_friction_ = true;
   bool carried_ = false;  // from_ has moved with obstacles since the last step

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -19,16 +20,24 @@ struct Touch {
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
 std::string to_string(const Touch& touch);
 
-/// The friction potential D of lagged contacts, of displacements from where they stuck.
+/// Numbers that a contact model knows a contact by, from one state to another.
+using ContactKey = std::array<int, 5>;
+
+/// How far a contact has slipped since it stuck.
+struct Slip {
+  ContactKey contact;
+  Eigen::Vector3d by;  ///< of one side relative to the other, along the surface [m]
+};
+
+/// Ascending by contact, none twice.
+using Slips = std::vector<Slip>;
+
+/// The friction potential D of lagged contacts.
 class FrictionEnergy : public BoundEnergy {
  public:
-  /// Where displacements count from after a step that ended at x. Overwrites the rows of `anchors` (n×3,
-  /// filled with x) of vertices in contact: `from` stays their anchor, dragged behind where they slid.
-  virtual void drag(const Positions& x, const Positions& from, Positions& anchors) const = 0;
-  /// Moves anchors of the vertices in contact, each contact in turn, so that counted from them it has slipped
-  /// as it has from those of the step, by its slip distance at most: what sticks or slides on is held by the
-  /// same force.
-  virtual void keep_slips(const Positions& x, Positions& anchors) const = 0;
+  /// Appends, in any order, what each contact has slipped at x, by its slip distance at most: what sticks or
+  /// slides on is held by the same force in the next step.
+  virtual void add_slips(const Positions& x, Slips& slips) const = 0;
 };
 
 /// The contacts within range at one state: a value that is built, evaluated and looked at. As an energy it
@@ -40,8 +49,9 @@ class ContactSet : public BoundEnergy {
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
 
   /// The lagged friction potential D with this set's normal forces and tangents, of displacements from
-  /// `from` (n×3); null without friction. Its stencils have -1 as above.
-  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& from) const = 0;
+  /// `from` (n×3), added to what its contacts among `slips` had slipped there; null without friction. Its
+  /// stencils have -1 as above.
+  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const = 0;
 };
 
 /// Everything that may come within range on the straight way from x0 to x1.
@@ -76,8 +86,9 @@ class MovableObstacles {
   /// nothing has moved. Throws std::runtime_error naming an obstacle that is no longer made of the same
   /// parts.
   virtual StepLimit max_move(const BoundContact& before, const Positions& x) const = 0;
-  /// Moves the rows of `anchors` (n×3) of vertices in contact at x along with what they touch.
-  virtual void carry(const BoundContact& before, const Positions& x, Positions& anchors) const = 0;
+  /// Moves the rows of `from` (n×3), where friction's displacements count from, of vertices in contact at x
+  /// along with what they touch.
+  virtual void carry(const BoundContact& before, const Positions& x, Positions& from) const = 0;
 };
 
 /// The contacts of one level, which may be shared by its models under different conditions.

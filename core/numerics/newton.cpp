@@ -35,7 +35,7 @@ constexpr int most_held_up = 20;
 /// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
 /// not widen.
 constexpr double pinched = 1e-7;
-/// Newton iterations of a step after obstacles have moved: friction's anchors follow what it ends with, and
+/// Newton iterations of a step after obstacles have moved: friction counts from what it ends with, and
 /// one iteration overshoots.
 constexpr int carried_iterations = 30;
 /// A cloth that is a hair from a limit slides along it: each full step widens what it leaves of the limit no

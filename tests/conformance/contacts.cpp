@@ -249,7 +249,7 @@ TEST_CASE("Contacts give the same bits with any number of threads", "[conformanc
       const double part = sweep->max_step().fraction;
       const Positions x = above + 0.9 * part * (down - above);
       const auto set = sweep->build(x);
-      const auto friction = set->friction(above);
+      const auto friction = set->friction(above, {});
       REQUIRE(friction);
       const Positions g = gradient_of(*set, x), f = gradient_of(*friction, x);
       REQUIRE(g.norm() > 0);
@@ -331,7 +331,7 @@ TEST_CASE("What touches is named, and lies where it is said to", "[conformance]"
 TEST_CASE("Friction opposes motion, and is nothing without it", "[conformance]") {
   for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
     const auto set = contacts_at(contact, x);
-    const auto friction = set->friction(x);
+    const auto friction = set->friction(x, {});
     REQUIRE(friction);
     CHECK(friction->value(x) == 0);
     CHECK(gradient_of(*friction, x).norm() == 0);
@@ -352,7 +352,7 @@ TEST_CASE("Friction opposes motion, and is nothing without it", "[conformance]")
     CHECK(force.x() < 0);
   });
   for_each_state(self_contact_models(), [](const BoundContact& contact, const Positions& x) {
-    const auto friction = contacts_at(contact, x)->friction(x);
+    const auto friction = contacts_at(contact, x)->friction(x, {});
     REQUIRE(friction);
     const Positions slid = x.rowwise() + Eigen::RowVector3d(0.05, 0, 0);
     Positions apart = x;

@@ -66,7 +66,9 @@ class Frozen : public ContactModel {
   struct Set : ContactSet {
     int contact_count() const override { return 1; }
     double smallest_gap() const override { return 1e-5; }
-    std::unique_ptr<FrictionEnergy> friction(const Positions&) const override { return nullptr; }
+    std::unique_ptr<FrictionEnergy> friction(const Positions&, const Slips&) const override {
+      return nullptr;
+    }
     double value(const Positions&) const override { return 0; }
     double add_gradient(const Positions&, Positions&) const override { return 0; }
     Stencils stencils() const override { return Stencils(0, 1); }
@@ -157,7 +159,7 @@ TEST_CASE("Friction has the normal forces of where the step began until they are
   CHECK(-g.col(2).sum() == Approx(normal_force(0.3 * range)));
 }
 
-TEST_CASE("Friction's anchors stay while it sticks and follow when it slides") {
+TEST_CASE("Friction keeps what contacts have slipped, by the slip distance at most") {
   const Level level = sheet();
   const auto models = bound(level, {a_floor()});
   ActiveContacts contacts(models);
@@ -168,11 +170,11 @@ TEST_CASE("Friction's anchors stay while it sticks and follow when it slides") {
     return contacts.friction(at(level, to, height)) / force;
   };
   contacts.begin_step(at(level, 0, height));
-  // Creeping: three steps of 0.3 slip distances add up, for the anchor is where it was.
+  // Creeping: three steps of 0.3 slip distances add up.
   CHECK(step_to(0, 0.3 * slip) == Approx(potential(0.3 * slip)));
   CHECK(step_to(0.3 * slip, 0.6 * slip) == Approx(potential(0.6 * slip)));
   CHECK(step_to(0.6 * slip, 0.9 * slip) == Approx(potential(0.9 * slip)));
-  // Sliding drags it along, a slip distance behind, where friction is at its largest.
+  // Sliding: a slip distance is kept, where friction is at its largest.
   CHECK(step_to(0.9 * slip, 7 * slip) == Approx(potential(slip)));
   Positions g = Positions::Zero(level.vertex_count(), 3);
   contacts.add_gradient(at(level, 7 * slip, height), g);
@@ -190,6 +192,43 @@ TEST_CASE("Friction's anchors stay while it sticks and follow when it slides") {
   contacts.begin_step(at(level, 50 * slip, height));
   CHECK(contacts.has_friction());
   CHECK(contacts.friction(at(level, 50 * slip, height)) == Approx(0).margin(1e-12));
+}
+
+TEST_CASE("Ten layers that hang together by friction do not creep") {
+  constexpr int layers = 10, columns = 4, n = columns * columns;
+  TriangleMesh rest;
+  rest.vertices.resize(layers * n, 3);
+  const TriangleMesh one = grid({0.1, 0.1}, columns, columns, Diagonals::one_way);
+  rest.triangles.resize(layers * one.triangles.rows(), 3);
+  Positions x0(layers * n, 3), x1(layers * n, 3);
+  for (int i = 0; i < layers; ++i) {
+    const Eigen::RowVector3d apart(i, 0, 0), above(1e-3 * i, 2e-3 * i, 0.3 * range * i),
+        slid(0.4 * slip * i, 0.1 * slip * (i % 3), 0);
+    rest.vertices.middleRows(i * n, n) = one.vertices.rowwise() + apart;
+    rest.triangles.middleRows(i * one.triangles.rows(), one.triangles.rows()) = one.triangles.array() + i * n;
+    x0.middleRows(i * n, n) = one.vertices.rowwise() + above;
+    x1.middleRows(i * n, n) = x0.middleRows(i * n, n).rowwise() + slid;
+  }
+  const Level level = Level::of(0, rest);
+  const auto models =
+      bound(level, {make_plugin_from<ContactModel>("{type: ipc, stiffness: 100, friction: 0.3}")});
+  ActiveContacts contacts(models);
+  contacts.begin_step(x0);
+  REQUIRE(contacts.max_step(x0, x1).fraction == 1);
+  contacts.renew_lag(x1);
+  const auto friction = [&](const Positions& x) {
+    Positions both = Positions::Zero(x.rows(), 3), barrier = both;
+    contacts.add_gradient(x, both);
+    models[0]->sweep(x, x)->build(x)->add_gradient(x, barrier);
+    return Positions(both - barrier);
+  };
+  const Positions f = friction(x1);
+  REQUIRE(f.bottomRows(n).norm() > 1e-3 * f.norm());
+  for (int step = 0; step < 20; ++step) {
+    contacts.max_step(x1, step % 2 ? x0 : x1);  // found along another way, in another order
+    contacts.begin_step(x1);
+    CHECK((friction(x1) - f).norm() <= 1e-9 * f.norm());
+  }
 }
 
 TEST_CASE("Friction can be left out") {
@@ -395,7 +434,7 @@ methods: {newton: {}}
         "start nearer to the rest shape, or raise the limit");
 }
 
-TEST_CASE("Contacts are found again along the way that they were found along, with the same anchors") {
+TEST_CASE("Contacts are found again along the way that they were found along, having slipped as far") {
   const Level level = sheet();
   const auto counted = std::make_shared<Counted>(a_floor()->bind(level, Material()));
   const Counted& floor = *counted;
@@ -411,7 +450,10 @@ TEST_CASE("Contacts are found again along the way that they were found along, wi
   const ContactMemory memory = contacts.memory();
   CHECK(memory.sweep_begin == x0);
   CHECK(memory.sweep_end == x1);
-  CHECK(memory.anchors != x1);  // it slid further than it sticks
+  CHECK(memory.from == x1);
+  REQUIRE(memory.slips.size() == 1);
+  REQUIRE(memory.slips[0].size() == 16);
+  for (const Slip& kept : memory.slips[0]) CHECK(kept.by.norm() == Approx(slip));
 
   contacts.max_step(x1, x1);
   ActiveContacts again(models);
@@ -422,5 +464,6 @@ TEST_CASE("Contacts are found again along the way that they were found along, wi
   REQUIRE(contacts.friction(x2) > 0);
   CHECK(again.friction(x2) == contacts.friction(x2));
   CHECK(again.barrier(x1) == contacts.barrier(x1));
-  CHECK(again.memory().anchors == memory.anchors);
+  CHECK(again.memory().from == memory.from);
+  CHECK(again.memory().slips[0][3].by == memory.slips[0][3].by);
 }

@@ -42,7 +42,11 @@ Checkpoint full() {
   s.changed_at = {4, 5, 6};
   s.begun_at = {7, 8, 9};
   s.so_far.conditions = {3, {0.5, 0.25}};
-  s.contacts = {Positions::Random(9, 3), Positions::Random(9, 3), Positions::Random(9, 3), 2};
+  s.contacts = {Positions::Random(9, 3),
+                {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
+                Positions::Random(9, 3),
+                Positions::Random(9, 3),
+                2};
   s.pattern.room = {{{0, 4}, {2, 7}}, {0, 3}};
   s.pattern.smooth_alone = false;
   s.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
@@ -114,7 +118,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 5; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 6; resume it with the drape that wrote it");
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {

@@ -1,5 +1,8 @@
 #include "core/contact/friction.h"
 
+#include <algorithm>
+#include <random>
+
 #include "tests/support/kernel_check.h"
 
 using namespace drape;
@@ -20,6 +23,7 @@ struct Sliding {
     from = Positions::NullaryExpr(n, 3, [&](Eigen::Index, Eigen::Index) { return normal(random); });
     for (int i = 0; i < count; ++i) {
       FrictionContact contact;
+      contact.key = {(i * 7) % count, i % 3, 0, 0, 0};
       for (int k = 0; k < 4; ++k) contact.vertices[k] = (4 * i + k) % n;
       contact.c = {0.3, 0.7, -0.4, -0.6};
       if (i % 3 == 1) contact.vertices[0] = contact.vertices[1] = -1;
@@ -32,7 +36,7 @@ struct Sliding {
   Positions moved(double by, unsigned seed) const {
     return from + by * Eigen::Map<const Positions>(normal_numbers(from.size(), seed).data(), from.rows(), 3);
   }
-  std::unique_ptr<FrictionEnergy> energy() const { return make_friction(contacts, from, slip_distance); }
+  std::unique_ptr<FrictionEnergy> energy() const { return make_friction(contacts, from, {}, slip_distance); }
 };
 
 }  // namespace
@@ -60,12 +64,13 @@ TEST_CASE("friction's derivatives, sticking and slipping") {
 
 TEST_CASE("friction of a single point: nothing at rest, its full force from the slip distance on") {
   FrictionContact contact;
+  contact.key = {};
   contact.vertices = {0, -1, -1, -1};
   contact.c = {1, -1, 0, 0};
   contact.normal = {0, 0, 1};
   contact.force = 0.25;
   const Positions from = Positions::Zero(1, 3);
-  const auto energy = make_friction({contact}, from, slip_distance);
+  const auto energy = make_friction({contact}, from, {}, slip_distance);
   const auto at = [&](double x, double y, double z) {
     return Positions(from + Positions(Eigen::RowVector3d(x, y, z)));
   };
@@ -84,31 +89,26 @@ TEST_CASE("friction of a single point: nothing at rest, its full force from the 
     CHECK(gradient_of(*energy, x).norm() == Approx(0.25).epsilon(1e-10));
     CHECK(energy->value(x) == Approx(0.25 * slip_distance * (part - 1.0 / 3)));
   }
-  CHECK(make_friction({}, from, slip_distance) == nullptr);
+  CHECK(make_friction({}, from, {}, slip_distance) == nullptr);
 }
 
-TEST_CASE("friction's forces after a step are those at its end, also between layers that slide together") {
-  // Two points on the ground, a point on each of them, and a triangle's middle over all four.
-  const auto contact = [](std::array<int, 4> vertices, Eigen::Vector4d c) {
-    return FrictionContact{vertices, c, Vector3d::UnitZ(), 0.25};
-  };
-  const std::vector<FrictionContact> contacts = {
-      contact({0, -1, -1, -1}, {1, -1, 0, 0}), contact({1, -1, -1, -1}, {1, -1, 0, 0}),
-      contact({2, 0, -1, -1}, {1, -1, 0, 0}), contact({3, 1, -1, -1}, {1, -1, 0, 0}),
-      contact({4, 5, 2, 3}, {0.5, 0.5, -0.5, -0.5})};
-  const Positions from = Positions::Zero(6, 3);
-  Positions x = from;
-  for (int i = 0; i < 6; ++i)  // each layer half a slip distance ahead of the one below it
-    x.row(i) = slip_distance * Eigen::RowVector3d(5 + 0.5 * static_cast<double>(i / 2), 0.1 * i, 0);
-  const auto before = make_friction(contacts, from, slip_distance);
-  Positions anchors = x;
-  before->drag(x, from, anchors);
-  for (int sweep = 0; sweep < 16; ++sweep) before->keep_slips(x, anchors);
-  const auto after = make_friction(contacts, anchors, slip_distance);
+TEST_CASE("friction's forces after a step are those at its end, for every contact that is still there") {
+  Sliding sliding(200);
+  const auto before = sliding.energy();
+  const Positions x = sliding.moved(slip_distance, 7);
+  Slips slips;
+  before->add_slips(x, slips);
+  REQUIRE(slips.size() == sliding.contacts.size());
+  for (const Slip& slip : slips) CHECK(slip.by.norm() <= slip_distance * (1 + 1e-12));
+  std::sort(slips.begin(), slips.end(), [](const Slip& a, const Slip& b) { return a.contact < b.contact; });
   const Positions f = gradient_of(*before, x);
-  REQUIRE(f.row(4).norm() > 0.05);
-  CHECK((gradient_of(*after, x) - f).norm() <= 1e-2 * f.norm());
-  CHECK((x - anchors).rowwise().norm().maxCoeff() < 3 * slip_distance);
+  std::shuffle(sliding.contacts.begin(), sliding.contacts.end(), std::mt19937(2));
+  CHECK((gradient_of(*make_friction(sliding.contacts, x, slips, slip_distance), x) - f).norm() <=
+        1e-9 * f.norm());
+  // One that is new has not slipped yet.
+  FrictionContact& fresh = sliding.contacts[0];
+  fresh.key[0] += 1000;
+  CHECK(gradient_of(*make_friction({fresh}, x, slips, slip_distance), x).norm() == 0);
 }
 
 TEST_CASE("friction has the same bits with any number of threads") {

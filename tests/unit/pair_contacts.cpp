@@ -367,7 +367,7 @@ TEST_CASE("outside the range there is nothing, and touching is not allowed") {
   CHECK(one.set()->value(one.x) == 0);
   CHECK(one.set()->smallest_gap() == std::numeric_limits<double>::infinity());
   CHECK(one.set()->stencils().rows() == 0);
-  CHECK(one.set()->friction(one.x) == nullptr);
+  CHECK(one.set()->friction(one.x, {}) == nullptr);
   one.pair.offset = 1e-3;
   CHECK(one.set()->contact_count() == 1);
   CHECK(one.set()->value(one.x) == std::numeric_limits<double>::infinity());
@@ -388,7 +388,7 @@ TEST_CASE("a contact's friction is bounded by μ times its force, and against th
     one.with_gap_part(0.4);
     one.parameters.slip_distance = 1e-5;
     const Positions from = one.x;
-    const auto friction = one.set()->friction(from);
+    const auto friction = one.set()->friction(from, {});
     REQUIRE(friction);
     const Closest found = closest(kind, one.at());
     const Vector3d n = connection(one.at(), found).normalized();

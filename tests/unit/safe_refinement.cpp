@@ -172,7 +172,7 @@ TEST_CASE("Friction does not hold what is refined") {
   const Positions x = tent_over_its_own_end(slippery.starts[0], 0.9e-3);
   const auto model = make_plugin_from<ContactModel>("{type: ipc, friction: 1}");
   const auto contact = model->bind(rough.hierarchy.levels[0], Material());
-  REQUIRE(contact->sweep(x, x)->build(x)->friction(x));
+  REQUIRE(contact->sweep(x, x)->build(x)->friction(x, {}));
   CHECK(slippery.refine(x).x == rough.refine(x).x);
 }
 

@@ -188,7 +188,7 @@ StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) con
   return ObstacleWay(from, *obstacles_).max_move(cloth_, x, barrier_.range, broad_phase_);
 }
 
-void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& anchors) const {
+void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& from) const {
   const BoundIpc& was = own_kind(before);
   if (was.obstacles_ == obstacles_) return;
   const int n = static_cast<int>(x.rows());
@@ -198,7 +198,7 @@ void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& 
     const std::lock_guard lock(was.busy_);
     was.search(x, x, {unlimited, unlimited}, pairs, counts);
   }
-  Positions moved = Positions::Zero(n, 3);  // weighted by friction's force, as are its anchors
+  Positions moved = Positions::Zero(n, 3);  // weighted by friction's force
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
   for (const ContactPair& pair : pairs) {
     const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
@@ -216,7 +216,7 @@ void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& 
     }
   }
   for (int v = 0; v < n; ++v)
-    if (weights[v] > 0) anchors.row(v) += moved.row(v) / weights[v];
+    if (weights[v] > 0) from.row(v) += moved.row(v) / weights[v];
 }
 
 std::vector<Touch> BoundIpc::intersections(const Positions& x) const {

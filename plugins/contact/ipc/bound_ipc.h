@@ -51,7 +51,7 @@ class BoundIpc final : public BoundContact, public MovableObstacles {
   std::vector<TriangleMesh> obstacles() const override;
 
   StepLimit max_move(const BoundContact& before, const Positions& x) const override;
-  void carry(const BoundContact& before, const Positions& x, Positions& anchors) const override;
+  void carry(const BoundContact& before, const Positions& x, Positions& from) const override;
 
  private:
   /// Numbers of pairs, of triangles whose boxes overlap and of primitives that may come near.

@@ -209,7 +209,7 @@ TEST_CASE("ipc: a sweep holds every pair that comes within range, and contacts a
       CHECK(found->value(x) == Approx(expected->value(x)).epsilon(1e-10));
       const Positions g = gradient_of(*found, x), exact = gradient_of(*expected, x);
       CHECK((g - exact).norm() <= 1e-10 * exact.norm());
-      const auto friction = found->friction(x0), exact_friction = expected->friction(x0);
+      const auto friction = found->friction(x0, {}), exact_friction = expected->friction(x0, {});
       REQUIRE(friction);
       CHECK(friction->value(x) == Approx(exact_friction->value(x)).epsilon(1e-10));
       energies.push_back(found->value(x));

@@ -321,7 +321,7 @@ TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
                     Catch::Contains("\"ball\"") && Catch::Contains("320 triangles and not 80"));
 }
 
-TEST_CASE("ipc: anchors of what is touched are carried along") {
+TEST_CASE("ipc: where displacements count from is carried along with what is touched") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -330,9 +330,9 @@ TEST_CASE("ipc: anchors of what is touched are carried along") {
   to[0].translate += Vector(0.01, 0.003, 0);
   to[0].rotate.z() = 5;
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
-  Positions anchors = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-  const Positions start = anchors;
-  dynamic_cast<const MovableObstacles&>(*after).carry(*before, x, anchors);
+  Positions moved_from = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+  const Positions start = moved_from;
+  dynamic_cast<const MovableObstacles&>(*after).carry(*before, x, moved_from);
   const Eigen::Matrix3d turn = Obstacle::of(to[0], 0).form.pose.linear();
   int carried = 0;
   for (int v = 0; v < x.rows(); ++v) {
@@ -341,26 +341,26 @@ TEST_CASE("ipc: anchors of what is touched are carried along") {
     CAPTURE(v);
     if (x(v, 0) > 1e-9) {
       ++carried;
-      CHECK((Vector(anchors.row(v) - start.row(v)) - moved).norm() < 1e-12);
+      CHECK((Vector(moved_from.row(v) - start.row(v)) - moved).norm() < 1e-12);
     } else if (x(v, 0) < -1e-9) {  // those above the edge are carried by half a share of their edges
-      CHECK((anchors.row(v) - start.row(v)).norm() < 0.02);
+      CHECK((moved_from.row(v) - start.row(v)).norm() < 0.02);
     }
   }
   CHECK(carried >= 10);
   // So a plate that slides below the cloth drags it by μ times the normal force.
   to = from;
   to[0].translate.x() += 0.01;
-  anchors = x;
+  moved_from = x;
   const auto slid = bound(to, level, 0.3);
-  dynamic_cast<const MovableObstacles&>(*slid).carry(*before, x, anchors);
+  dynamic_cast<const MovableObstacles&>(*slid).carry(*before, x, moved_from);
   const auto set = slid->sweep(x, x)->build(x);
   Positions push = Positions::Zero(x.rows(), 3), drag = push;
   set->add_gradient(x, push);
-  set->friction(anchors)->add_gradient(x, drag);
+  set->friction(moved_from, {})->add_gradient(x, drag);
   CHECK(-push.col(2).sum() > 0);
   CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
   // Without friction there is nothing to carry.
-  anchors = x;
-  dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, anchors);
-  CHECK(anchors == x);
+  moved_from = x;
+  dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, moved_from);
+  CHECK(moved_from == x);
 }

@@ -31,7 +31,7 @@ class ShapeSweep final : public ContactSweep {
   std::unique_ptr<ContactSet> build(const Positions& x) const override {
     std::vector<std::unique_ptr<ContactSet>> parts;
     if (!candidates_.vertices.empty())
-      parts.push_back(make_vertex_contacts(x, candidates_.vertices, scene_->barrier));
+      parts.push_back(make_vertex_contacts(x, scene_->solids, candidates_.vertices, scene_->barrier));
     if (!candidates_.pairs.empty())
       parts.push_back(make_pair_contacts(x, scene_->obstacle_points, candidates_.pairs, scene_->barrier));
     if (parts.size() == 1) return std::move(parts.front());
@@ -93,9 +93,9 @@ class BoundShapes final : public BoundContact, public MovableObstacles {
     return part.fraction < whole.fraction ? part : whole;
   }
 
-  void carry(const BoundContact& before, const Positions& x, Positions& anchors) const override {
+  void carry(const BoundContact& before, const Positions& x, Positions& from) const override {
     solids_before(before);
-    carry_with_solids(*dynamic_cast<const BoundShapes&>(before).scene_, scene_->solids, x, anchors);
+    carry_with_solids(*dynamic_cast<const BoundShapes&>(before).scene_, scene_->solids, x, from);
   }
 
  private:

@@ -55,11 +55,8 @@ class FrictionStack final : public Stacked<FrictionEnergy> {
  public:
   using Stacked::Stacked;
 
-  void drag(const Positions& x, const Positions& from, Positions& anchors) const override {
-    for (const auto& part : parts_) part->drag(x, from, anchors);
-  }
-  void keep_slips(const Positions& x, Positions& anchors) const override {
-    for (const auto& part : parts_) part->keep_slips(x, anchors);
+  void add_slips(const Positions& x, Slips& slips) const override {
+    for (const auto& part : parts_) part->add_slips(x, slips);
   }
 };
 
@@ -77,10 +74,10 @@ class ContactStack final : public Stacked<ContactSet> {
     for (const auto& part : parts_) gap = std::min(gap, part->smallest_gap());
     return gap;
   }
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
     std::vector<std::unique_ptr<FrictionEnergy>> frictions;
     for (const auto& part : parts_)
-      if (auto own = part->friction(from)) frictions.push_back(std::move(own));
+      if (auto own = part->friction(from, slips)) frictions.push_back(std::move(own));
     if (frictions.empty()) return nullptr;
     return std::make_unique<FrictionStack>(std::move(frictions));
   }

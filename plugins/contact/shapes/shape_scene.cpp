@@ -198,7 +198,7 @@ Candidates find_candidates(const ShapeScene& scene, const std::vector<TrianglePa
     triangles = finder.near_triangles(triangles);
     finder.add_insides(triangles, scene.first_point[k], c.pairs);
     if (solid.kind == SolidKind::sphere) continue;
-    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, &solid, scene.vertex_area[i]});
+    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k, scene.vertex_area[i]});
     if (solid.kind == SolidKind::half_space) continue;
     finder.add_edges(finder.edges_of(triangles), scene.first_point[k], c.pairs);
   }

@@ -112,23 +112,23 @@ std::vector<SolidWay> ways_of(const std::vector<Solid>& from, const std::vector<
 }
 
 void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
-                       Positions& anchors) {
-  Positions moved = Positions::Zero(x.rows(), 3);  // weighted by friction's force, as are its anchors
+                       Positions& from) {
+  Positions moved = Positions::Zero(x.rows(), 3);  // weighted by friction's force
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(x.rows());
   const auto add = [&](int vertex, int solid, const Vector3d& touched, double weight) {
-    const Solid& from = scene.solids[solid];
-    moved.row(vertex) += weight * (to[solid].to_world(from.to_local(touched)) - touched);
+    const Vector3d local = scene.solids[solid].to_local(touched);
+    moved.row(vertex) += weight * (to[solid].to_world(local) - touched);
     weights[vertex] += weight;
   };
   const Candidates near = find_candidates(scene, find_triangles(scene, x, x), x, x);
   const double range = scene.barrier.range;
   for (const VertexPair& pair : near.vertices) {
     const Vector3d p = x.row(pair.vertex);
-    const Nearest nearest = pair.solid->nearest(p);
-    if (nearest.distance < range && pair.solid->friction > 0)
-      add(pair.vertex, static_cast<int>(pair.solid - scene.solids.data()),
-          p - nearest.distance * nearest.normal,
-          -pair.weight * pair.solid->friction * barrier(nearest.distance / range).first);
+    const Solid& solid = scene.solids[pair.solid];
+    const Nearest nearest = solid.nearest(p);
+    if (nearest.distance < range && solid.friction > 0)
+      add(pair.vertex, pair.solid, p - nearest.distance * nearest.normal,
+          -pair.weight * solid.friction * barrier(nearest.distance / range).first);
   }
   const int n = static_cast<int>(x.rows());
   for (const ContactPair& pair : near.pairs) {
@@ -148,7 +148,7 @@ void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, co
             std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
   }
   for (int v = 0; v < n; ++v)
-    if (weights[v] > 0) anchors.row(v) += moved.row(v) / weights[v];
+    if (weights[v] > 0) from.row(v) += moved.row(v) / weights[v];
 }
 
 }  // namespace drape

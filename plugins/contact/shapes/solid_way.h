@@ -32,9 +32,9 @@ class SolidWay {
 /// The way of each solid. Throws std::runtime_error if they are not as many, of the same kinds.
 std::vector<SolidWay> ways_of(const std::vector<Solid>& from, const std::vector<Solid>& to);
 
-/// Moves the rows of anchors of the vertices that are in contact, with friction, at x with a scene's solids
-/// as the points that they touch move when those go to `to`, rigidly.
+/// Moves the rows of `from`, where displacements count from, of the vertices that are in contact, with
+/// friction, at x with a scene's solids as the points that they touch move when those go to `to`, rigidly.
 void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
-                       Positions& anchors);
+                       Positions& from);
 
 }  // namespace drape

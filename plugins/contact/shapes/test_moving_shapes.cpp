@@ -177,7 +177,7 @@ TEST_CASE("shapes: one that becomes another one is refused by name") {
       Catch::StartsWith("thing: sphere cannot become what it is") && Catch::EndsWith("thing: box"));
 }
 
-TEST_CASE("shapes: anchors of what is touched are carried along") {
+TEST_CASE("shapes: where displacements count from is carried along with what is touched") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -186,13 +186,13 @@ TEST_CASE("shapes: anchors of what is touched are carried along") {
     ShapeParameters to = from;
     to.centre += Vector3d(0.01, 0.003, 0);
     const auto before = bound(from, level, 0.3);
-    Positions anchors = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-    const Positions start = anchors;
-    dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*before, x, anchors);
+    Positions moved_from = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+    const Positions start = moved_from;
+    dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*before, x, moved_from);
     INFO(word(kind));
     int carried = 0;
     for (int v = 0; v < x.rows(); ++v) {
-      const Eigen::RowVector3d moved = anchors.row(v) - start.row(v);
+      const Eigen::RowVector3d moved = moved_from.row(v) - start.row(v);
       if (moved.isZero(0)) continue;
       ++carried;
       CHECK((moved - Eigen::RowVector3d(0.01, 0.003, 0)).norm() < 1e-15);
@@ -203,7 +203,8 @@ TEST_CASE("shapes: anchors of what is touched are carried along") {
   const ShapeParameters from = level_with(SolidKind::sphere, 0);
   ShapeParameters to = from;
   to.rotate = {0, 1, 0};
-  Positions anchors = x;
-  dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*bound(from, level, 0.3), x, anchors);
-  CHECK((anchors - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+  Positions moved_from = x;
+  dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3))
+      .carry(*bound(from, level, 0.3), x, moved_from);
+  CHECK((moved_from - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
 }

@@ -454,7 +454,7 @@ TEST_CASE("shapes: a sweep's sets are those of the places themselves") {
     CHECK((gradient_of(*set, x) - gradient_at(*bound, x)).norm() <= 1e-12 * gradient_at(*bound, x).norm());
     if (set->contact_count() > 0) {
       check_threads(*set, x);
-      const auto friction = set->friction(x0);
+      const auto friction = set->friction(x0, {});
       REQUIRE(friction);
       const Positions y = x0 + (x - x0) * 0.9;
       CHECK(friction->stencils().rows() == set->stencils().rows());
@@ -485,7 +485,7 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     const double all = normal * (kind == SolidKind::sphere ? 1.01 : 1 + 1e-12);
     double last = 0;
     for (const double slip : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
-      const auto friction = set->friction(lifted(level, 0.4 * range, -slip));
+      const auto friction = set->friction(lifted(level, 0.4 * range, -slip), {});
       REQUIRE(friction);
       const Positions g = gradient_of(*friction, x);
       const double force = g.col(0).sum();  // the gradient is against the motion's force
@@ -494,8 +494,8 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
       last = force;
     }
     CHECK(last == Approx(0.3 * normal).epsilon(kind == SolidKind::sphere ? 0.01 : 1e-12));
-    CHECK(Shapes(with({level_with(kind)})).bind(level, Material())->sweep(x, x)->build(x)->friction(x) ==
-          nullptr);
+    const auto smooth = Shapes(with({level_with(kind)})).bind(level, Material());
+    CHECK(smooth->sweep(x, x)->build(x)->friction(x, {}) == nullptr);
   }
 }
 

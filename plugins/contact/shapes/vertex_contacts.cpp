@@ -15,7 +15,7 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 constexpr int grain = 1024;
 
 struct Contact {
-  int vertex;
+  int vertex, solid;
   double weight, friction;
   Nearest nearest;
   Derivatives barrier;  ///< by gap / d̂
@@ -63,12 +63,16 @@ class VertexContacts final : public ContactSet {
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
     std::vector<FrictionContact> frictions;
     for (const Contact& c : contacts_)
       if (c.friction > 0)
-        frictions.push_back({{c.vertex, -1, -1, -1}, {1, 0, 0, 0}, c.nearest.normal, c.friction * force(c)});
-    return make_friction(frictions, from, p_.slip_distance);
+        frictions.push_back({{c.vertex, c.solid, -1, -1, -1},  // -1: no pair of primitives
+                             {c.vertex, -1, -1, -1},
+                             {1, 0, 0, 0},
+                             c.nearest.normal,
+                             c.friction * force(c)});
+    return make_friction(std::move(frictions), from, slips, p_.slip_distance);
   }
 
  private:
@@ -81,12 +85,13 @@ class VertexContacts final : public ContactSet {
 
 }  // namespace
 
-std::unique_ptr<ContactSet> make_vertex_contacts(const Positions& x, const std::vector<VertexPair>& pairs,
+std::unique_ptr<ContactSet> make_vertex_contacts(const Positions& x, const std::vector<Solid>& solids,
+                                                 const std::vector<VertexPair>& pairs,
                                                  const BarrierParameters& parameters) {
   std::vector<char> is_near(pairs.size());
   parallel_for(static_cast<int>(pairs.size()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      is_near[i] = pairs[i].solid->distance(x.row(pairs[i].vertex)) < parameters.range;
+      is_near[i] = solids[pairs[i].solid].distance(x.row(pairs[i].vertex)) < parameters.range;
   });
   std::vector<VertexPair> near;
   for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -94,9 +99,10 @@ std::unique_ptr<ContactSet> make_vertex_contacts(const Positions& x, const std::
   std::vector<Contact> contacts(near.size());
   parallel_for(static_cast<int>(near.size()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      const Nearest nearest = near[i].solid->nearest(x.row(near[i].vertex));
-      contacts[i] = {near[i].vertex, near[i].weight, near[i].solid->friction, nearest,
-                     barrier(nearest.distance / parameters.range)};
+      const Solid& solid = solids[near[i].solid];
+      const Nearest nearest = solid.nearest(x.row(near[i].vertex));
+      contacts[i] = {near[i].vertex, near[i].solid, near[i].weight,
+                     solid.friction, nearest,       barrier(nearest.distance / parameters.range)};
     }
   });
   return std::make_unique<VertexContacts>(std::move(contacts), parameters);

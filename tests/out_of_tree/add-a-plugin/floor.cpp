@@ -46,7 +46,10 @@ class FloorContacts : public drape::ContactSet {
   }
   int contact_count() const override { return static_cast<int>(vertices_.size()); }
   double smallest_gap() const override { return smallest_gap_; }
-  std::unique_ptr<drape::FrictionEnergy> friction(const drape::Positions&) const override { return nullptr; }
+  std::unique_ptr<drape::FrictionEnergy> friction(const drape::Positions&,
+                                                  const drape::Slips&) const override {
+    return nullptr;
+  }
 
  private:
   drape::Derivatives at(const drape::Positions& x, int i) const {
