@@ -22,9 +22,7 @@ Vector3d place(const FrictionContact& contact, const Positions& x) {
 }
 
 Vector3d slipped(const ContactKey& key, const Slips& slips) {
-  const auto place =
-      std::lower_bound(slips.begin(), slips.end(), key,
-                       [](const Slip& slip, const ContactKey& wanted) { return slip.contact < wanted; });
+  const auto place = std::ranges::lower_bound(slips, key, {}, &Slip::contact);
   return place != slips.end() && place->contact == key ? place->by : Vector3d::Zero();
 }
 
@@ -57,6 +55,7 @@ class Friction final : public FrictionEnergy {
   }
 
   void add_slips(const Positions& x, Slips& slips) const override {
+    slips.reserve(slips.size() + size());
     for (int i = 0; i < size(); ++i) {
       const Vector3d u = slip(i, x);
       slips.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u});

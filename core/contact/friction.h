@@ -12,7 +12,7 @@ namespace drape {
 /// One contact as friction sees it, all of it lagged: Σ c_k x_k is the place of one side relative to the
 /// other.
 struct FrictionContact {
-  ContactKey key;
+  ContactKey key = {};
   std::array<int, 4> vertices;  ///< of the cloth; -1 for what does not move
   Eigen::Vector4d c = Eigen::Vector4d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length

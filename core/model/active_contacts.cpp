@@ -32,12 +32,12 @@ void ActiveContacts::begin_step(const Positions& x) {
 }
 
 void ActiveContacts::remember_slips(const Positions& x) {
-  slips_.assign(models_.size(), {});
+  slips_.resize(models_.size());
+  for (Slips& slips : slips_) slips.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
     friction_[k]->add_slips(x, slips_[k]);
-    std::sort(slips_[k].begin(), slips_[k].end(),
-              [](const Slip& a, const Slip& b) { return a.contact < b.contact; });
+    std::ranges::sort(slips_[k], {}, &Slip::contact);
   }
   from_ = x;
 }

@@ -204,6 +204,44 @@ schedule:
   }
 }
 
+TEST_CASE("So has one with a level that is begun from the scene's start, conditions changing") {
+  // A big fan of needles over a row of tiny triangles: Loop's rest shape is one that the state of the coarse
+  // level, carried up by midpoints, does not get into within the strain limit.
+  constexpr int columns = 40;
+  TriangleMesh fan;
+  fan.vertices.resize(2 * columns + 3, 3);
+  fan.vertices.row(0) << 0.5, 1, 0;
+  fan.triangles.resize(3 * columns, 3);
+  for (int i = 0; i <= columns; ++i) {
+    fan.vertices.row(1 + i) << static_cast<double>(i) / columns, 0, 0;
+    fan.vertices.row(columns + 2 + i) = fan.vertices.row(1 + i) - Eigen::RowVector3d(0, 0.005, 0);
+  }
+  for (int i = 0; i < columns; ++i) {
+    const int a = 1 + i, c = columns + 2 + i;
+    fan.triangles.row(3 * i) << 0, a, a + 1;
+    fan.triangles.row(3 * i + 1) << a, c, a + 1;
+    fan.triangles.row(3 * i + 2) << a + 1, c, c + 1;
+  }
+  const Scratch folder;
+  write_mesh(folder / "fan.obj", fan);
+  folder.write("e.yaml",
+               replaced(text_of(fs::path(DRAPE_SOURCE_DIR) / "configs/hard/drape.yaml"),
+                        "{shape: square, side: 1, columns: 16, rows: 16}", "{shape: file, file: fan.obj}") +
+                   R"(
+schedule: {steps: 3, keys: [{set: energies.gravity.acceleration, at: [0, 1], to: [[0, 0, -9.81], [1, 0, -9.81]]}]}
+)");
+  const Experiment experiment = experiment_in(folder / "e.yaml", {{"start.translate", "[-0.5, -0.3, 0.32]"},
+                                                                  {"start.perturbation", "1e-6"},
+                                                                  {"methods", "{cascadic: {}}"},
+                                                                  {"frames", "2"},
+                                                                  {"newton.max_steps", "60"}});
+  CHECK(check_in_parts(experiment, folder.path) > 15);
+  const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
+  REQUIRE(levels.size() == 2);
+  CHECK_THAT(levels[1]["message"].get<std::string>(),
+             Contains("the level is begun from the scene's start instead"));
+}
+
 namespace {
 
 /// A run of the sheets in its folder `out`, with a checkpoint at every step.

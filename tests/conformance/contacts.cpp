@@ -1,5 +1,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -326,6 +327,22 @@ TEST_CASE("What touches is named, and lies where it is said to", "[conformance]"
       }
       for (const TriangleMesh& mesh : contact->obstacles()) CHECK(check_mesh(mesh).empty());
     }
+}
+
+TEST_CASE("Contacts are known again, each by a key of its own, and keep what they have slipped",
+          "[conformance]") {
+  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+    const Positions from = x - noise(x.rows(), 1e-4, 3), above = x.rowwise() + Eigen::RowVector3d(0, 0, 1e-3);
+    const auto before = contacts_at(contact, x)->friction(from, {});
+    Slips slips;
+    before->add_slips(x, slips);
+    std::ranges::sort(slips, {}, &Slip::contact);
+    CHECK(std::ranges::adjacent_find(slips, {}, &Slip::contact) == slips.end());
+    const Positions f = gradient_of(*before, x);
+    REQUIRE(f.norm() > 0);
+    const auto again = contact.sweep(x, above)->build(x)->friction(x, slips);
+    CHECK((gradient_of(*again, x) - f).norm() <= 1e-9 * f.norm());
+  });
 }
 
 TEST_CASE("Friction opposes motion, and is nothing without it", "[conformance]") {

@@ -23,6 +23,14 @@ std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double 
       ", shape: half_space, centre: [0, 0, " + std::to_string(height) + "]}]}");
 }
 
+/// A box whose top is z = 0, larger than the sheet.
+std::shared_ptr<ContactModel> a_plate(double x) {
+  return make_plugin_from<ContactModel>(
+      "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: plate, shape: box, size: [1, 1, 0.2], "
+      "centre: [" +
+      std::to_string(x) + ", 0, -0.1]}]}");
+}
+
 Level sheet() { return Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way)); }
 
 BoundContacts bound(const Level& level, const std::vector<std::shared_ptr<ContactModel>>& models) {
@@ -225,10 +233,36 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
   const Positions f = friction(x1);
   REQUIRE(f.bottomRows(n).norm() > 1e-3 * f.norm());
   for (int step = 0; step < 20; ++step) {
-    contacts.max_step(x1, step % 2 ? x0 : x1);  // found along another way, in another order
-    contacts.begin_step(x1);
+    contacts.max_step(x1, x0);
+    contacts.barrier(x0);
+    contacts.begin_step(x1);  // found along another way than those before
     CHECK((friction(x1) - f).norm() <= 1e-9 * f.norm());
   }
+}
+
+TEST_CASE("What contacts have slipped is kept while obstacles move, and the obstacles' way is added") {
+  const Level level = sheet();
+  const double height = 0.4 * range, force = normal_force(height);
+  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
+  // A plate with the sheet upon it, and the same 0.2 slip distances on its way back, twice.
+  BoundContacts models = bound(level, {a_plate(0)}), before = models;
+  ActiveContacts contacts(models);
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  contacts.begin_step(x1);
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * slip)));
+  for (const double moved : {-0.2 * slip, -0.4 * slip}) {
+    before = models;
+    models = bound(level, {a_plate(moved)});
+    contacts.models_changed(before, x1);
+    CHECK(contacts.carried());
+    CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * slip - moved)));
+  }
+  contacts.begin_step(x1);  // no step has been made for the cloth to follow
+  CHECK_FALSE(contacts.carried());
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
+  contacts.begin_step(x1);
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
 }
 
 TEST_CASE("Friction can be left out") {

@@ -92,6 +92,8 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.state.under_way.value().pattern.room.blocks.at(1) == std::pair(2, 7));
   CHECK(std::isnan(c.state.under_way->so_far.force_residual));
   CHECK(c.state.under_way->positions.held_by == "post");
+  CHECK(c.state.under_way->contacts.slips.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
+  CHECK(c.state.under_way->contacts.slips.at(0).at(0).by == Eigen::Vector3d(1e-5, 0, 2e-5));
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
   CHECK(c.recorder.steps_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));

@@ -29,7 +29,7 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   d.add("slip_distance", &P::slip_distance)
       .unit("m")
       .above(0)
-      .meaning("a contact that has slid less than this in a step sticks: friction is smoothed below")
+      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
       .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &P::keep)
       .unit("1")

@@ -165,13 +165,16 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   s.solids = solids;
   s.barrier = barrier;
   s.keep = keep;
-  int points = 0;
-  for (const Solid& solid : solids) {
-    s.features.push_back(Features::of(solid, slack * barrier.range));
-    s.first_point.push_back(points);
-    points += static_cast<int>(s.features.back().points.rows());
-  }
-  s.obstacle_points.resize(points, 3);
+  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, slack * barrier.range));
+  // Cylinders come last: they have more points when they grow, and contacts are known by points.
+  s.first_point.resize(solids.size());
+  for (const bool cylinders : {false, true})
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+      if ((solids[k].kind == SolidKind::cylinder) != cylinders) continue;
+      s.first_point[k] = static_cast<int>(s.solid_of_point.size());
+      s.solid_of_point.insert(s.solid_of_point.end(), s.features[k].points.rows(), static_cast<int>(k));
+    }
+  s.obstacle_points.resize(static_cast<Eigen::Index>(s.solid_of_point.size()), 3);
   for (std::size_t k = 0; k < solids.size(); ++k)
     s.obstacle_points.middleRows(s.first_point[k], s.features[k].points.rows()) = s.features[k].points;
   return s;

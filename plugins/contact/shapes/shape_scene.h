@@ -21,6 +21,7 @@ struct ShapeScene {
   std::vector<Features> features;  ///< of each solid
   std::vector<int> first_point;    ///< of each solid's features in obstacle_points
   Positions obstacle_points;
+  std::vector<int> solid_of_point;
   BarrierParameters barrier;
   double keep = 0.1;
 

@@ -100,8 +100,8 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
   d.add("slip_distance", &Parameters::slip_distance)
       .unit("m")
       .above(0)
-      .meaning("a contact that moved less in a step sticks")
-      .source("Li et al. 2020, eq. 14, ε_v h");
+      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
+      .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &Parameters::keep)
       .unit("1")
       .above(0)

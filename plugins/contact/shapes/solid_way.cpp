@@ -139,9 +139,7 @@ void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, co
     Vector3d touched = (first_is_cloth ? 1 : -1) * pair.offset * contact.normal;
     for (int k = 0; k < 4; ++k)
       if (pair.vertices[k] >= n) touched += std::abs(contact.closest.c[k]) * at.col(k);
-    const int point = pair.vertices[first_is_cloth ? 3 : 0] - n;
-    const auto next = std::upper_bound(scene.first_point.begin(), scene.first_point.end(), point);
-    const int solid = static_cast<int>(next - scene.first_point.begin()) - 1;
+    const int solid = scene.solid_of_point[pair.vertices[first_is_cloth ? 3 : 0] - n];
     for (int k = 0; k < 4; ++k)
       if (pair.vertices[k] < n)
         add(pair.vertices[k], solid, touched,

@@ -20,12 +20,16 @@ double uniform(double low, double high) {
 }
 Vector3d any(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
 
-std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& level, double friction = 0) {
+std::unique_ptr<BoundContact> bound(const std::vector<ShapeParameters>& shapes, const Level& level,
+                                    double friction = 0) {
   Shapes::Parameters p;
-  p.shapes = {shape};
+  p.shapes = shapes;
   p.range = range;
   p.friction = friction;
   return Shapes(p).bind(level, Material());
+}
+std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& level, double friction = 0) {
+  return bound(std::vector{shape}, level, friction);
 }
 
 StepLimit max_move(const BoundContact& before, const BoundContact& after, const Positions& x) {
@@ -207,4 +211,22 @@ TEST_CASE("shapes: where displacements count from is carried along with what is 
   dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3))
       .carry(*bound(from, level, 0.3), x, moved_from);
   CHECK((moved_from - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+}
+
+TEST_CASE("shapes: contacts are known by the same keys while a cylinder beside them grows") {
+  const Level level = square(4, 0.5);  // larger than the box, whose edges touch it
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  const auto keys = [&](double radius) {
+    ShapeParameters roll = level_with(SolidKind::cylinder, 0.5);
+    roll.radius = radius;
+    const auto contact = bound({roll, level_with(SolidKind::box, 0)}, level, 0.3);
+    Slips slips;
+    contact->sweep(x, x)->build(x)->friction(x, {})->add_slips(x, slips);
+    std::vector<ContactKey> all;
+    for (const Slip& slip : slips) all.push_back(slip.contact);
+    return all;
+  };
+  REQUIRE(keys(0.1).size() > 10);
+  CHECK(keys(0.1) == keys(0.11));
 }
