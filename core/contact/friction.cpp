@@ -21,9 +21,10 @@ Vector3d place(const FrictionContact& contact, const Positions& x) {
   return sum;
 }
 
-Vector3d slipped(const ContactKey& key, const Slips& slips) {
-  const auto place = std::ranges::lower_bound(slips, key, {}, &Slip::contact);
-  return place != slips.end() && place->contact == key ? place->by : Vector3d::Zero();
+/// Zero for a contact that is new.
+Vector3d slip_of(const ContactKey& key, const Slips& slips) {
+  const auto found = std::ranges::lower_bound(slips, key, {}, &Slip::contact);
+  return found != slips.end() && found->contact == key ? found->by : Vector3d::Zero();
 }
 
 class Friction final : public FrictionEnergy {
@@ -33,7 +34,7 @@ class Friction final : public FrictionEnergy {
       : contacts_(std::move(contacts)), start_(contacts_.size()), epsilon_(slip_distance) {
     parallel_for(size(), grain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
-        start_[i] = place(contacts_[i], from) - slipped(contacts_[i].key, slips);
+        start_[i] = place(contacts_[i], from) - slip_of(contacts_[i].key, slips);
     });
   }
 
