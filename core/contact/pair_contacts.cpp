@@ -64,6 +64,7 @@ class PairContacts final : public ContactSet {
 
   std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
     std::vector<FrictionContact> result;
+    result.reserve(count_);
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
       if (contact.pair.friction == 0) continue;
