@@ -244,7 +244,7 @@ TEST_CASE("What contacts have slipped is kept while obstacles move, and the obst
   const Level level = sheet();
   const double height = 0.4 * range, force = normal_force(height);
   const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
-  // A plate with the sheet upon it, and the same 0.2 slip distances on its way back, twice.
+  // The sheet slides on a plate, which then goes the other way, twice by 0.2 slip distances.
   BoundContacts models = bound(level, {a_plate(0)}), before = models;
   ActiveContacts contacts(models);
   contacts.begin_step(x0);

@@ -64,7 +64,6 @@ TEST_CASE("friction's derivatives, sticking and slipping") {
 
 TEST_CASE("friction of a single point: nothing at rest, its full force from the slip distance on") {
   FrictionContact contact;
-  contact.key = {};
   contact.vertices = {0, -1, -1, -1};
   contact.c = {1, -1, 0, 0};
   contact.normal = {0, 0, 1};
