@@ -168,6 +168,13 @@ void draped_level(const Experiment& e, const Scene& scene, Table& table) {
   std::printf("\n");
 }
 
+/// Seconds of a phase in all levels of a run.
+double seconds_in(const nlohmann::json& method, const char* phase) {
+  double sum = 0;
+  for (const auto& level : method["levels"]) sum += level["seconds_by_phase"].value(phase, 0.0);
+  return sum;
+}
+
 /// Both to the same force residual; the energies are stored beside the times, since equilibria differ.
 void whole_progression(const std::string& folder, Table& table) {
   std::ifstream in(folder + "/results.json");
@@ -178,6 +185,9 @@ void whole_progression(const std::string& folder, Table& table) {
               pcs["energy"].get<double>(), fine["energy"].get<double>());
   table.add(folder + ": whole PCS progression", methods["pcs"]["seconds"], "direct fine solve",
             fine["seconds"], 0.2);
+  for (const auto& [name, method] : methods.items())
+    table.add(folder + ": analyses of " + name, seconds_in(method, "analyse"), "whole run", method["seconds"],
+              0.1);
 }
 
 /// An experiment of this folder and its scene; errors are printed and leave the scene empty.
