@@ -25,6 +25,11 @@ void fields(A& a, ChangeBegun& c) {
 }
 
 template <class A>
+void fields(A& a, ChangeResponse& r) {
+  a(r.from, r.to, r.part);
+}
+
+template <class A>
 void fields(A& a, LevelResult& r) {
   a(r.level, r.outcome, r.message, r.x, r.afresh, r.steps, r.iterations, r.factorisations, r.analyses,
     r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap, r.conditions);
@@ -53,8 +58,8 @@ void fields(A& a, BlockCholesky::Analysis& m) {
 template <class A>
 void fields(A& a, NewtonState& s) {
   a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.positions, s.changed_at, s.times_held_up, s.iterations_of_step, s.strained_for, s.slowed, s.begun_at,
-    s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift, s.factor_values);
+    s.positions, s.changed_at, s.response, s.times_held_up, s.iterations_of_step, s.strained_for, s.slowed,
+    s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift, s.factor_values);
 }
 
 template <class A>
@@ -102,7 +107,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 6;
+constexpr std::uint32_t format = 7;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -272,32 +272,40 @@ void Schedule::bind_from(int level) {
 
 StepLimit Schedule::advance(int level, const Positions& x) {
   if (made()) ++change_;
-  const std::vector<double> to = wanted(change_), from = effective_;
   StepLimit limit;
-  std::vector<double> numbers = to;
   double part = 1;
   for (int tries = 0; tries < most_tries && part >= smallest_part; ++tries) {
-    if (part < 1)
-      for (std::size_t c = 0; c < to.size(); ++c) numbers[c] = from[c] + part * (to[c] - from[c]);
-    std::vector<std::string> made_from;
-    Moment next = moment(numbers, made_from);
-    LevelModel model = model_under(next, level);
-    if (std::string refused = beyond_limits(model.limits(), x, 1); !refused.empty()) {
-      limit.by = std::move(refused);
-      part *= 0.5;
-    } else if (StepLimit way = obstacles_way(*scene_.models[level], model, x); way.fraction < 1) {
-      limit.by = std::move(way.by);
-      part *= way.fraction;
-    } else {
-      *scene_.models[level] = std::move(model);
-      change_energies_above(level, next);
-      go_to(std::move(next), std::move(made_from), std::move(numbers));
+    StepLimit allowed = make_part(part, level, x);
+    if (allowed.fraction == 1) {
       limit.fraction = part;
       return limit;
     }
+    limit.by = std::move(allowed.by);
+    part *= allowed.fraction;
   }
   limit.fraction = 0;
   return limit;
+}
+
+bool Schedule::advance_by(double part, int level, const Positions& x) {
+  return make_part(part, level, x).fraction == 1;
+}
+
+StepLimit Schedule::make_part(double part, int level, const Positions& x) {
+  std::vector<double> numbers = wanted(change_);
+  if (part < 1)
+    for (std::size_t c = 0; c < numbers.size(); ++c)
+      numbers[c] = effective_[c] + part * (numbers[c] - effective_[c]);
+  std::vector<std::string> made_from;
+  Moment next = moment(numbers, made_from);
+  LevelModel model = model_under(next, level);
+  if (std::string refused = beyond_limits(model.limits(), x, 1); !refused.empty())
+    return {0.5, std::move(refused)};
+  if (StepLimit way = obstacles_way(*scene_.models[level], model, x); way.fraction < 1) return way;
+  *scene_.models[level] = std::move(model);
+  change_energies_above(level, next);
+  go_to(std::move(next), std::move(made_from), std::move(numbers));
+  return {};
 }
 
 void Schedule::change_energies_above(int level, const Moment& next) {

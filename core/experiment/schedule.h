@@ -34,12 +34,16 @@ class Schedule final : public Conditions {
   bool made() const override { return effective_ == wanted(change_); }
   double time() const override { return duration_ * change_ / p_.steps; }
   StepLimit advance(int level, const Positions& x) override;
+  bool advance_by(double part, int level, const Positions& x) override;
 
  private:
   std::vector<double> wanted(int change) const;
   /// With the numbers of all keys, one after another. What does not change is shared with now_.
   Moment moment(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
   LevelModel model_under(const Moment& moment, int level) const;
+  /// Makes a part of what is left of the change if a cloth at x allows it. 1 if so; if not, how much of the
+  /// part it may allow.
+  StepLimit make_part(double part, int level, const Positions& x);
   /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
   void change_energies_above(int level, const Moment& next);
   void go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers);

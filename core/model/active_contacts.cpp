@@ -47,13 +47,19 @@ bool ActiveContacts::has_friction() const {
                      [](const auto& friction) { return friction != nullptr; });
 }
 
-void ActiveContacts::models_changed(const BoundContacts& before, const Positions& x) {
+void ActiveContacts::models_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   if (models_ == before) return;
-  if (!carried_) remember_slips(x);
+  if (!carried_) remember_slips(from);
+  Positions counted = from_;
   for (std::size_t k = 0; k < models_.size(); ++k)
     if (const auto* movable = dynamic_cast<const MovableObstacles*>(models_[k].get());
         movable && models_[k] != before[k])
-      movable->carry(*before[k], x, from_);
+      movable->carry(*before[k], from, counted);
+  for (Eigen::Index v = 0; v < from_.rows(); ++v)  // what the cloth has been taken along is no sliding
+    if (counted.row(v) == from_.row(v))
+      from_.row(v) += x.row(v) - from.row(v);
+    else
+      from_.row(v) = counted.row(v);
   carried_ = true;
   sweeps_.clear();
   sets_.clear();

@@ -30,9 +30,9 @@ class ActiveContacts {
   /// A step begins at x: friction takes the normal forces and tangents there, and remembers how far each
   /// contact has slipped.
   void begin_step(const Positions& x);
-  /// The models, `before` until now, are those of other conditions, and the cloth is at x, within both: what
-  /// friction remembers moves along with the obstacles.
-  void models_changed(const BoundContacts& before, const Positions& x);
+  /// The models, `before` until now, with the cloth at `from`, are those of other conditions, and the cloth
+  /// is at x: what friction remembers moves along with the obstacles.
+  void models_changed(const BoundContacts& before, const Positions& from, const Positions& x);
   /// Whether that has happened since the last step.
   bool carried() const { return carried_; }
   /// Renews the normal forces and tangents at x; displacements count from where they did.

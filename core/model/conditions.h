@@ -43,6 +43,9 @@ class Conditions {
   /// Goes on with the change under way, or begins the next, as far as a cloth at x allows on this level.
   /// Gives the part of what was left of it that has been made.
   virtual StepLimit advance(int level, const Positions& x) = 0;
+  /// Goes on with the change under way by this part of what is left of it if a cloth at x allows all of that;
+  /// if not, false, and nothing is changed.
+  virtual bool advance_by(double part, int level, const Positions& x) = 0;
 };
 
 /// What a level came to under one of its conditions, as observers see it.

@@ -41,9 +41,9 @@ void Objective::forget_room() {
   sum_ = SumMatrix();
 }
 
-void Objective::model_changed(const BoundContacts& before, const Positions& x) {
+void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   set_limits(model_.limits());
-  contacts_.models_changed(before, x);
+  contacts_.models_changed(before, from, x);
 }
 
 std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {

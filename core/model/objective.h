@@ -46,8 +46,9 @@ class Objective {
   /// be evaluated at x0 and at states that far, and with contact nowhere else.
   StepLimit max_step(const Positions& x0, const Positions& x1);
 
-  /// The model is under other conditions, its contacts having been `before`; the cloth is at x.
-  void model_changed(const BoundContacts& before, const Positions& x);
+  /// The model is under other conditions, its contacts having been `before` with the cloth at `from`, which
+  /// is now at x.
+  void model_changed(const BoundContacts& before, const Positions& from, const Positions& x);
   /// Adds an energy that is no part of the model, such as a pull to a place; null for none.
   void set_penalty(const BoundEnergy* penalty) {
     if (penalty || penalty_) forget_room();

@@ -32,6 +32,12 @@ constexpr double near_equilibrium = 10;
 /// and it is given up.
 constexpr double held_up = 1e-3;
 constexpr int most_held_up = 20;
+/// A cloth's answer to a part of a change is trusted for so many times as much at most, and else for so much
+/// that equilibrium corrects this part of the way. It is followed in so many passes at most, none of less
+/// than this part of it, and no farther than where this part of the smallest gap is left: there it leads into
+/// what is in the way.
+constexpr double most_trusted = 4, wrong_part = 0.1, shortest_pass = 1e-3, squeezed = 0.5;
+constexpr int most_passes = 100;
 /// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
 /// not widen.
 constexpr double pinched = 1e-7;
@@ -147,6 +153,7 @@ class Newton {
     s.positions = hard_.memory();
     if (conditions_) s.so_far.conditions = conditions_->state();
     s.changed_at = changed_at_;
+    s.response = response_;
     s.times_held_up = times_held_up_;
     s.iterations_of_step = iterations_of_step_;
     s.strained_for = strained_for_;
@@ -176,6 +183,7 @@ class Newton {
     hard_.restore(s.positions);
     take_positions();
     changed_at_ = s.changed_at;
+    response_ = s.response;
     times_held_up_ = s.times_held_up;
     iterations_of_step_ = s.iterations_of_step;
     strained_for_ = s.strained_for;
@@ -231,14 +239,65 @@ class Newton {
     const bool begins = conditions_->made();
     if (begins && (settled || conditions_->change() > 0)) report_change();
     if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
-    const BoundContacts before = model_.contacts();
-    limit_ = conditions_->advance(result_.level, result_.x);
+    const Positions from = result_.x;
+    double made = settled && !begins ? follow_change() : 0;
+    if (made == 0) {
+      const BoundContacts before = model_.contacts();
+      limit_ = conditions_->advance(result_.level, from);
+      made = limit_.fraction;
+      f_.model_changed(before, from, from);
+    }
+    limit_.fraction = made;
+    response_ = conditions_->made() ? ChangeResponse() : ChangeResponse{from, result_.x, made};
     begun_at_ = middle();
     const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
     times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;
-    f_.model_changed(before, result_.x);
     age_ = p_.refresh;
     bring_held_vertices();
+  }
+
+  /// How many times as much of a change the cloth's answer to the last part of it is trusted for: less where
+  /// equilibrium is far from where it was taken along to.
+  double trust() const {
+    const double way = (response_.to - response_.from).norm();
+    const double wrong = (result_.x - response_.to).norm();
+    return wrong * most_trusted < wrong_part * way || way == 0
+               ? most_trusted
+               : std::max(wrong_part * way / wrong, 1 / most_trusted);
+  }
+
+  /// What obstacles are held up in is made in small parts, and the cloth answers. More of it is made at once
+  /// by taking the cloth along the same way, as far as the answer is trusted: it goes ahead as far as contact
+  /// and limits let it, the obstacles come after it, and so on. The part of what was left of the change that
+  /// has been made; 0 where there is no answer yet, or nothing gives way.
+  double follow_change() {
+    const double last = response_.part;
+    if (last == 0) return 0;
+    const Positions from = result_.x, way = (from - response_.from) * ((1 - last) / last);
+    const double reach = std::min(1.0, trust() * last / (1 - last)), gap = f_.contacts().smallest_gap();
+    if (reach < held_up) return 0;
+    double made = 0, pass = reach;
+    for (int tries = 0; tries < most_passes && made < reach && pass >= shortest_pass * reach; ++tries) {
+      const Positions here = result_.x;
+      pass = std::min(pass, reach - made);
+      trial_ = from + (made + pass) * way;
+      if (const double allowed = f_.max_step(here, trial_).fraction; allowed < 1) {
+        pass *= 0.5 * allowed;  // half of what there is: room for the obstacles to come after
+        trial_ = from + (made + pass) * way;
+      }
+      const BoundContacts before = model_.contacts();
+      if (!std::isfinite(f_.gradient(trial_, trial_g_)) ||
+          !conditions_->advance_by(pass / (1 - made), result_.level, trial_)) {
+        pass *= 0.5;
+        continue;
+      }
+      f_.model_changed(before, here, trial_);
+      result_.x = trial_;
+      made += pass;
+      if (f_.contacts().smallest_gap() < squeezed * gap) break;
+      pass *= 2;
+    }
+    return made;
   }
 
   void report_change() {
@@ -604,6 +663,7 @@ class Newton {
   HardPositions hard_;
   std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
   ChangeBegun changed_at_;   // when the change under way was begun
+  ChangeResponse response_;  // to the part of it that was made last
   int times_held_up_ = 0;
   int strained_for_ = 0;        // steps in turn
   bool slowed_ = false;         // h does not grow

@@ -19,6 +19,13 @@ struct ChangeBegun {
   double seconds = 0;
 };
 
+/// What the cloth did after a part of a change of conditions had been made.
+struct ChangeResponse {
+  Positions from;   ///< where it was before (n×3) [m]
+  Positions to;     ///< where it was taken along to
+  double part = 0;  ///< of what was left of the change; 0 where there is no more to be made
+};
+
 /// A level under way, at the beginning of an implicit step: all that the steps to come depend on, bit for
 /// bit. What follows from the rest (energy, gradient, contacts, the layout of the factor) is not in it.
 struct NewtonState {
@@ -31,6 +38,7 @@ struct NewtonState {
   std::string held_by;  ///< what kept the last step short, in words
   HardPositions::Memory positions;
   ChangeBegun changed_at;
+  ChangeResponse response;
   int iterations_of_step = 1;  ///< that the step to come may take
   int strained_for = 0;   ///< steps in turn that ended with forces far beyond the load; negative: without
   bool slowed = false;    ///< for that, so that h does not grow

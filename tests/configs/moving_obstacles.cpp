@@ -92,6 +92,41 @@ schedule: {steps: 10, keys: [
   }
 }
 
+TEST_CASE(
+    "what pushes or carries the cloth far takes it along, and not by a tenth of the contact's range at a "
+    "time") {
+  const std::string draped = R"(name: pushed
+cloth: {shape: square, side: 0.4, columns: 14, rows: 14}
+levels: 1
+start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.0608}, gravity]
+newton: {force_tolerance: 1e-3}
+verify: every_step
+methods: {pcs: {}}
+)";
+  const std::string shapes = R"(contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
+  {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
+)";
+  const std::string ipc = R"(contact: {type: ipc, friction: 0.3, obstacles: [
+  {name: ball, shape: sphere, radius: 0.1, subdivisions: 3, translate: [0, 0, 0]}]}
+)";
+  const auto schedule = [](const std::string& key, const std::string& to) {
+    return "schedule: {steps: 2, settle: true, keys: [{set: " + key + ", at: [0, 1], to: " + to + "}]}\n";
+  };
+  const Scratch folder;
+  const auto iterations = [&](const std::string& more) {
+    end_of(draped + more, folder, 0);
+    const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    return all["methods"]["pcs"]["levels"][0]["newton_iterations"].get<int>();
+  };
+  const int still = iterations(shapes);  // one part at a time, 3000 to 6000 more
+  CHECK(iterations(shapes + schedule("contact.1.shapes.0.centre", "[[0, 0, 0], [0, 0, 0.1]]")) < still + 150);
+  CHECK(iterations(shapes + schedule("contact.1.shapes.0.centre", "[[0, 0, 0], [0.1, 0, 0]]")) < still + 300);
+  CHECK(iterations(shapes + schedule("contact.1.shapes.0.radius", "[0.1, 0.13]")) < still + 1500);
+  CHECK(iterations(ipc + schedule("contact.obstacles.0.translate", "[[0, 0, 0], [0, 0.05, 0.1]]")) <
+        still + 300);
+}
+
 TEST_CASE("a wing that flaps under a pinned cloth, and a ball with cages that rises into it") {
   const Scratch folder;
   for (int k = 0; k < 3; ++k) {

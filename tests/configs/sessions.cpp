@@ -204,6 +204,22 @@ schedule:
   }
 }
 
+TEST_CASE("So has one whose cloth is taken along by an obstacle") {
+  const Scratch folder;
+  folder.write("e.yaml", R"(name: lifted
+cloth: {shape: square, side: 0.4, columns: 8, rows: 8}
+levels: 1
+start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
+energies: [neo_hookean, hinge, gravity]
+contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
+  {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
+schedule: {steps: 2, settle: true, keys: [{set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.05]]}]}
+newton: {force_tolerance: 1e-2}
+methods: {pcs: {}}
+)");
+  CHECK(check_in_parts(experiment_in(folder / "e.yaml"), folder.path) > 40);
+}
+
 TEST_CASE("So has one with a level that is begun from the scene's start, conditions changing") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape is one that the state of the coarse
   // level, carried up by midpoints, does not get into within the strain limit.

@@ -254,7 +254,7 @@ TEST_CASE("What contacts have slipped is kept while obstacles move, and the obst
   for (const double moved : {-0.2 * slip, -0.4 * slip}) {
     before = models;
     models = bound(level, {a_plate(moved)});
-    contacts.models_changed(before, x1);
+    contacts.models_changed(before, x1, x1);
     CHECK(contacts.carried());
     CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * slip - moved)));
   }
@@ -263,6 +263,33 @@ TEST_CASE("What contacts have slipped is kept while obstacles move, and the obst
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
   contacts.begin_step(x1);
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
+}
+
+TEST_CASE("A cloth that is taken along with an obstacle does not slide") {
+  const Level level = sheet();
+  const double height = 0.4 * range, force = normal_force(height);
+  BoundContacts models = bound(level, {a_plate(0)}), before = models;
+  ActiveContacts contacts(models);
+  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  contacts.begin_step(x1);
+  models = bound(level, {a_plate(7 * slip)});
+  const Positions x2 = at(level, 7.3 * slip, height);
+  contacts.models_changed(before, x1, x2);
+  CHECK(contacts.friction(x2) == Approx(force * potential(0.3 * slip)));
+  contacts.begin_step(x2);
+  CHECK(contacts.friction(x2) == Approx(force * potential(0.3 * slip)));
+
+  // Nor does one that comes down on it.
+  before = models;
+  ActiveContacts far(models);
+  const Positions x3 = at(level, 0, 3 * range);
+  far.begin_step(x3);
+  models = bound(level, {a_plate(slip)});
+  far.models_changed(before, x3, x2);
+  CHECK(far.count() > 0);
+  CHECK(far.friction(x2) == 0);
 }
 
 TEST_CASE("Friction can be left out") {

@@ -120,7 +120,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 6; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 7; resume it with the drape that wrote it");
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {

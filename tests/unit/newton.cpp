@@ -207,6 +207,7 @@ class Idle : public Conditions {
   bool made() const override { return true; }
   double time() const override { return change_; }
   StepLimit advance(int, const Positions&) override { return ++change_, StepLimit(); }
+  bool advance_by(double, int, const Positions&) override { return false; }
 
  private:
   int change_ = 0;
