@@ -63,6 +63,18 @@ class Friction final : public FrictionEnergy {
     }
   }
 
+  void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const override {
+    slips.reserve(slips.size() + size());
+    for (int i = 0; i < size(); ++i) {
+      Vector3d u = slip(i, x);
+      const auto& v = contacts_[i].vertices;
+      if (std::ranges::find(v, -1) !=
+          v.end())  // an obstacle's side has gone the cloth's way, and not the cloth
+        u -= tangential(i, place(contacts_[i], carried));
+      slips.push_back({contacts_[i].key, u});
+    }
+  }
+
   Stencils stencils() const override {
     Stencils result(size(), 4);
     for (int i = 0; i < size(); ++i)
@@ -86,11 +98,12 @@ class Friction final : public FrictionEnergy {
  private:
   int size() const { return static_cast<int>(contacts_.size()); }
 
-  Vector3d slip(int i, const Positions& x) const {
+  Vector3d tangential(int i, const Vector3d& u) const {
     const Vector3d& n = contacts_[i].normal;
-    const Vector3d u = place(contacts_[i], x) - start_[i];
     return u - n.dot(u) * n;
   }
+
+  Vector3d slip(int i, const Positions& x) const { return tangential(i, place(contacts_[i], x) - start_[i]); }
 
   double potential(int i, double y) const {
     const double q = y / epsilon_;

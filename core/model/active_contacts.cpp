@@ -31,12 +31,15 @@ void ActiveContacts::begin_step(const Positions& x) {
   lag();
 }
 
-void ActiveContacts::remember_slips(const Positions& x) {
+void ActiveContacts::remember_slips(const Positions& x, const Positions* carried) {
   slips_.resize(models_.size());
   for (Slips& slips : slips_) slips.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
-    friction_[k]->add_slips(x, slips_[k]);
+    if (carried)
+      friction_[k]->add_slips_carried(x, *carried, slips_[k]);
+    else
+      friction_[k]->add_slips(x, slips_[k]);
     std::ranges::sort(slips_[k], {}, &Slip::contact);
   }
   from_ = x;
@@ -49,17 +52,16 @@ bool ActiveContacts::has_friction() const {
 
 void ActiveContacts::models_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   if (models_ == before) return;
-  if (!carried_) remember_slips(from);
-  Positions counted = from_;
+  if (!carried_) {
+    remember_slips(from);
+    renew_lag(from);
+  }
+  Positions carried = Positions::Zero(x.rows(), 3);
   for (std::size_t k = 0; k < models_.size(); ++k)
     if (const auto* movable = dynamic_cast<const MovableObstacles*>(models_[k].get());
         movable && models_[k] != before[k])
-      movable->carry(*before[k], from, counted);
-  for (Eigen::Index v = 0; v < from_.rows(); ++v)  // what the cloth has been taken along is no sliding
-    if (counted.row(v) == from_.row(v))
-      from_.row(v) += x.row(v) - from.row(v);
-    else
-      from_.row(v) = counted.row(v);
+      movable->carry(*before[k], from, carried);
+  remember_slips(x, &carried);
   carried_ = true;
   sweeps_.clear();
   sets_.clear();

@@ -30,8 +30,8 @@ class ActiveContacts {
   /// A step begins at x: friction takes the normal forces and tangents there, and remembers how far each
   /// contact has slipped.
   void begin_step(const Positions& x);
-  /// The models, `before` until now, with the cloth at `from`, are those of other conditions, and the cloth
-  /// is at x: what friction remembers moves along with the obstacles.
+  /// The models, `before` until now, with the cloth at `from`, are those of other conditions, and the cloth,
+  /// within both, is at x: contacts have slipped by the cloth's way less the obstacles'.
   void models_changed(const BoundContacts& before, const Positions& from, const Positions& x);
   /// Whether that has happened since the last step.
   bool carried() const { return carried_; }
@@ -66,8 +66,9 @@ class ActiveContacts {
   void sweep(const Positions& x0, const Positions& x1);
   void build(const Positions& x);
   void lag();
-  /// Displacements count from x, where contacts keep what they have slipped.
-  void remember_slips(const Positions& x);
+  /// Displacements count from x, where contacts keep what they have slipped; all of it, if obstacles have
+  /// moved.
+  void remember_slips(const Positions& x, const Positions* carried = nullptr);
 
   const BoundContacts& models_;
   std::vector<std::unique_ptr<ContactSweep>> sweeps_;
@@ -77,7 +78,7 @@ class ActiveContacts {
   std::vector<Slips> slips_;                               // of each model
   Positions state_, from_;
   bool with_friction_ = true;
-  bool carried_ = false;  // from_ has moved with obstacles since the last step
+  bool carried_ = false;  // obstacles have moved since the last step
   double seconds_building_ = 0;
 };
 

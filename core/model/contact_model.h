@@ -38,6 +38,8 @@ class FrictionEnergy : public BoundEnergy {
   /// Appends, in any order, what each contact has slipped at x, by its slip distance at most: what sticks or
   /// slides on is held by the same force in the next step.
   virtual void add_slips(const Positions& x, Slips& slips) const = 0;
+  /// The same in full, where what the cloth's vertices touch of obstacles has moved by `carried` (n×3) [m].
+  virtual void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const = 0;
 };
 
 /// The contacts within range at one state: a value that is built, evaluated and looked at. As an energy it
@@ -86,8 +88,8 @@ class MovableObstacles {
   /// nothing has moved. Throws std::runtime_error naming an obstacle that is no longer made of the same
   /// parts.
   virtual StepLimit max_move(const BoundContact& before, const Positions& x) const = 0;
-  /// Moves the rows of `from` (n×3), where friction's displacements count from, of vertices in contact at x
-  /// along with what they touch.
+  /// Moves the rows of `from` (n×3) of vertices that touch obstacles, with friction, at x along with what
+  /// they touch.
   virtual void carry(const BoundContact& before, const Positions& x, Positions& from) const = 0;
 };
 

@@ -32,15 +32,15 @@ constexpr double near_equilibrium = 10;
 /// and it is given up.
 constexpr double held_up = 1e-3;
 constexpr int most_held_up = 20;
+/// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
+/// not widen.
+constexpr double pinched = 1e-7;
 /// A cloth's answer to a part of a change is trusted for so many times as much at most, and else for so much
 /// that equilibrium corrects this part of the way. It is followed in so many passes at most, none of less
 /// than this part of it, and no farther than where this part of the smallest gap is left: there it leads into
 /// what is in the way.
 constexpr double most_trusted = 4, wrong_part = 0.1, shortest_pass = 1e-3, squeezed = 0.5;
 constexpr int most_passes = 100;
-/// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
-/// not widen.
-constexpr double pinched = 1e-7;
 /// Newton iterations of a step after obstacles have moved: friction counts from what it ends with, and
 /// one iteration overshoots.
 constexpr int carried_iterations = 30;
@@ -241,15 +241,20 @@ class Newton {
     if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     const Positions from = result_.x;
     double made = settled && !begins ? follow_change() : 0;
-    if (made == 0) {
+    Positions to = result_.x;
+    // Less than the last time, which may be no more than the obstacles go by themselves: they do.
+    if (made < 1 && made * (1 - response_.part) <= response_.part) {
       const BoundContacts before = model_.contacts();
-      limit_ = conditions_->advance(result_.level, from);
-      made = limit_.fraction;
-      f_.model_changed(before, from, from);
+      limit_ = conditions_->advance(result_.level, result_.x);
+      made += limit_.fraction * (1 - made);
+      to = from;  // the answer to this is still to come
+      model_changed(before, result_.x);
     }
     limit_.fraction = made;
-    response_ = conditions_->made() ? ChangeResponse() : ChangeResponse{from, result_.x, made};
+    response_ =
+        settled && !conditions_->made() ? ChangeResponse{from, std::move(to), made} : ChangeResponse();
     begun_at_ = middle();
+    f_.contacts().barrier(result_.x);  // where the smallest gap is asked for
     const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
     times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;
     age_ = p_.refresh;
@@ -281,23 +286,39 @@ class Newton {
       const Positions here = result_.x;
       pass = std::min(pass, reach - made);
       trial_ = from + (made + pass) * way;
-      if (const double allowed = f_.max_step(here, trial_).fraction; allowed < 1) {
+      if (const double allowed = allowed_to(trial_); allowed < 1) {
         pass *= 0.5 * allowed;  // half of what there is: room for the obstacles to come after
+        if (pass < shortest_pass * reach) break;
         trial_ = from + (made + pass) * way;
       }
       const BoundContacts before = model_.contacts();
-      if (!std::isfinite(f_.gradient(trial_, trial_g_)) ||
-          !conditions_->advance_by(pass / (1 - made), result_.level, trial_)) {
+      if (!is_finite_at(trial_) || !conditions_->advance_by(pass / (1 - made), result_.level, trial_)) {
         pass *= 0.5;
         continue;
       }
-      f_.model_changed(before, here, trial_);
       result_.x = trial_;
+      model_changed(before, here);
       made += pass;
       if (f_.contacts().smallest_gap() < squeezed * gap) break;
       pass *= 2;
     }
     return made;
+  }
+
+  double allowed_to(const Positions& x) {
+    PhaseTimer t(result_.seconds_by_phase, "step filter");
+    return f_.max_step(result_.x, x).fraction;
+  }
+
+  bool is_finite_at(const Positions& x) {
+    PhaseTimer t(result_.seconds_by_phase, "gradient");
+    return std::isfinite(f_.gradient(x, trial_g_));
+  }
+
+  /// Contacts were `before`, with the cloth at `from`.
+  void model_changed(const BoundContacts& before, const Positions& from) {
+    PhaseTimer t(result_.seconds_by_phase, "gradient");  // contact sets are built
+    f_.model_changed(before, from, result_.x);
   }
 
   void report_change() {

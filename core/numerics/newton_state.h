@@ -23,7 +23,7 @@ struct ChangeBegun {
 struct ChangeResponse {
   Positions from;   ///< where it was before (n×3) [m]
   Positions to;     ///< where it was taken along to
-  double part = 0;  ///< of what was left of the change; 0 where there is no more to be made
+  double part = 0;  ///< of what was left of the change; 0 where there was no answer, or no more to be made
 };
 
 /// A level under way, at the beginning of an implicit step: all that the steps to come depend on, bit for

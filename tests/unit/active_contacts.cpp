@@ -218,8 +218,13 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
     x1.middleRows(i * n, n) = x0.middleRows(i * n, n).rowwise() + slid;
   }
   const Level level = Level::of(0, rest);
-  const auto models =
-      bound(level, {make_plugin_from<ContactModel>("{type: ipc, stiffness: 100, friction: 0.3}")});
+  const auto beside_a_box = [&](const std::string& place) {
+    return bound(level, {make_plugin_from<ContactModel>(
+                            "{type: ipc, stiffness: 100, friction: 0.3, obstacles: [{name: box, shape: box, "
+                            "translate: " +
+                            place + "}]}")});
+  };
+  BoundContacts models = beside_a_box("[0, 9, 0]");
   ActiveContacts contacts(models);
   contacts.begin_step(x0);
   REQUIRE(contacts.max_step(x0, x1).fraction == 1);
@@ -238,6 +243,12 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
     contacts.begin_step(x1);  // found along another way than those before
     CHECK((friction(x1) - f).norm() <= 1e-9 * f.norm());
   }
+  // Nor where they are taken along together, whatever moves elsewhere.
+  const BoundContacts before = models;
+  models = beside_a_box("[0, 9.1, 0]");
+  const Positions x2 = x1.rowwise() + Eigen::RowVector3d(0.02, -0.01, 0.03);
+  contacts.models_changed(before, x1, x2);
+  CHECK((friction(x2) - f).norm() <= 1e-9 * f.norm());
 }
 
 TEST_CASE("What contacts have slipped is kept while obstacles move, and the obstacles' way is added") {
@@ -265,31 +276,57 @@ TEST_CASE("What contacts have slipped is kept while obstacles move, and the obst
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
 }
 
-TEST_CASE("A cloth that is taken along with an obstacle does not slide") {
+TEST_CASE("A cloth that is taken along has slipped by its own way less the obstacle's") {
   const Level level = sheet();
   const double height = 0.4 * range, force = normal_force(height);
-  BoundContacts models = bound(level, {a_plate(0)}), before = models;
-  ActiveContacts contacts(models);
   const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
-  contacts.begin_step(x0);
-  contacts.max_step(x0, x1);
-  contacts.begin_step(x1);
-  models = bound(level, {a_plate(7 * slip)});
-  const Positions x2 = at(level, 7.3 * slip, height);
-  contacts.models_changed(before, x1, x2);
-  CHECK(contacts.friction(x2) == Approx(force * potential(0.3 * slip)));
-  contacts.begin_step(x2);
-  CHECK(contacts.friction(x2) == Approx(force * potential(0.3 * slip)));
+  for (const auto& [way, slipped] : {std::pair(7 * slip, 0.3 * slip), std::pair(5 * slip, 2.3 * slip)}) {
+    BoundContacts models = bound(level, {a_plate(0)}), before = models;
+    ActiveContacts contacts(models);
+    contacts.begin_step(x0);
+    contacts.max_step(x0, x1);
+    contacts.begin_step(x1);
+    models = bound(level, {a_plate(way)});
+    const Positions x2 = at(level, 7.3 * slip, height);
+    contacts.models_changed(before, x1, x2);
+    CHECK(contacts.friction(x2) == Approx(force * potential(slipped)));
+    contacts.begin_step(x2);
+    CHECK(contacts.friction(x2) == Approx(force * potential(slipped)));
+  }
+}
 
-  // Nor does one that comes down on it.
-  before = models;
-  ActiveContacts far(models);
-  const Positions x3 = at(level, 0, 3 * range);
-  far.begin_step(x3);
-  models = bound(level, {a_plate(slip)});
-  far.models_changed(before, x3, x2);
-  CHECK(far.count() > 0);
-  CHECK(far.friction(x2) == 0);
+TEST_CASE("On what stands still it has slipped by all of its way, on what it comes down on not at all") {
+  const Level level = sheet();
+  const double height = 0.4 * range, force = normal_force(height);
+  const auto on_floor = [&](double far) {  // in one model, and in two
+    return std::array{
+        bound(level, {make_plugin_from<ContactModel>(
+                         "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: floor, "
+                         "shape: box, size: [4, 4, 0.2], rotate: [0, 0, 33], centre: [0.7, 0.3, -0.1]}, "
+                         "{name: ball, shape: sphere, radius: 0.1, centre: [0, " +
+                         std::to_string(far) + ", 3]}]}")}),
+        bound(level, {a_floor(), a_plate(far)})};
+  };
+  const Positions x1 = at(level, 0.3 * slip, height), x2 = at(level, 2.3 * slip, height);
+  for (int k = 0; k < 2; ++k) {
+    BoundContacts models = on_floor(5)[k], before = models;
+    ActiveContacts contacts(models);
+    contacts.begin_step(at(level, 0, height));
+    contacts.max_step(at(level, 0, height), x1);
+    contacts.begin_step(x1);
+    models = on_floor(5.5)[k];
+    if (k == 1) models[0] = before[0];
+    contacts.models_changed(before, x1, x2);
+    CHECK(contacts.friction(x2) == Approx(force * potential(2.3 * slip)));
+
+    before = models;
+    ActiveContacts far(models);
+    far.begin_step(at(level, 0, 3 * range));
+    models = on_floor(6)[k];
+    far.models_changed(before, at(level, 0, 3 * range), x2);
+    CHECK(far.count() > 0);
+    CHECK(far.friction(x2) == 0);
+  }
 }
 
 TEST_CASE("Friction can be left out") {

@@ -58,6 +58,9 @@ class FrictionStack final : public Stacked<FrictionEnergy> {
   void add_slips(const Positions& x, Slips& slips) const override {
     for (const auto& part : parts_) part->add_slips(x, slips);
   }
+  void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const override {
+    for (const auto& part : parts_) part->add_slips_carried(x, carried, slips);
+  }
 };
 
 class ContactStack final : public Stacked<ContactSet> {
