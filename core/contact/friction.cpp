@@ -21,6 +21,11 @@ Vector3d place(const FrictionContact& contact, const Positions& x) {
   return sum;
 }
 
+/// Between two parts of the cloth all four vertices are its own.
+bool is_with_obstacle(const FrictionContact& contact) {
+  return std::ranges::find(contact.vertices, -1) != contact.vertices.end();
+}
+
 /// Zero for a contact that is new.
 Vector3d slip_of(const ContactKey& key, const Slips& slips) {
   const auto found = std::ranges::lower_bound(slips, key, {}, &Slip::contact);
@@ -67,10 +72,7 @@ class Friction final : public FrictionEnergy {
     slips.reserve(slips.size() + size());
     for (int i = 0; i < size(); ++i) {
       Vector3d u = slip(i, x);
-      const auto& v = contacts_[i].vertices;
-      if (std::ranges::find(v, -1) !=
-          v.end())  // an obstacle's side has gone the cloth's way, and not the cloth
-        u -= tangential(i, place(contacts_[i], carried));
+      if (is_with_obstacle(contacts_[i])) u -= tangential(i, place(contacts_[i], carried));
       slips.push_back({contacts_[i].key, u});
     }
   }

@@ -52,7 +52,7 @@ bool ActiveContacts::has_friction() const {
 
 void ActiveContacts::models_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   if (models_ == before) return;
-  if (!carried_) {
+  if (!carried_ && has_friction()) {
     remember_slips(from);
     renew_lag(from);
   }

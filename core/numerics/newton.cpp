@@ -271,7 +271,7 @@ class Newton {
                : std::max(wrong_part * way / wrong, 1 / most_trusted);
   }
 
-  /// What obstacles are held up in is made in small parts, and the cloth answers. More of it is made at once
+  /// Where a change is held up a small part of it is made, and the cloth answers. More of it is made at once
   /// by taking the cloth along the same way, as far as the answer is trusted: it goes ahead as far as contact
   /// and limits let it, the obstacles come after it, and so on. The part of what was left of the change that
   /// has been made; 0 where there is no answer yet, or nothing gives way.
