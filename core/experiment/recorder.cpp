@@ -300,7 +300,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
   std::vector<std::pair<double, std::string>> frames;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
-    if (r.outcome != Outcome::converged) worst = r.outcome;
+    if (!ended_as_asked(r.outcome)) worst = r.outcome;
     Json& state = entry["levels"][i];
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)

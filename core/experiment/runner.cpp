@@ -152,7 +152,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     recorder.method_finished(results);
     bool converged = true;
     for (const LevelResult& r : results) {
-      converged = converged && r.outcome == Outcome::converged;
+      converged = converged && ended_as_asked(r.outcome);
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
     all_converged = all_converged && converged;

@@ -4,8 +4,17 @@
 
 namespace drape {
 
+double Objective::kept_smooth_gradient(const Positions& x, Positions& g) {
+  if (evaluated_at_.rows() != x.rows() || evaluated_at_ != x) {
+    smooth_energy_ = smooth_gradient(x, smooth_gradient_);
+    evaluated_at_ = x;
+  }
+  g = smooth_gradient_;
+  return smooth_energy_;
+}
+
 double Objective::gradient(const Positions& x, Positions& g) {
-  double sum = smooth_gradient(x, g);
+  double sum = kept_smooth_gradient(x, g);
   for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
     sum += limits_[k]->add_gradient(x, g);
   if (penalty_) sum += penalty_->add_gradient(x, g);
@@ -42,6 +51,7 @@ void Objective::forget_room() {
 }
 
 void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
+  smooth_changed();
   set_limits(model_.limits());
   contacts_.models_changed(before, from, x);
 }

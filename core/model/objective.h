@@ -73,6 +73,9 @@ class Objective {
   /// To which the rest is added in place, where its pattern has room for it.
   virtual BlockMatrix& smooth_matrix(const Positions& x, Projection projection) = 0;
 
+  /// The smooth part is another function from now on.
+  void smooth_changed() { evaluated_at_.resize(0, 3); }
+
   /// Restricts or replaces the limits of the model.
   void set_limits(std::vector<const BoundEnergy*> limits) {
     limits_ = std::move(limits);
@@ -81,6 +84,7 @@ class Objective {
 
  private:
   void forget_room();
+  double kept_smooth_gradient(const Positions& x, Positions& g);
 
   const LevelModel& model_;
   std::vector<const BoundEnergy*> limits_;
@@ -88,6 +92,10 @@ class Objective {
   ActiveContacts contacts_;
   SumMatrix sum_;
   bool smooth_alone_ = true, gone_ = false;  // of the last matrix' pattern
+  // Where the smooth part was evaluated last, and what it was. Friction changes from step to step where x
+  // does not, and of a proxy the smooth part is by far the larger one.
+  Positions evaluated_at_, smooth_gradient_;
+  double smooth_energy_ = 0;
 };
 
 /// E_l itself.

@@ -28,6 +28,8 @@ const char* to_string(Outcome outcome) {
       return "infeasible";
     case Outcome::refined_early:
       return "refined_early";
+    case Outcome::handed_on:
+      return "handed_on";
   }
   return "";
 }

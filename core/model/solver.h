@@ -25,9 +25,14 @@ struct Problem {
   Positions carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const;
 };
 
-/// How a solve ended. `refined_early`: on request, so that the next level could begin.
-enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible, refined_early };
+/// How a solve ended. `refined_early`: on request, so that the next level could begin; `handed_on`: the same,
+/// as the experiment's `refine_at` asks.
+enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible, refined_early, handed_on };
 const char* to_string(Outcome outcome);
+/// Whether a level ended as its experiment asked.
+inline bool ended_as_asked(Outcome outcome) {
+  return outcome == Outcome::converged || outcome == Outcome::handed_on;
+}
 
 /// One Newton iteration, as observers see it.
 struct IterationRow {

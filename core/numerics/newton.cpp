@@ -96,6 +96,8 @@ class Newton {
         const bool settled = !hard_.pulling() && converged();
         const bool changing = conditions_ && !conditions_->finished();
         if (settled && !changing) return finish_settled();
+        if (run_.finer_follows && !changing && hands_on())
+          return finish(Outcome::handed_on, "handed on at force residual " + brief(result_.force_residual));
         // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
         // widens them twofold.
         const bool at_once = changing && !conditions_->settles() && conditions_->made();
@@ -225,6 +227,12 @@ class Newton {
     evaluate();
     update_residual();
     return result_.force_residual <= p_.force_tolerance;
+  }
+
+  /// What pins and conditions ask for has to have come about; a start is no preview.
+  bool hands_on() const {
+    return result_.force_residual < p_.refine_at && result_.steps > 0 && !hard_.pulling() &&
+           !hard_.given_up();
   }
 
   LevelResult finish_settled() {

@@ -34,6 +34,12 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_least(0)
       .meaning("also asked of the largest of the last three decrements; 0 asks nothing")
       .source("Li et al. 2021 (C-IPC)");
+  d.add("refine_at", &NewtonParameters::refine_at)
+      .at_least(0)
+      .meaning(
+          "a level that a finer one follows is left once its force residual is below this; 0 waits for "
+          "equilibrium")
+      .source("PCS section 4: a level may be refined before it has converged");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
       .meaning("what becomes of negative eigenvalues of an element's Hessian")

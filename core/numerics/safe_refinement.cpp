@@ -34,6 +34,7 @@ class PullToTarget : public Objective {
   /// pinned on this level alone, the target is where the coarse cloth was, and too far.
   void loosen(const Positions& y) {
     looseness_ *= 10;
+    smooth_changed();
     take_scale(y);
   }
 
@@ -56,6 +57,7 @@ class PullToTarget : public Objective {
       }
     }
     set_limits(limits);
+    smooth_changed();
     const Material& material = model().material();
     penalty_.reset();
     slots_.reset();

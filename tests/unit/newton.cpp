@@ -266,6 +266,42 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
   }
 }
 
+TEST_CASE("What does not change with x is evaluated once where x stays, and anew under another model",
+          "[newton]") {
+  struct Counted : PlainObjective {
+    using PlainObjective::PlainObjective;
+    int evaluated = 0;
+    double smooth_gradient(const Positions& x, Positions& g) override {
+      ++evaluated;
+      return PlainObjective::smooth_gradient(x, g);
+    }
+  };
+  Case c;
+  const auto model_of = [&](double k) {
+    return LevelModel(c.level, Material(), {{"wells", std::make_shared<Wells>(c.centres, k, 0)}}, {});
+  };
+  LevelModel model = model_of(10);
+  Counted objective(model);
+  const Positions x = c.level.rest.vertices;
+  Positions first, again;
+  const double energy = objective.gradient(x, first);
+  REQUIRE(energy > 0);
+  CHECK(objective.gradient(x, again) == energy);
+  CHECK(again == first);
+  CHECK(objective.evaluated == 1);
+  objective.gradient(x + x, again);
+  CHECK(objective.evaluated == 2);
+  CHECK(objective.gradient(x, again) == energy);
+  CHECK(objective.evaluated == 3);
+
+  const BoundContacts none;
+  model = model_of(20);
+  objective.model_changed(none, x, x);
+  CHECK(objective.gradient(x, again) == Approx(2 * energy));
+  CHECK((again - 2 * first).norm() <= 1e-12 * first.norm());
+  CHECK(objective.evaluated == 4);
+}
+
 TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") {
   // Constant forces, on a cloth without pins: no equilibrium, and no end to its fall.
   class Weight : public Wells {
