@@ -61,20 +61,18 @@ class Friction final : public FrictionEnergy {
   }
 
   void add_slips(const Positions& x, Slips& slips) const override {
-    slips.reserve(slips.size() + size());
-    for (int i = 0; i < size(); ++i) {
+    append(slips, [&](int i) {
       const Vector3d u = slip(i, x);
-      slips.push_back({contacts_[i].key, std::min(1.0, epsilon_ / u.norm()) * u});
-    }
+      return Vector3d(std::min(1.0, epsilon_ / u.norm()) * u);
+    });
   }
 
   void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const override {
-    slips.reserve(slips.size() + size());
-    for (int i = 0; i < size(); ++i) {
-      Vector3d u = slip(i, x);
-      if (is_with_obstacle(contacts_[i])) u -= tangential(i, place(contacts_[i], carried));
-      slips.push_back({contacts_[i].key, u});
-    }
+    append(slips, [&](int i) {
+      const Vector3d u = slip(i, x);
+      if (!is_with_obstacle(contacts_[i])) return u;
+      return Vector3d(u - tangential(i, place(contacts_[i], carried)));
+    });
   }
 
   Stencils stencils() const override {
@@ -99,6 +97,12 @@ class Friction final : public FrictionEnergy {
 
  private:
   int size() const { return static_cast<int>(contacts_.size()); }
+
+  template <class SlipOf>
+  void append(Slips& slips, const SlipOf& slip_of_contact) const {
+    slips.reserve(slips.size() + size());
+    for (int i = 0; i < size(); ++i) slips.push_back({contacts_[i].key, slip_of_contact(i)});
+  }
 
   Vector3d tangential(int i, const Vector3d& u) const {
     const Vector3d& n = contacts_[i].normal;

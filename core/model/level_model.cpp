@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/numerics/parallel.h"
+
 namespace drape {
 
 namespace {
@@ -93,7 +95,9 @@ double LevelModel::value(const Positions& x) const {
 }
 
 double LevelModel::gradient(const Positions& x, Positions& g) const {
-  g.setZero(x.rows(), 3);
+  g.resize(x.rows(), 3);
+  parallel_for(static_cast<int>(g.rows()), 8192,
+               [&](int begin, int end) { g.middleRows(begin, end - begin).setZero(); });
   double sum = 0;
   for (const Term& term : terms_) {
     if (term.role == EnergyRole::limit) continue;

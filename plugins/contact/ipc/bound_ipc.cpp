@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/contact/contact_kernel.h"
+#include "core/contact/mean_moves.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
 #include "plugins/contact/ipc/kept.h"
@@ -198,8 +199,7 @@ void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& 
     const std::lock_guard lock(was.busy_);
     was.search(x, x, {unlimited, unlimited}, pairs, counts);
   }
-  Positions moved = Positions::Zero(n, 3);  // weighted by friction's force
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(n);
+  MeanMoves moves(n);  // by friction's force
   for (const ContactPair& pair : pairs) {
     const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
     if ((is_cloth(0) && is_cloth(3)) || pair.friction == 0) continue;
@@ -208,15 +208,12 @@ void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& 
     const Contact contact = contact_at(pair, at, was.barrier_.range);
     const PairPositions move = positions_of(pair, x, obstacles_->vertices) - at;
     const Eigen::Vector3d of_obstacle = move * contact.closest.c.cwiseAbs();  // the cloth's columns are zero
-    for (int k = 0; k < 4; ++k) {
-      if (!is_cloth(k)) continue;
-      const double weight = std::abs(contact.closest.c[k]) * pair.friction * contact.pressure();
-      moved.row(pair.vertices[k]) += weight * of_obstacle;
-      weights[pair.vertices[k]] += weight;
-    }
+    for (int k = 0; k < 4; ++k)
+      if (is_cloth(k))
+        moves.add(pair.vertices[k], of_obstacle,
+                  std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
   }
-  for (int v = 0; v < n; ++v)
-    if (weights[v] > 0) from.row(v) += moved.row(v) / weights[v];
+  moves.move(from);
 }
 
 std::vector<Touch> BoundIpc::intersections(const Positions& x) const {

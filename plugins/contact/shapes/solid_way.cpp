@@ -6,6 +6,7 @@
 
 #include "core/contact/bent_advance.h"
 #include "core/contact/contact_kernel.h"
+#include "core/contact/mean_moves.h"
 
 namespace drape {
 
@@ -113,12 +114,10 @@ std::vector<SolidWay> ways_of(const std::vector<Solid>& from, const std::vector<
 
 void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
                        Positions& from) {
-  Positions moved = Positions::Zero(x.rows(), 3);  // weighted by friction's force
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(x.rows());
+  MeanMoves moves(x.rows());  // by friction's force
   const auto add = [&](int vertex, int solid, const Vector3d& touched, double weight) {
     const Vector3d local = scene.solids[solid].to_local(touched);
-    moved.row(vertex) += weight * (to[solid].to_world(local) - touched);
-    weights[vertex] += weight;
+    moves.add(vertex, to[solid].to_world(local) - touched, weight);
   };
   const Candidates near = find_candidates(scene, find_triangles(scene, x, x), x, x);
   const double range = scene.barrier.range;
@@ -145,8 +144,7 @@ void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, co
         add(pair.vertices[k], solid, touched,
             std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
   }
-  for (int v = 0; v < n; ++v)
-    if (weights[v] > 0) from.row(v) += moved.row(v) / weights[v];
+  moves.move(from);
 }
 
 }  // namespace drape
