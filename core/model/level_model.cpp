@@ -11,6 +11,8 @@ namespace drape {
 
 namespace {
 
+constexpr int rows_at_once = 8192;
+
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
   double sum = 0;
   for (Eigen::Index i = 0; i < g.rows(); ++i)
@@ -96,7 +98,7 @@ double LevelModel::value(const Positions& x) const {
 
 double LevelModel::gradient(const Positions& x, Positions& g) const {
   g.resize(x.rows(), 3);
-  parallel_for(static_cast<int>(g.rows()), 8192,
+  parallel_for(static_cast<int>(g.rows()), rows_at_once,
                [&](int begin, int end) { g.middleRows(begin, end - begin).setZero(); });
   double sum = 0;
   for (const Term& term : terms_) {

@@ -68,6 +68,7 @@ class Objective {
   virtual bool is_proxy() const = 0;
 
  protected:
+  /// A function of x alone until smooth_changed() or model_changed() is called: it is kept where x stays.
   virtual double smooth_gradient(const Positions& x, Positions& g) = 0;
   virtual double smooth_value(const Positions& x) = 0;
   /// To which the rest is added in place, where its pattern has room for it.

@@ -96,8 +96,7 @@ class Newton {
         const bool settled = !hard_.pulling() && converged();
         const bool changing = conditions_ && !conditions_->finished();
         if (settled && !changing) return finish_settled();
-        if (run_.finer_follows && !changing && hands_on())
-          return finish(Outcome::handed_on, "handed on at force residual " + brief(result_.force_residual));
+        if (run_.finer_follows && hands_on()) return finish(Outcome::handed_on, "");
         // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
         // widens them twofold.
         const bool at_once = changing && !conditions_->settles() && conditions_->made();
@@ -229,9 +228,10 @@ class Newton {
     return result_.force_residual <= p_.force_tolerance;
   }
 
-  /// What pins and conditions ask for has to have come about; a start is no preview.
+  /// A start is no preview, pins have to be in their places, and the last of changing conditions is followed
+  /// by equilibrium.
   bool hands_on() const {
-    return result_.force_residual < p_.refine_at && result_.steps > 0 && !hard_.pulling() &&
+    return result_.force_residual < p_.refine_at && result_.steps > 0 && !conditions_ && hard_.settled() &&
            !hard_.given_up();
   }
 

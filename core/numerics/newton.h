@@ -11,7 +11,7 @@ namespace drape {
 struct LevelRun {
   const Stopwatch& clock;  ///< the method's, for the rows that the observer gets
   Observer& observer;
-  bool finer_follows = false;                ///< the observer may ask for the finer level early
+  bool finer_follows = false;  ///< the level may be left early: as the observer asks, or for `refine_at`
   std::map<std::string, double> spent = {};  ///< on the level before this, by phase [s]
   const NewtonState* from = nullptr;  ///< where an earlier minimisation of the same was, to go on there
   Conditions* conditions = nullptr;   ///< that change meanwhile

@@ -108,7 +108,7 @@ std::string troubles(const RunData& run) {
       const std::string where =
           "<li><b>" + escape(method.name) + "</b>, level " + std::to_string(level.level);
       const std::string message = level.message.empty() ? "" : ": " + escape(level.message);
-      if (level.status != "converged" && !level.status.empty())
+      if (!ended_as_asked(level.status) && !level.status.empty())
         items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
                  " iterations at force residual " + figure(level.force_residual) + message + "</li>\n";
       else if (!message.empty())

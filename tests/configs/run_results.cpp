@@ -255,4 +255,7 @@ TEST_CASE("levels that are handed on as the experiment asks leave a converged ru
   CHECK(pcs["levels"][0]["status"] == "handed_on");
   CHECK(pcs["levels"][0]["force_residual"] < 0.5);
   CHECK(pcs["levels"][1]["status"] == "converged");
+  const std::string report = text_of(folder.path / "out" / "report.html");
+  CHECK(report.find("1 of 1 method converged") != std::string::npos);
+  CHECK(report.find("What did not converge") == std::string::npos);
 }

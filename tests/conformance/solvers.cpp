@@ -85,20 +85,21 @@ TEST_CASE("Solvers give the same bits from run to run, and with any number of th
   }
 }
 
-TEST_CASE("Every solver hands a level on at the force residual that refine_at asks", "[conformance]") {
+TEST_CASE("A level that a finer one goes on from is handed on at the force residual that refine_at asks",
+          "[conformance]") {
   for (const std::string& name : solvers()) {
     INFO(name);
+    const bool on_its_own = name == "newton";  // each level from the scene's start
     std::string yaml = hanging_square(name);
     yaml.replace(yaml.find("force_tolerance"), 0, "refine_at: 0.3, ");
     const Solved s = solve_yaml(yaml);
     REQUIRE(s.levels.size() == 3);
     for (int l = 0; l < 2; ++l) {
       INFO("level " << l << ": " << s.levels[l].message);
-      CHECK(s.levels[l].outcome == Outcome::handed_on);
+      CHECK(s.levels[l].outcome == (on_its_own ? Outcome::converged : Outcome::handed_on));
       CHECK(s.levels[l].steps > 0);
       CHECK(s.levels[l].force_residual < 0.3);
-      CHECK(s.levels[l].force_residual > 1e-3);
-      CHECK(s.levels[l].message.starts_with("handed on at force residual "));
+      CHECK((s.levels[l].force_residual > 1e-3) != on_its_own);
     }
     CHECK(s.levels[2].outcome == Outcome::converged);
     CHECK(s.model().force_residual(s.x()) <= tolerance * (1 + 1e-9));

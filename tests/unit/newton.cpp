@@ -266,8 +266,7 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
   }
 }
 
-TEST_CASE("What does not change with x is evaluated once where x stays, and anew under another model",
-          "[newton]") {
+TEST_CASE("The smooth part is evaluated once where x stays, and anew under another model", "[newton]") {
   struct Counted : PlainObjective {
     using PlainObjective::PlainObjective;
     int evaluated = 0;

@@ -19,6 +19,8 @@ class NewtonSolver : public ResumableSolver {
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
     const Stopwatch clock(from.seconds);
+    NewtonParameters parameters = p_.newton;
+    parameters.refine_at = 0;  // no level goes on from another's state
     std::vector<LevelResult> results = from.finished;
     restore_conditions(problem, from);
     for (int l = from.level; l <= problem.finest(); ++l) {
@@ -26,7 +28,7 @@ class NewtonSolver : public ResumableSolver {
       if (!state) observer.level_started(l);
       if (problem.conditions && !state) problem.conditions->begin(l, true);
       PlainObjective objective(*problem.models[l]);
-      results.push_back(minimise(objective, problem.starts[l], p_.newton,
+      results.push_back(minimise(objective, problem.starts[l], parameters,
                                  {clock, observer, l < problem.finest(), {}, state, problem.conditions}));
       results.back().afresh = true;
       observer.level_finished(results.back());
