@@ -37,9 +37,8 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
   d.add("refine_at", &NewtonParameters::refine_at)
       .at_least(0)
       .meaning(
-          "a level whose state a finer one goes on from is left once its force residual is below this; 0 "
-          "waits "
-          "for equilibrium, and so does a schedule")
+          "a level whose state a finer one goes on from is left once its force residual is below this; "
+          "0 waits for equilibrium, and so does a schedule")
       .source("PCS section 4: a level may be refined before it has converged");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
