@@ -79,15 +79,17 @@ class ElementEnergy final : public BoundEnergy {
     first_pack_.push_back(static_cast<int>(packs_.size()));
   }
 
+  // A pack's numbers stay in registers only where everything is inlined, kernels among it: hence `flatten`.
   double value(const Positions& x) const override {
     Sums sums;
     parallel_for(order_.chunks(), 1, [&](int begin, int end) {
       for (int c = begin; c < end; ++c)
-        sums[c] = sum_of_chunk(c, [&](const Elements& pack) {
-          Vector d[k - 1];
-          gather(pack, x, d);
-          return Kernel::value(d, pack.rest);
-        });
+        sums[c] = sum_of_chunk(
+            c, [&](const Elements& pack) __attribute__((flatten)) {
+              Vector d[k - 1];
+              gather(pack, x, d);
+              return Kernel::value(d, pack.rest);
+            });
     });
     return total(sums);
   }
@@ -95,13 +97,14 @@ class ElementEnergy final : public BoundEnergy {
   double add_gradient(const Positions& x, Positions& g) const override {
     Sums sums;
     order_.for_each_chunk([&](int c) {
-      sums[c] = sum_of_chunk(c, [&](const Elements& pack) {
-        Vector d[k - 1], by_difference[k - 1];
-        gather(pack, x, d);
-        const T energy = Kernel::gradient(d, pack.rest, by_difference);
-        scatter(pack, by_difference, g);
-        return energy;
-      });
+      sums[c] = sum_of_chunk(
+          c, [&](const Elements& pack) __attribute__((flatten)) {
+            Vector d[k - 1], by_difference[k - 1];
+            gather(pack, x, d);
+            const T energy = Kernel::gradient(d, pack.rest, by_difference);
+            scatter(pack, by_difference, g);
+            return energy;
+          });
     });
     return total(sums);
   }
@@ -155,10 +158,12 @@ class ElementEnergy final : public BoundEnergy {
   }
 
   static void gather(const Elements& pack, const Positions& x, Vector* d) {
-    T origin[3];
-    for (int c = 0; c < 3; ++c) origin[c] = gather_lanes<W>(x.data() + c, pack.vertices[0]);
-    for (int v = 1; v < k; ++v)
-      for (int c = 0; c < 3; ++c) d[v - 1][c] = gather_lanes<W>(x.data() + c, pack.vertices[v]) - origin[c];
+    Vector origin;
+    gather_rows(x.data(), pack.vertices[0], origin[0], origin[1], origin[2]);
+    for (int v = 1; v < k; ++v) {
+      gather_rows(x.data(), pack.vertices[v], d[v - 1][0], d[v - 1][1], d[v - 1][2]);
+      d[v - 1] -= origin;
+    }
   }
 
   static void scatter(const Elements& pack, const Vector* by_difference, Positions& g) {

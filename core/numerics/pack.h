@@ -159,27 +159,33 @@ Pack<W> reciprocal_sqrt(Pack<W> a) {
   return 1.0 / sqrt(a);
 }
 
-/// base[index[0]], base[index[1]], …
+/// The three numbers at base + start[i] into lane i of x, y and z.
 template <int W>
-Pack<W> gather_lanes(const double* base, const int* index) {
+void gather_rows(const double* base, const int* start, Pack<W>& x, Pack<W>& y, Pack<W>& z) {
 #ifdef __AVX512F__
-  if constexpr (W == 8) {
-    const __m256i at = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index));
-    return Pack<W>::of(
-        (typename Pack<W>::Lanes)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, at, base, 8));
+  if constexpr (W == 8) {  // rows i and i + 4 side by side, then transposed: faster than gathers of the CPU
+    const auto rows = [&](int i) {
+      const __m512d low = _mm512_castpd256_pd512(_mm256_maskz_loadu_pd(7, base + start[i]));
+      return _mm512_insertf64x4(low, _mm256_maskz_loadu_pd(7, base + start[i + 4]), 1);
+    };
+    using Lanes = typename Pack<W>::Lanes;
+    const Lanes a = (Lanes)rows(0), b = (Lanes)rows(1), c = (Lanes)rows(2), d = (Lanes)rows(3);
+    const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 8, 2, 10, 4, 12, 6, 14),
+                xz_cd = __builtin_shufflevector(c, d, 0, 8, 2, 10, 4, 12, 6, 14),
+                y_ab = __builtin_shufflevector(a, b, 1, 9, 3, 11, 5, 13, 7, 15),
+                y_cd = __builtin_shufflevector(c, d, 1, 9, 3, 11, 5, 13, 7, 15);
+    x.v = __builtin_shufflevector(xz_ab, xz_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+    y.v = __builtin_shufflevector(y_ab, y_cd, 0, 1, 8, 9, 4, 5, 12, 13);
+    z.v = __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 10, 11, 6, 7, 14, 15);
+    return;
   }
 #endif
-#ifdef __AVX2__
-  if constexpr (W == 4) {
-    const __m128i at = _mm_loadu_si128(reinterpret_cast<const __m128i*>(index));
-    return Pack<W>::of((typename Pack<W>::Lanes)_mm256_i32gather_pd(base, at, 8));
-  }
-#endif
-  double lanes[W];
-  for (int i = 0; i < W; ++i) lanes[i] = base[index[i]];
-  Pack<W> p;
-  std::memcpy(&p.v, lanes, sizeof p.v);
-  return p;
+  double lanes[3][W];
+  for (int i = 0; i < W; ++i)
+    for (int c = 0; c < 3; ++c) lanes[c][i] = base[start[i] + c];
+  std::memcpy(&x.v, lanes[0], sizeof x.v);
+  std::memcpy(&y.v, lanes[1], sizeof y.v);
+  std::memcpy(&z.v, lanes[2], sizeof z.v);
 }
 
 namespace pack_detail {

@@ -71,11 +71,14 @@ TEMPLATE_TEST_CASE_SIG("Pack: arithmetic, comparison and selection go lane by la
   int index[W];
   for (int i = 0; i < 3 * W; ++i) values[i] = (i % 2 ? -1 : 1) * (0.3 + i * i);
   for (int lane = 0; lane < W; ++lane) index[lane] = 3 * (W - 1 - lane);
-  const Pack<W> a = gather_lanes<W>(values, index), b = gather_lanes<W>(values + 1, index);
+  Pack<W> a, b, c;
+  gather_rows<W>(values, index, a, b, c);
   const auto less = a < b;
   for (int i = 0; i < W; ++i) {
     const double x = values[index[i]], y = values[index[i] + 1];
     REQUIRE(a[i] == x);
+    REQUIRE(b[i] == y);
+    REQUIRE(c[i] == values[index[i] + 2]);
     CHECK((a + b)[i] == x + y);
     CHECK((2.0 - a)[i] == 2.0 - x);
     CHECK((a * 3.0)[i] == x * 3.0);

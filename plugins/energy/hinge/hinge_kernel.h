@@ -29,9 +29,8 @@ struct HingeKernel {
 
   template <class T>
   static T angle(const Vector<T>* x) {
-    using std::atan2, std::sqrt;
-    const Vector<T> n1 = x[0].cross(x[1]), n2 = x[2].cross(x[0]);
-    return atan2(-sqrt(x[0].squaredNorm()) * n1.dot(x[2]), n1.dot(n2));
+    const Axis<T> axis(x[0]);
+    return angle(Azimuth<T>(axis, x[1]), Azimuth<T>(axis, x[2]), x[2]);
   }
 
   template <class T>
@@ -45,7 +44,7 @@ struct HingeKernel {
   static T gradient(const Vector<T>* x, const T* rest, Vector<T>* g) {
     const Axis<T> axis(x[0]);
     const Azimuth<T> u(axis, x[1]), v(axis, x[2]);
-    const T bend = angle(x) - rest[1], scale = 2.0 * rest[0] * bend;
+    const T bend = angle(u, v, x[2]) - rest[1], scale = 2.0 * rest[0] * bend;
     g[0] = (u.by_axis() - v.by_axis()) * scale;
     g[1] = u.by_point() * scale;
     g[2] = v.by_point() * -scale;
@@ -67,7 +66,7 @@ struct HingeKernel {
   static void hessian(const Vector<T>* x, const T* rest, Eigen::Matrix<T, 9, 9>& h, const Map& map) {
     const Axis<T> axis(x[0]);
     const Azimuth<T> u(axis, x[1]), v(axis, x[2]);
-    const T scale = 2.0 * rest[0], bend = scale * (angle(x) - rest[1]);
+    const T scale = 2.0 * rest[0], bend = scale * (angle(u, v, x[2]) - rest[1]);
     const T l = axis.inverse_length, wu = u.inverse_height, wv = v.inverse_height;
     const T c = u.n.dot(v.n), k = u.m.dot(v.n), zero = 0.0;
 
@@ -140,6 +139,13 @@ struct HingeKernel {
     Vector<T> by_point() const { return n * -inverse_height; }
     Vector<T> by_axis() const { return n * (s * inverse_height); }
   };
+
+  /// θ of the azimuths of u and v = h_v m_v + (its part along the axis): n_u·m_v = n_u·v / h_v.
+  template <class T>
+  static T angle(const Azimuth<T>& u, const Azimuth<T>& v, const Vector<T>& by_v) {
+    using std::atan2;
+    return atan2(-v.inverse_height * u.n.dot(by_v), -u.n.dot(v.n));
+  }
 };
 
 }  // namespace drape
