@@ -35,7 +35,8 @@ LevelModel::LevelModel(const Level& level, const Material& material, const std::
   for (const HeldVertex& h : held_) fixed_[h.vertex] = 1;
   bind_energies(energies, before);
   for (const Term& term : terms_)
-    if (term.role == EnergyRole::external && term.slots) load_is_constant_ = false;
+    if (term.role == EnergyRole::external && !term.is_linear()) load_is_constant_ = false;
+  add_up_linear_energies();
   bind_contacts(contacts, before);
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
 }
@@ -86,10 +87,26 @@ void LevelModel::take_contacts(const LevelModel& other) {
   contacts_ = other.contacts_;
 }
 
+void LevelModel::add_up_linear_energies() {
+  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
+  linear_gradient_ = origin;
+  for (const Term& term : terms_)
+    if (term.is_linear()) linear_at_origin_ += term.energy->add_gradient(origin, linear_gradient_);
+}
+
+double LevelModel::linear_value(const Positions& x, Positions* g) const {
+  const auto add = [&](int begin, int end) {
+    const auto of = linear_gradient_.middleRows(begin, end - begin);
+    if (g) g->middleRows(begin, end - begin) = of;
+    return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
+  };
+  return linear_at_origin_ + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+}
+
 double LevelModel::value(const Positions& x) const {
-  double sum = 0;
+  double sum = linear_value(x, nullptr);
   for (const Term& term : terms_) {
-    if (term.role == EnergyRole::limit) continue;
+    if (!term.slots) continue;
     sum += term.energy->value(x);
     if (!std::isfinite(sum)) return sum;
   }
@@ -98,11 +115,9 @@ double LevelModel::value(const Positions& x) const {
 
 double LevelModel::gradient(const Positions& x, Positions& g) const {
   g.resize(x.rows(), 3);
-  parallel_for(static_cast<int>(g.rows()), rows_at_once,
-               [&](int begin, int end) { g.middleRows(begin, end - begin).setZero(); });
-  double sum = 0;
+  double sum = linear_value(x, &g);
   for (const Term& term : terms_) {
-    if (term.role == EnergyRole::limit) continue;
+    if (!term.slots) continue;
     sum += term.energy->add_gradient(x, g);
     if (!std::isfinite(sum)) return sum;
   }

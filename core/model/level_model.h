@@ -81,12 +81,17 @@ class LevelModel {
     EnergyRole role;
     std::shared_ptr<const Energy> kind;  // that it was bound from
     std::shared_ptr<const BoundEnergy> energy;
-    std::shared_ptr<const BlockSlots> slots;  // null where the energy is linear
+    std::shared_ptr<const BlockSlots> slots;  // null where the energy is linear, and of a limit
+
+    bool is_linear() const { return role != EnergyRole::limit && !slots; }
   };
 
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;
+  void add_up_linear_energies();
+  /// The linear energies' sum; `g`, if given, is overwritten with their gradient.
+  double linear_value(const Positions& x, Positions* g) const;
 
   const Level* level_;
   Material material_;
@@ -99,6 +104,8 @@ class LevelModel {
   std::vector<std::shared_ptr<const BoundContact>> bound_;    // of each of them; null where it binds nothing
   BoundContacts contacts_;                                    // those that are not null
   std::shared_ptr<const BlockPattern> pattern_;
+  Positions linear_gradient_;      // of the linear energies together: it costs one pass, with x · of it
+  double linear_at_origin_ = 0;    // their sum where all x are 0
   bool load_is_constant_ = true;   // whether every external energy is linear
   double constant_load_norm_ = 0;  // then the norm of its forces
 };

@@ -1,0 +1,87 @@
+#include "core/model/level_model.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "core/numerics/linear_energy.h"
+
+using namespace drape;
+
+namespace {
+
+/// Forces that differ from vertex to vertex, and an energy of `at_origin` where all x are 0.
+class Slope : public Energy {
+ public:
+  Slope(double size, double at_origin) : size_(size), at_origin_(at_origin) {}
+
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    return std::make_unique<Bound>(size_ * level.rest.vertices.array().cos(), at_origin_);
+  }
+
+ private:
+  class Bound : public BoundEnergy {
+   public:
+    Bound(const Positions& forces, double at_origin) : forces_(forces), at_origin_(at_origin) {}
+    double value(const Positions& x) const override { return at_origin_ + forces_.value(x); }
+    double add_gradient(const Positions& x, Positions& g) const override {
+      return at_origin_ + forces_.add_gradient(x, g);
+    }
+    Stencils stencils() const override { return Stencils(0, 1); }
+    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+
+   private:
+    LinearEnergy forces_;
+    double at_origin_;
+  };
+
+  double size_, at_origin_;
+};
+
+/// ½ Σ |x_i|², or a limit of that value.
+class Springs : public Energy, public BoundEnergy {
+ public:
+  Springs(EnergyRole role, int count) : role_(role), count_(count) {}
+
+  EnergyRole role() const override { return role_; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    return std::make_unique<Springs>(role_, level.vertex_count());
+  }
+  double value(const Positions& x) const override { return 0.5 * x.squaredNorm(); }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g += x;
+    return value(x);
+  }
+  Stencils stencils() const override { return Eigen::VectorXi::LinSpaced(count_, 0, count_ - 1); }
+  void add_hessian(const Positions&, Projection, BlockSink& sink) const override {
+    const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+    for (int i = 0; i < count_; ++i) sink.add(i, 0, 0, one.data());
+  }
+
+ private:
+  EnergyRole role_;
+  int count_;
+};
+
+}  // namespace
+
+TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 5, 3, Diagonals::one_way));
+  const auto slope = [](double size, double at_origin) { return std::make_shared<Slope>(size, at_origin); };
+  const auto springs = std::make_shared<Springs>(EnergyRole::membrane, 0);
+  const auto limit = std::make_shared<Springs>(EnergyRole::limit, 0);
+  const LevelModel model(level, Material(),
+                         {{"a", slope(2, 0)}, {"springs", springs}, {"limit", limit}, {"b", slope(-0.5, 3)}},
+                         {});
+  const Positions x = level.rest.vertices.array() + 0.7;
+
+  double expected = 0;
+  for (const auto& [name, energy] : model.energy_parts(x))
+    if (name != "limit") expected += energy;
+  Positions g = Positions::Constant(1, 3, 7);  // of another size, and not zero
+  CHECK(model.gradient(x, g) == Approx(expected).epsilon(1e-14));
+  CHECK(model.value(x) == Approx(expected).epsilon(1e-14));
+  const Positions forces = 1.5 * level.rest.vertices.array().cos();
+  CHECK((g - (x - forces)).norm() < 1e-14 * g.norm());
+  CHECK(model.load_norm(x) == Approx(2.5 / 1.5 * forces.norm()).epsilon(1e-14));
+}
