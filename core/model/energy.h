@@ -54,7 +54,8 @@ class BoundEnergy {
   /// Adds the gradient [N] to g (n×3) and returns the energy [J].
   virtual double add_gradient(const Positions& x, Positions& g) const = 0;
 
-  /// m×k vertices of each element whose Hessian is not zero; no rows where the energy is linear.
+  /// m×k vertices of each element whose Hessian is not zero; no rows where the energy is linear, and then
+  /// finite everywhere: such an energy is evaluated once, where all x are 0, and its gradient kept.
   /// Fixed for the life of the object: the matrix pattern and every sink's slots follow from it.
   virtual Stencils stencils() const = 0;
 

@@ -91,7 +91,14 @@ void LevelModel::add_up_linear_energies() {
   const Positions origin = Positions::Zero(level_->vertex_count(), 3);
   linear_gradient_ = origin;
   for (const Term& term : terms_)
-    if (term.is_linear()) linear_at_origin_ += term.energy->add_gradient(origin, linear_gradient_);
+    if (term.is_linear()) {
+      linear_at_origin_ += term.energy->add_gradient(origin, linear_gradient_);
+      if (!std::isfinite(linear_at_origin_) || !linear_gradient_.allFinite())
+        throw std::runtime_error(
+            "energy " + term.name +
+            " has no elements, which says that it is linear, but is not finite where all "
+            "vertices are at the origin");
+    }
 }
 
 double LevelModel::linear_value(const Positions& x, Positions* g) const {

@@ -104,7 +104,7 @@ class LevelModel {
   std::vector<std::shared_ptr<const BoundContact>> bound_;    // of each of them; null where it binds nothing
   BoundContacts contacts_;                                    // those that are not null
   std::shared_ptr<const BlockPattern> pattern_;
-  Positions linear_gradient_;      // of the linear energies together: it costs one pass, with x · of it
+  Positions linear_gradient_;      // of the linear energies together: one pass over it does for all
   double linear_at_origin_ = 0;    // their sum where all x are 0
   bool load_is_constant_ = true;   // whether every external energy is linear
   double constant_load_norm_ = 0;  // then the norm of its forces

@@ -79,7 +79,8 @@ class ElementEnergy final : public BoundEnergy {
     first_pack_.push_back(static_cast<int>(packs_.size()));
   }
 
-  // A pack's numbers stay in registers only where everything is inlined, kernels among it: hence `flatten`.
+  // A pack's numbers stay in registers only where everything is inlined, the kernel included: hence
+  // `flatten`.
   double value(const Positions& x) const override {
     Sums sums;
     parallel_for(order_.chunks(), 1, [&](int begin, int end) {

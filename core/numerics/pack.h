@@ -162,7 +162,7 @@ Pack<W> reciprocal_sqrt(Pack<W> a) {
 /// The three numbers at base + start[i] into lane i of x, y and z.
 template <int W>
 void gather_rows(const double* base, const int* start, Pack<W>& x, Pack<W>& y, Pack<W>& z) {
-#ifdef __AVX512F__
+#if defined(__AVX512F__) && defined(__AVX512VL__)
   if constexpr (W == 8) {  // rows i and i + 4 side by side, then transposed: faster than gathers of the CPU
     const auto rows = [&](int i) {
       const __m512d low = _mm512_castpd256_pd512(_mm256_maskz_loadu_pd(7, base + start[i]));

@@ -110,11 +110,12 @@ class PullToTarget : public Objective {
     scale_ = std::max(free_norm(g, model().fixed()), std::numeric_limits<double>::min());
   }
 
-  /// Between vertices there is nothing but contact and, with limits, triangles. The level's own pattern has
-  /// hinges beside, which make a factorisation several times dearer.
+  /// Between vertices there is nothing but contact and, with limits, these and triangles. The level's own
+  /// pattern has hinges beside, which make a factorisation several times dearer.
   static std::shared_ptr<const BlockPattern> pattern_for(const LevelModel& model) {
     std::vector<Stencils> stencils;
-    if (!model.limits().empty()) stencils.push_back(model.level().rest.triangles);
+    for (const BoundEnergy* limit : model.limits()) stencils.push_back(limit->stencils());
+    if (!stencils.empty()) stencils.push_back(model.level().rest.triangles);
     return BlockPattern::of(model.level().vertex_count(), stencils);
   }
 

@@ -140,7 +140,7 @@ struct HingeKernel {
     Vector<T> by_axis() const { return n * (s * inverse_height); }
   };
 
-  /// θ of the azimuths of u and v = h_v m_v + (its part along the axis): n_u·m_v = n_u·v / h_v.
+  /// θ from both azimuths; v is h_v m_v and a part along the axis, so that n_u·m_v = n_u·v / h_v.
   template <class T>
   static T angle(const Azimuth<T>& u, const Azimuth<T>& v, const Vector<T>& by_v) {
     using std::atan2;
