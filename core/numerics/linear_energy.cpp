@@ -7,21 +7,18 @@ namespace {
 constexpr int grain = 8192;
 }
 
-double LinearEnergy::value_of_rows(const Positions& x, int begin, int end) const {
-  const int count = end - begin;
-  return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
-}
-
 double LinearEnergy::value(const Positions& x) const {
-  return parallel_sum(static_cast<int>(forces_.rows()), grain,
-                      [&](int begin, int end) { return value_of_rows(x, begin, end); });
+  return parallel_sum(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+    const int count = end - begin;
+    return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
+  });
 }
 
 double LinearEnergy::add_gradient(const Positions& x, Positions& g) const {
-  return parallel_sum(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+  parallel_for(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
     g.middleRows(begin, end - begin) -= forces_.middleRows(begin, end - begin);
-    return value_of_rows(x, begin, end);
   });
+  return value(x);
 }
 
 }  // namespace drape

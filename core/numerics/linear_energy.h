@@ -15,8 +15,6 @@ class LinearEnergy final : public BoundEnergy {
   void add_hessian(const Positions&, Projection, BlockSink&) const override {}
 
  private:
-  double value_of_rows(const Positions& x, int begin, int end) const;
-
   Positions forces_;
 };
 
