@@ -7,9 +7,9 @@
 #include "core/mesh/generate.h"
 #include "core/numerics/element_energy.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
-#include "plugins/energy/neo_hookean/neo_hookean_kernel.h"
+#include "plugins/energy/neo_hookean/neo_hookean_law.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
-#include "plugins/energy/stvk/stvk_kernel.h"
+#include "plugins/energy/stvk/stvk_law.h"
 
 // Elements of a square of 313² vertices, 195K triangles and 293K hinges, wrinkled and noisy enough that most
 // of their Hessians are indefinite. Arguments: threads. "per_element" is wall time over elements.
@@ -49,7 +49,7 @@ const BoundEnergy& energy() {
       for (int k = 1; k < Kernel::vertices; ++k)
         d[k - 1] = rest.row(elements(e, k)) - rest.row(elements(e, 0));
       if constexpr (Kernel::vertices == 3)
-        numbers.push_back(Kernel::rest(d[0], d[1], 3.18e-4, 8e4, 0.243));
+        numbers.push_back(Kernel::rest(RestTriangle::of(d[0], d[1]), Material()));
       else
         numbers.push_back(Kernel::rest(d, 1e-7));
     }

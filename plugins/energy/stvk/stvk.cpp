@@ -1,26 +1,12 @@
 #include "plugins/energy/stvk/stvk.h"
 
-#include <stdexcept>
-#include <string>
-
-#include "core/numerics/element_energy.h"
 #include "core/plugin/plugin.h"
-#include "plugins/energy/stvk/stvk_kernel.h"
+#include "plugins/energy/stvk/stvk_law.h"
 
 namespace drape {
 
 std::unique_ptr<BoundEnergy> Stvk::bind(const Level& level, const Material& material) const {
-  const Positions& places = level.rest.vertices;
-  std::vector<StvkKernel::Rest> rest;
-  for (int t = 0; t < level.triangle_count(); ++t) {
-    const auto v = level.rest.triangles.row(t);
-    rest.push_back(StvkKernel::rest(places.row(v[1]) - places.row(v[0]), places.row(v[2]) - places.row(v[0]),
-                                    material.thickness, material.membrane_modulus, material.poisson_ratio));
-    if (!rest.back().allFinite())
-      throw std::runtime_error("stvk: triangle " + std::to_string(t) + " of level " +
-                               std::to_string(level.index) + " has no area at rest");
-  }
-  return std::make_unique<ElementEnergy<StvkKernel>>(level.rest.triangles, rest, level.triangle_order);
+  return bind_membrane<StvkLaw>(level, material);
 }
 
 }  // namespace drape

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "core/mesh/generate.h"
+#include "core/numerics/membrane_kernel.h"
+#include "tests/support/kernel_check.h"
+
+/// Edge vectors of a triangle at rest, and a state of it as KernelCheck takes it.
+inline const Eigen::Vector3d rest1(0.9, 0.2, 0.1), rest2(0.1, 1.1, -0.3);
+inline Eigen::Matrix<double, 6, 1> edges(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
+  Eigen::Matrix<double, 6, 1> x;
+  x << e1, e2;
+  return x;
+}
+
+/// Random, strongly stretched and sheared, strongly compressed, and nearly degenerate.
+inline std::vector<Eigen::Matrix<double, 6, 1>> deformed_triangles() {
+  std::vector<Eigen::Matrix<double, 6, 1>> all;
+  for (unsigned seed = 1; seed <= 5; ++seed)
+    all.push_back(edges(rest1, rest2) + 0.2 * normal_numbers(6, seed));
+  all.push_back(edges({2.5, 0.1, 0.4}, {1.9, 2.2, 0.1}));
+  all.push_back(edges({0.3, 0.1, -0.1}, {-0.05, 0.25, 0.1}));
+  all.push_back(edges({1, 0, 0}, {0.4, 0.02, 0.01}));
+  return all;
+}
+
+/// What every membrane owes (core/numerics/membrane_kernel.h). `density` is ψ(μ, λ, a, b) of a triangle
+/// stretched to 1 + a and 1 + b along its axes; `collapsed` says what the energy of one without area has to
+/// be.
+template <template <class> class Law>
+void check_membrane(const drape::Energy& energy,
+                    const std::function<long double(double, double, long double, long double)>& density,
+                    const std::function<bool(double)>& collapsed) {
+  using namespace drape;
+  using Kernel = MembraneKernel<Law>;
+  using Check = KernelCheck<Kernel>;
+  Material material;
+  material.thickness = 3e-4;
+  material.membrane_modulus = 8e4;
+  material.poisson_ratio = 0.3;
+  const double modulus = material.membrane_modulus, nu = material.poisson_ratio;
+  const double mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / (1 - nu * nu);
+  const auto rest_of = [&](const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
+    return Kernel::rest(RestTriangle::of(e1, e2), material);
+  };
+  const typename Kernel::Rest rest = rest_of(rest1, rest2);
+
+  SECTION("derivatives are those of the value") {
+    for (const auto& x : deformed_triangles()) Check::derivatives(x, rest, 1e-4, 1e-7);
+  }
+  SECTION("lanes compute what double does") {
+    for (const auto& x : deformed_triangles()) Check::all_lanes(x, rest, Check::evaluate(x, rest).value);
+  }
+  SECTION("projection is that of the full element matrix") {
+    double smallest = 0;
+    for (const auto& x : deformed_triangles()) {
+      smallest = std::min(smallest, Check::template projections<double>(x, rest));
+      Check::template projections<Pack<8>>(x, rest);
+    }
+    REQUIRE(smallest < -1e-3);  // else nothing was projected
+  }
+  SECTION("the rest shape is stress-free, wherever it lies") {
+    const double stiffness = mu * rest1.cross(rest2).norm() / 2 * material.thickness;
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    const auto r = Check::evaluate(edges(turn * rest1, turn * rest2), rest);
+    CHECK(std::abs(r.value) <= 1e-30 * stiffness);
+    CHECK(r.gradient.norm() <= 1e-15 * stiffness);
+    CHECK(r.hessian.norm() > stiffness);
+  }
+  SECTION("biaxial stretch in closed form, down to small strains") {
+    const Eigen::Vector3d e1(0.02, 0, 0), e2(0, 0.03, 0);
+    const double volume = 0.02 * 0.03 / 2 * material.thickness;
+    for (const double strain : {1e-6, 1e-3, 0.1, 1.0, -0.4}) {
+      // Uniaxial stress for small strains: energy density E ε²/2.
+      const double a = strain, b = -nu * strain;
+      const double expected = volume * double(density(mu, lambda, a, b));
+      const double found = Check::evaluate(edges(e1 * (1 + a), e2 * (1 + b)), rest_of(e1, e2)).value;
+      CHECK(found == Approx(expected).epsilon(1e-9).margin(0));
+      if (strain == 1e-6) CHECK(found == Approx(volume * modulus * a * a / 2).epsilon(1e-5).margin(0));
+    }
+  }
+  SECTION("a collapsed triangle's energy") {
+    const Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+    const auto bound = energy.bind(level, material);
+    Positions x = level.rest.vertices;
+    x.row(4) = x.row(0);
+    Positions g = Positions::Zero(9, 3);
+    const double value = bound->value(x);
+    CHECK(bound->add_gradient(x, g) == value);
+    CHECK(collapsed(value));
+  }
+  SECTION("same bits with any number of threads") {
+    const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
+    const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
+    check_threads(*energy.bind(level, material),
+                  level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3));
+  }
+  SECTION("a triangle without area is refused") {
+    Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+    level.rest.vertices.row(4) = level.rest.vertices.row(0);
+    CHECK_THROWS_WITH(energy.bind(level, material), Catch::Contains("triangle 0 of level 0 has no area"));
+  }
+}
