@@ -10,21 +10,6 @@
 
 namespace drape {
 
-/// Deformation gradient of a triangle: F = [a e₁, b e₁ + c e₂] (3×2), e₁ = x₁ - x₀, e₂ = x₂ - x₀.
-struct RestTriangle {
-  double a, b, c;  ///< inverse rest edges in the triangle's own plane [1/m]
-  double area;     ///< [m²]
-
-  /// Of the rest edge vectors [m]; not finite where they span no area.
-  static RestTriangle of(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
-    // Edges in the plane: e₁ = (p, 0), e₂ = (q, h).
-    const double p = e1.norm(), q = e2.dot(e1) / p, h = e1.cross(e2).norm() / p;
-    return {1 / p, -q / (p * h), 1 / h, p * h / 2};
-  }
-  /// Triangle t of the level; std::runtime_error where it has no area.
-  static RestTriangle of(const Level& level, int t);
-};
-
 /// Principal stretches σ₁ ≥ σ₂ of F, and where they point. T is double or a Pack.
 template <class T>
 struct PrincipalStretch {
@@ -54,6 +39,26 @@ struct PrincipalStretch {
     sine = select(flat, less, more);
     w1 = f1 * cosine + f2 * sine;
     w2 = f2 * cosine - f1 * sine;
+  }
+};
+
+/// Deformation gradient of a triangle: F = [a e₁, b e₁ + c e₂] (3×2), e₁ = x₁ - x₀, e₂ = x₂ - x₀.
+struct RestTriangle {
+  double a, b, c;  ///< inverse rest edges in the triangle's own plane [1/m]
+  double area;     ///< [m²]
+
+  /// Of the rest edge vectors [m]; not finite where they span no area.
+  static RestTriangle of(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
+    // Edges in the plane: e₁ = (p, 0), e₂ = (q, h).
+    const double p = e1.norm(), q = e2.dot(e1) / p, h = e1.cross(e2).norm() / p;
+    return {1 / p, -q / (p * h), 1 / h, p * h / 2};
+  }
+  /// Triangle t of the level; std::runtime_error where it has no area.
+  static RestTriangle of(const Level& level, int t);
+
+  /// Of the triangle with these edge vectors [m].
+  PrincipalStretch<double> stretch(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) const {
+    return {a * e1, b * e1 + c * e2};
   }
 };
 

@@ -76,9 +76,8 @@ Eigen::VectorXd largest_stretch(const Level& level, const Positions& x) {
   Eigen::VectorXd largest = Eigen::VectorXd::Zero(x.rows());
   for (int t = 0; t < level.triangle_count(); ++t) {
     const auto v = triangles.row(t);
-    const RestTriangle rest = RestTriangle::of(level, t);
-    const Eigen::Vector3d e1 = x.row(v[1]) - x.row(v[0]), e2 = x.row(v[2]) - x.row(v[0]);
-    const double stretch = PrincipalStretch<double>(rest.a * e1, rest.b * e1 + rest.c * e2).largest;
+    const double stretch =
+        RestTriangle::of(level, t).stretch(x.row(v[1]) - x.row(v[0]), x.row(v[2]) - x.row(v[0])).largest;
     for (int k = 0; k < 3; ++k) largest[v[k]] = std::max(largest[v[k]], stretch);
   }
   return largest;

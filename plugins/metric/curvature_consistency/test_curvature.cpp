@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -12,6 +11,7 @@
 #include "plugins/metric/curvature_consistency/curvature.h"
 #include "plugins/metric/curvature_consistency/curvature_consistency.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
+#include "tests/support/metric_check.h"
 
 using namespace drape;
 using Eigen::Vector3d;
@@ -171,22 +171,9 @@ double largest_difference(const VertexCurvatures& a, const VertexCurvatures& b) 
                    (a.kappa1 - b.kappa1).cwiseAbs().maxCoeff(), (a.kappa2 - b.kappa2).cwiseAbs().maxCoeff()});
 }
 
-/// A LevelModel is opaque to this metric; a reference to nothing shows that it never looks at it.
-const LevelModel& no_model() {
-  alignas(64) static const char nothing[64] = {};
-  return reinterpret_cast<const LevelModel&>(nothing);
-}
-
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other, int rings = 5) {
   return CurvatureConsistency(CurvatureConsistency::Parameters{rings})
       .evaluate({level, no_model(), x, &other});
-}
-
-double value(const MetricResult& result, const std::string& name) {
-  for (const MetricValue& v : result.values)
-    if (v.name == name) return v.value;
-  FAIL("no value named " << name);
-  return 0;
 }
 
 }  // namespace

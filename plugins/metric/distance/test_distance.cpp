@@ -1,5 +1,4 @@
 #include <Eigen/Geometry>
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -8,39 +7,15 @@
 #include "core/numerics/parallel.h"
 #include "plugins/metric/distance/closest_point.h"
 #include "plugins/metric/distance/distance.h"
+#include "tests/support/metric_check.h"
 
 using namespace drape;
 using Eigen::Vector3d;
 
 namespace {
 
-Level square(int n) {
-  TriangleMesh mesh{Positions((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) mesh.vertices.row(i * (n + 1) + j) << double(i) / n, double(j) / n, 0;
-  for (int i = 0, t = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) {
-      const int a = i * (n + 1) + j, b = a + n + 1;
-      mesh.triangles.row(t++) << a, b, b + 1;
-      mesh.triangles.row(t++) << a, b + 1, a + 1;
-    }
-  return Level::of(0, mesh);
-}
-
-const LevelModel& no_model() {
-  alignas(64) static const char nothing[64] = {};
-  return reinterpret_cast<const LevelModel&>(nothing);
-}
-
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other) {
   return Distance(Distance::Parameters()).evaluate({level, no_model(), x, &other});
-}
-
-double value(const MetricResult& result, const std::string& name) {
-  for (const MetricValue& v : result.values)
-    if (v.name == name) return v.value;
-  FAIL("no value named " << name);
-  return 0;
 }
 
 /// Bumpy, folded enough that the nearest triangle is not the corresponding one.

@@ -5,34 +5,29 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/numerics/stretch.h"
 #include "core/plugin/plugin.h"
-#include "plugins/metric/stretch/principal_stretch.h"
 
 namespace drape {
 
 MetricResult Stretch::evaluate(const MetricInput& input) const {
-  const Positions& rest = input.level.rest.vertices;
   const Positions& x = input.x;
-  if (x.rows() != rest.rows())
+  if (x.rows() != input.level.vertex_count())
     throw std::runtime_error("stretch: the state has " + std::to_string(x.rows()) + " vertices, the level " +
-                             std::to_string(rest.rows()));
+                             std::to_string(input.level.vertex_count()));
   if (!x.allFinite()) throw std::runtime_error("stretch: the state has positions that are not finite");
-  const auto vertex = [](const Positions& p, int i) -> Eigen::Vector3d { return p.row(i).transpose(); };
 
   double largest = 0, smallest = std::numeric_limits<double>::infinity(), weighted_sum = 0, area_sum = 0;
   Eigen::VectorXd vertex_stretch = Eigen::VectorXd::Zero(x.rows());
   for (int t = 0; t < input.level.triangle_count(); ++t) {
     const auto corner = input.level.rest.triangles.row(t);
-    const Eigen::Vector3d rest0 = vertex(rest, corner[0]), rest1 = vertex(rest, corner[1]),
-                          rest2 = vertex(rest, corner[2]);
-    const double area = 0.5 * (rest1 - rest0).cross(rest2 - rest0).norm();
-    if (!(area > 0)) throw std::runtime_error("stretch: rest triangle " + std::to_string(t) + " has no area");
-    const PrincipalStretches s = principal_stretches(rest0, rest1, rest2, vertex(x, corner[0]),
-                                                     vertex(x, corner[1]), vertex(x, corner[2]));
+    const RestTriangle triangle = RestTriangle::of(input.level, t);
+    const PrincipalStretch<double> s =
+        triangle.stretch(x.row(corner[1]) - x.row(corner[0]), x.row(corner[2]) - x.row(corner[0]));
     largest = std::max(largest, s.largest);
     smallest = std::min(smallest, s.smallest);
-    weighted_sum += area * s.largest;
-    area_sum += area;
+    weighted_sum += triangle.area * s.largest;
+    area_sum += triangle.area;
     for (const int i : corner) vertex_stretch[i] = std::max(vertex_stretch[i], s.largest);
   }
 
