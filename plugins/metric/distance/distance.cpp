@@ -1,24 +1,46 @@
 #include "plugins/metric/distance/distance.h"
 
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
+#include <CGAL/Simple_cartesian.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/numerics/parallel.h"
 #include "core/plugin/plugin.h"
-#include "plugins/metric/distance/closest_point.h"
 
 namespace drape {
 namespace {
 
-/// Per vertex of `from`, squared distance to the surface of `to`, never more than the vertex's own bound.
+using Geometry = CGAL::Simple_cartesian<double>;
+using Corners = std::vector<Geometry::Triangle_3>;
+using Tree = CGAL::AABB_tree<
+    CGAL::AABB_traits<Geometry, CGAL::AABB_triangle_primitive<Geometry, Corners::const_iterator>>>;
+
+Geometry::Point_3 point(const Positions& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
+
+/// Per vertex of `from`, squared distance to the surface of `to`. The vertex of the same number is on that
+/// surface: the search begins there.
 Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions& to,
-                                          const Triangles& triangles, const Eigen::VectorXd& bounds) {
-  const SurfaceDistance surface(to, triangles);
+                                          const Triangles& triangles) {
+  Corners corners;
+  corners.reserve(triangles.rows());
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+    corners.emplace_back(point(to, triangles(t, 0)), point(to, triangles(t, 1)), point(to, triangles(t, 2)));
+  Tree surface(corners.begin(), corners.end());
+  surface.do_not_accelerate_distance_queries();
+  surface.build();
   Eigen::VectorXd result(from.rows());
   parallel_for(static_cast<int>(from.rows()), 256, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) result[i] = surface.squared(from.row(i).transpose(), bounds[i]);
+    for (int i = begin; i < end; ++i) {
+      const Geometry::Point_3 p = point(from, i);
+      result[i] = CGAL::squared_distance(p, surface.closest_point(p, point(to, i)));
+    }
   });
   return result;
 }
@@ -38,11 +60,10 @@ MetricResult Distance::evaluate(const MetricInput& input) const {
   const Positions& rest = input.level.rest.vertices;
   const double diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
 
-  // The corresponding vertex lies on the other surface, so its distance bounds the distance to it.
   const Eigen::VectorXd squared = (x - other).rowwise().squaredNorm();
   const Triangles& triangles = input.level.rest.triangles;
-  const double there = squared_surface_distances(x, other, triangles, squared).maxCoeff();
-  const double back = squared_surface_distances(other, x, triangles, squared).maxCoeff();
+  const double there = squared_surface_distances(x, other, triangles).maxCoeff();
+  const double back = squared_surface_distances(other, x, triangles).maxCoeff();
   const Eigen::VectorXd& area = input.level.vertex_area;
 
   MetricResult result;

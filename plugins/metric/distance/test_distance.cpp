@@ -1,11 +1,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
-#include <random>
-#include <string>
+#include <utility>
 
+#include "core/contact/closest.h"
 #include "core/numerics/parallel.h"
-#include "plugins/metric/distance/closest_point.h"
 #include "plugins/metric/distance/distance.h"
 #include "tests/support/metric_check.h"
 
@@ -33,41 +32,36 @@ const double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("distance from a point to a triangle, over each of its regions", "[distance]") {
-  const Vector3d a(0, 0, 0), b(2, 0, 0), c(0, 1, 0);
-  const auto squared = [&](double x, double y, double z) {
-    return squared_point_triangle_distance({x, y, z}, a, b, c);
-  };
-  CHECK(squared(0.4, 0.3, 0.5) == Approx(0.25));  // above the inside
-  CHECK(squared(0.4, 0.3, 0) == 0);               // in it
-  CHECK(squared(-1, -1, 1) == Approx(3));         // corner a
-  CHECK(squared(3, -0.5, 0) == Approx(1.25));     // corner b
-  CHECK(squared(-0.5, 2, 0) == Approx(1.25));     // corner c
-  CHECK(squared(1, -2, 0) == Approx(4));          // edge ab
-  CHECK(squared(-3, 0.5, 1) == Approx(10));       // edge ca
-  CHECK(squared(2, 1, 0) == Approx(0.8));         // edge bc: 2/√5 from x + 2y = 2
-  CHECK(squared_point_triangle_distance({1, 1, 0}, a, b, 0.5 * b) == Approx(1));  // collapsed to a segment
-  CHECK(squared_point_triangle_distance({1, 1, 0}, a, a, a) == Approx(2));        // and to a point
+TEST_CASE("the Hausdorff distance is what looking at every triangle finds", "[distance]") {
+  const Level level = square(14);
+  const Positions x = crumpled(level, 0.3), other = crumpled(level, 0.6);
+  const Triangles& triangles = level.rest.triangles;
+  double farthest = 0;
+  for (const auto& [from, to] : {std::pair(&x, &other), std::pair(&other, &x)})
+    for (Eigen::Index i = 0; i < from->rows(); ++i) {
+      double nearest = infinity;
+      for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+        const Vector3d corners[4] = {from->row(i), to->row(triangles(t, 0)), to->row(triangles(t, 1)),
+                                     to->row(triangles(t, 2))};
+        const Closest c = closest_point_triangle(corners[0], corners[1], corners[2], corners[3]);
+        Vector3d way = Vector3d::Zero();
+        for (int k = 0; k < 4; ++k) way += c.c[k] * corners[k];
+        nearest = std::min(nearest, way.norm());
+      }
+      farthest = std::max(farthest, nearest);
+    }
+  CHECK(farthest > 0.01);
+  CHECK(value(evaluate(level, x, other), "distance_hausdorff") ==
+        Approx(farthest / std::sqrt(2.0)).epsilon(1e-12));
 }
 
-TEST_CASE("the tree finds what looking at every triangle finds", "[distance]") {
-  const Level level = square(14);
-  const Positions x = crumpled(level, 0.3);
-  const SurfaceDistance surface(x, level.rest.triangles);
-  std::mt19937 random(3);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  for (int trial = 0; trial < 300; ++trial) {
-    const Vector3d p(uniform(random), uniform(random), uniform(random));
-    double expected = infinity;
-    for (int t = 0; t < level.triangle_count(); ++t) {
-      const auto corner = level.rest.triangles.row(t);
-      expected = std::min(expected, squared_point_triangle_distance(p, x.row(corner[0]).transpose(),
-                                                                    x.row(corner[1]).transpose(),
-                                                                    x.row(corner[2]).transpose()));
-    }
-    CHECK(surface.squared(p, infinity) == Approx(expected).epsilon(1e-12));
-    CHECK(surface.squared(p, 0.5 * expected) == 0.5 * expected);  // the bound, where nothing is below it
-  }
+TEST_CASE("a collapsed cloth has distances too", "[distance]") {
+  const Level level = square(3);
+  const Positions& x = level.rest.vertices;
+  Positions line = x, dot = Positions::Zero(x.rows(), 3);
+  line.col(1).setZero();
+  CHECK(value(evaluate(level, x, line), "distance_hausdorff") == Approx(1 / std::sqrt(2.0)));
+  CHECK(value(evaluate(level, x, dot), "distance_hausdorff") == Approx(1));
 }
 
 TEST_CASE("a state is at no distance from itself", "[distance]") {
