@@ -24,8 +24,8 @@ using Tree = CGAL::AABB_tree<
 
 Geometry::Point_3 point(const Positions& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
 
-/// Per vertex of `from`, squared distance to the surface of `to`. The vertex of the same number is on that
-/// surface: the search begins there.
+/// Per vertex of `from`, squared distance to the surface of `to`. The search begins at the nearer of two
+/// points of that surface: the vertex of the same number, and what was nearest to the vertex before.
 Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions& to,
                                           const Triangles& triangles) {
   Corners corners;
@@ -37,9 +37,12 @@ Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions
   surface.build();
   Eigen::VectorXd result(from.rows());
   parallel_for(static_cast<int>(from.rows()), 256, [&](int begin, int end) {
+    Geometry::Point_3 nearest = point(to, begin);
     for (int i = begin; i < end; ++i) {
-      const Geometry::Point_3 p = point(from, i);
-      result[i] = CGAL::squared_distance(p, surface.closest_point(p, point(to, i)));
+      const Geometry::Point_3 p = point(from, i), same = point(to, i);
+      const bool is_nearer = CGAL::squared_distance(p, nearest) < CGAL::squared_distance(p, same);
+      nearest = surface.closest_point(p, is_nearer ? nearest : same);
+      result[i] = CGAL::squared_distance(p, nearest);
     }
   });
   return result;
