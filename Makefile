@@ -9,8 +9,8 @@
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
 # make hard     the hard cases (docs/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
-# make pictures the README's pictures, from the runs that `make bench` has left in results/bench_sphere and, if they are
-#               there, `make table1` in results/table1/bunny
+# make pictures the README's pictures, from the runs that `make bench` has left in results/bench_sphere and, of the bunny,
+#               those that `make table1` has finished in results/table1/bunny
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
 # make clean    remove what was built
@@ -75,7 +75,7 @@ pictures: build
 	DRAPE_BIN=$(BUILD)/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser \
 	  node docs/pictures/make.mjs results/bench_sphere/report.html
 	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp results/bench_sphere/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
-	@for run in $(wildcard results/table1/bunny/*); do $(BUILD)/bin/drape report $$run || exit; \
+	@for run in $(patsubst %/finished.txt,%,$(wildcard results/table1/bunny/*/finished.txt)); do $(BUILD)/bin/drape report $$run || exit; \
 	  for picture in $$run/pictures/$${run##*/}_l[03].png; do to=docs/pictures/bunny_$${picture##*/}; \
 	    [ ! -f $$to ] || cp $$picture $$to; done; done
 

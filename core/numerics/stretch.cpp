@@ -12,7 +12,7 @@ RestTriangle RestTriangle::of(const Level& level, int t) {
       of(places.row(v[1]) - places.row(v[0]), Eigen::Vector3d(places.row(v[2]) - places.row(v[0])));
   if (!(triangle.area > 0) || !std::isfinite(triangle.a + triangle.b + triangle.c))
     throw std::runtime_error("triangle " + std::to_string(t) + " of level " + std::to_string(level.index) +
-                             " has no area at rest: stretch is not defined on it");
+                             " has no area at rest");
   return triangle;
 }
 

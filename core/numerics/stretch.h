@@ -10,7 +10,8 @@
 
 namespace drape {
 
-/// Principal stretches σ₁ ≥ σ₂ of F, and where they point. T is double or a Pack.
+/// Principal stretches σ₁ ≥ σ₂ of a triangle's deformation gradient F (3×2), and where they point. T is
+/// double or a Pack.
 template <class T>
 struct PrincipalStretch {
   using Vector = Eigen::Matrix<T, 3, 1>;

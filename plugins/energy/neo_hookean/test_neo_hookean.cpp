@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "plugins/energy/neo_hookean/neo_hookean.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"
 #include "tests/support/membrane_check.h"

@@ -5,12 +5,14 @@
 #include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "core/contact/closest.h"
 #include "core/numerics/parallel.h"
 #include "core/plugin/plugin.h"
 
@@ -18,11 +20,34 @@ namespace drape {
 namespace {
 
 using Geometry = CGAL::Simple_cartesian<double>;
+using Point = Geometry::Point_3;
 using Corners = std::vector<Geometry::Triangle_3>;
-using Tree = CGAL::AABB_tree<
-    CGAL::AABB_traits<Geometry, CGAL::AABB_triangle_primitive<Geometry, Corners::const_iterator>>>;
 
-Geometry::Point_3 point(const Positions& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
+Point point(const Positions& x, Eigen::Index i) { return {x(i, 0), x(i, 1), x(i, 2)}; }
+Eigen::Vector3d vector(const Point& p) { return {p.x(), p.y(), p.z()}; }
+
+using Plain = CGAL::AABB_traits<Geometry, CGAL::AABB_triangle_primitive<Geometry, Corners::const_iterator>>;
+
+/// CGAL's, but for triangles that have collapsed to a line, whose nearest point CGAL may miss.
+struct Traits : Plain {
+  struct Nearest {
+    Plain::Closest_point of_others;
+
+    /// Of the triangle, or `bound` if that is as near to p.
+    Point operator()(const Point& p, const Primitive& primitive, const Point& bound) const {
+      const Geometry::Triangle_3& t = *primitive.id();
+      const Eigen::Vector3d a = vector(t[0]), b = vector(t[1]), c = vector(t[2]);
+      constexpr double squared_sine = 1e-16;
+      if ((b - a).cross(c - a).squaredNorm() > squared_sine * (b - a).squaredNorm() * (c - a).squaredNorm())
+        return of_others(p, primitive, bound);
+      const Closest weights = closest_point_triangle(vector(p), a, b, c);
+      const Eigen::Vector3d n = -(weights.c[1] * a + weights.c[2] * b + weights.c[3] * c);
+      const Point nearest(n[0], n[1], n[2]);
+      return CGAL::squared_distance(p, nearest) < CGAL::squared_distance(p, bound) ? nearest : bound;
+    }
+  };
+  Nearest closest_point_object() const { return {Plain::closest_point_object()}; }
+};
 
 /// Per vertex of `from`, squared distance to the surface of `to`. The search begins at the nearer of two
 /// points of that surface: the vertex of the same number, and what was nearest to the vertex before.
@@ -32,16 +57,15 @@ Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions
   corners.reserve(triangles.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
     corners.emplace_back(point(to, triangles(t, 0)), point(to, triangles(t, 1)), point(to, triangles(t, 2)));
-  Tree surface(corners.begin(), corners.end());
-  surface.do_not_accelerate_distance_queries();
-  surface.build();
+  CGAL::AABB_tree<Traits> surface(corners.begin(), corners.end());
+  surface.build();  // else the first of the threads would
   Eigen::VectorXd result(from.rows());
   parallel_for(static_cast<int>(from.rows()), 256, [&](int begin, int end) {
-    Geometry::Point_3 nearest = point(to, begin);
+    Point nearest = point(to, begin);
     for (int i = begin; i < end; ++i) {
-      const Geometry::Point_3 p = point(from, i), same = point(to, i);
-      const bool is_nearer = CGAL::squared_distance(p, nearest) < CGAL::squared_distance(p, same);
-      nearest = surface.closest_point(p, is_nearer ? nearest : same);
+      const Point p = point(from, i), same = point(to, i);
+      const bool last_is_nearer = CGAL::squared_distance(p, nearest) < CGAL::squared_distance(p, same);
+      nearest = surface.closest_point(p, last_is_nearer ? nearest : same);
       result[i] = CGAL::squared_distance(p, nearest);
     }
   });
@@ -75,7 +99,7 @@ MetricResult Distance::evaluate(const MetricInput& input) const {
   };
   add("distance_rms", area.dot(squared) / area.sum());
   add("distance_max", squared.maxCoeff());
-  add("distance_hausdorff", std::max(there, back));
+  add("distance_hausdorff", std::min(std::max(there, back), squared.maxCoeff()));  // but for rounding it is
   return result;
 }
 
