@@ -37,8 +37,11 @@ TEST_CASE("The reference solution of the elastica has the published figures", "[
   CHECK(cantilever_under_weight(5).tip / degree == Approx(39.94).margin(0.005));
   CHECK(cantilever_under_weight(20).tip / degree == Approx(76.75).margin(0.005));
   CHECK(cantilever_under_weight(100).tip / degree == Approx(89.62).margin(0.005));
+  CHECK(cantilever_under_weight(200).tip / degree == Approx(89.97).margin(0.005));
   CHECK(cantilever_under_end_load(1).deflection == Approx(0.30172).margin(5e-6));
   CHECK(cantilever_under_end_load(4).deflection == Approx(0.66996).margin(5e-6));
+  // A long beam hangs down after a bend at its clamp, ∫ (1 - sin θ) ds = (2 - √2)/√load.
+  CHECK(cantilever_under_end_load(100).deflection == Approx(1 - (2 - std::sqrt(2)) / 10).margin(5e-6));
 }
 
 TEST_CASE("A cantilever bends under its own weight", "[physics]") {

@@ -9,14 +9,16 @@ struct Elastica {
   double deflection;  ///< ∫ sin θ ds
 };
 
-/// Integrates backwards from the free end with angle `tip` there; returns θ(0).
+/// Integrates backwards from the free end with angle `tip` there; returns θ(0), or the first θ below 0. A
+/// beam that bends one way only has θ ≥ 0 all along; beyond its clamp's angle a long one swings on like a
+/// pendulum, through 0 again and again.
 template <class Load>
 double angle_at_clamp(const Load& load, double tip, double& deflection) {
   constexpr int steps = 4000;
   const double h = -1.0 / steps;
   double theta = tip, slope = 0;
   deflection = 0;
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < steps && theta >= 0; ++i) {
     const double s = 1 + i * h;
     const double a1 = slope, b1 = -load(s, theta);
     const double a2 = slope + h / 2 * b1, b2 = -load(s + h / 2, theta + h / 2 * a1);
@@ -31,7 +33,8 @@ double angle_at_clamp(const Load& load, double tip, double& deflection) {
   return theta;
 }
 
-/// By bisection for the tip's angle, between 0 and `most`.
+/// By bisection for the tip's angle, between 0 and `most`: the beam that bends one way only. The angle is
+/// within e^(-⅔ √load) of `most`, so that doubles are too coarse for loads of a thousand and more.
 template <class Load>
 Elastica solve_elastica(const Load& load, double most) {
   double low = 0, high = most, deflection = 0;
