@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
+
+#include "core/view/connections.h"
 
 namespace drape {
 
@@ -46,10 +49,56 @@ void refuse(Response& response, int status, const std::string& why) {
   response.set_content(why + "\n", "text/plain");
 }
 
+constexpr std::size_t largest_body = 1024;  // [bytes]; no request of the page has one
+
+/// The library's server, with connections of our own: its limits are on a single read, so that a peer that
+/// sends a byte now and then holds a thread, and the end, for ever.
+class BoundedServer final : public httplib::Server {
+ public:
+  BoundedServer() {
+    // The listening thread only hands connections over.
+    struct AtOnce final : httplib::TaskQueue {
+      void enqueue(std::function<void()> task) override { task(); }
+      void shutdown() override {}
+    };
+    new_task_queue = [] { return new AtOnce; };
+  }
+
+  void end_connections() { connections_.end(); }
+
+ private:
+  bool process_and_close_socket(socket_t socket) override {
+    connections_.take(socket);
+    return true;
+  }
+
+  Connections connections_{{}, [this](httplib::Stream& stream) {
+                             bool closed = false;
+                             process_request(stream, true, closed, nullptr);
+                           }};
+};
+
+/// Why the request's body is refused; empty where it is not. The library takes "-1" for a length.
+std::string fault_of_body(const Request& request) {
+  if (request.has_header("Transfer-Encoding")) return "the live view takes no body in parts";
+  // Of these the library would wait for a body until the connection ends.
+  if (request.method != "GET" && request.method != "HEAD" && !request.has_header("Content-Length"))
+    return "Content-Length is missing";
+  for (std::size_t k = 0; k < request.get_header_value_count("Content-Length"); ++k) {
+    const std::string length = request.get_header_value("Content-Length", k);
+    std::size_t bytes = 0;
+    const char* end = length.data() + length.size();
+    const auto [rest, error] = std::from_chars(length.data(), end, bytes);
+    if (error != std::errc() || rest != end || bytes > largest_body)
+      return "Content-Length must be 0 to " + std::to_string(largest_body);
+  }
+  return "";
+}
+
 }  // namespace
 
 struct LiveServer::Impl {
-  httplib::Server server;
+  BoundedServer server;
   std::thread thread;
   std::atomic<bool> ended = false;
   std::string origin, same_origin;  // http://127.0.0.1:port, and by name
@@ -71,10 +120,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_u
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
-  // Connections that idle would hold up the end.
-  server.set_keep_alive_max_count(1);
-  server.set_keep_alive_timeout(1);
-  server.set_payload_max_length(1024);
+  server.set_payload_max_length(largest_body);
   server.set_default_headers(
       {{"Cache-Control", "no-store"},
        {"Referrer-Policy", "same-origin"},
@@ -83,6 +129,10 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_u
         "default-src 'none'; img-src data:; connect-src 'self'; frame-ancestors 'none'; "
         "style-src 'unsafe-inline'; script-src 'unsafe-inline'"}});
   server.set_pre_routing_handler([this](const Request& request, Response& response) {
+    if (const std::string fault = fault_of_body(request); !fault.empty()) {
+      refuse(response, 400, "Refused: " + fault + ".");
+      return httplib::Server::HandlerResponse::Handled;
+    }
     if (impl_->is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
     refuse(response, 403, "Refused: the request comes from elsewhere than the live view's own page.");
     return httplib::Server::HandlerResponse::Handled;
@@ -141,6 +191,7 @@ LiveServer::~LiveServer() {
   while (!impl_->server.is_running() && !impl_->ended) std::this_thread::yield();
   impl_->server.stop();
   impl_->thread.join();
+  impl_->server.end_connections();
 }
 
 }  // namespace drape

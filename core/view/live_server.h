@@ -17,7 +17,8 @@ struct LiveAnswers {
 };
 
 /// Serves the live view on 127.0.0.1 alone, under a path that nobody can guess. Requests for another host
-/// name, and actions from another site's pages, are refused.
+/// name, and actions from another site's pages, are refused. Whatever peers do, the page is served and the
+/// end comes (see ConnectionLimits).
 class LiveServer {
  public:
   /// Listens from now on; port 0 takes any that is free. Throws std::runtime_error where the port cannot be
