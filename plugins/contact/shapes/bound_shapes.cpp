@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "core/contact/bent_advance.h"
+#include "core/contact/contact_stack.h"
 #include "core/numerics/parallel.h"
-#include "plugins/contact/shapes/contact_stack.h"
 #include "plugins/contact/shapes/shape_scene.h"
 #include "plugins/contact/shapes/solid_way.h"
 
