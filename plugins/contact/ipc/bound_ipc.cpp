@@ -4,11 +4,13 @@
 #include <limits>
 
 #include "core/contact/contact_kernel.h"
+#include "core/contact/contact_stack.h"
 #include "core/contact/mean_moves.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
 #include "plugins/contact/ipc/kept.h"
 #include "plugins/contact/ipc/obstacle_way.h"
+#include "plugins/contact/ipc/surface_contacts.h"
 
 namespace drape {
 namespace {
@@ -29,10 +31,10 @@ std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positi
   tree->update(boxes.triangles);
   AdjacencyList rows;
   tree->overlaps(unlimited, rows);
-  std::vector<ContactPair> pairs;
-  find_self_pairs(cloth, boxes, rows, {rest, rest, range, none, none}, 0, unlimited, pairs);
+  FoundPairs found;
+  find_self_pairs(cloth, boxes, rows, {rest, rest, range, none, none}, 0, unlimited, found);
   std::vector<std::array<int, 4>> close;
-  for (const ContactPair& pair : pairs) close.push_back(pair.vertices);
+  for (const ContactPair& pair : found.pairs) close.push_back(pair.vertices);
   std::sort(close.begin(), close.end());
   return close;
 }
@@ -41,23 +43,27 @@ std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positi
 class IpcSweep final : public ContactSweep {
  public:
   IpcSweep(Positions x0, Positions x1, double fraction, Candidates found,
-           std::shared_ptr<const Obstacles> obstacles, const BarrierParameters& barrier, double keep)
+           std::shared_ptr<const ObstacleTree> tree, std::shared_ptr<const RestingCloth> rest,
+           const BarrierParameters& barrier, double friction, double keep)
       : x0_(std::move(x0)),
         x1_(std::move(x1)),
         fraction_(fraction),
         found_(std::move(found)),
-        obstacles_(std::move(obstacles)),
+        tree_(std::move(tree)),
+        obstacles_(*tree_->obstacles),
+        rest_(std::move(rest)),
         barrier_(barrier),
+        friction_(friction),
         keep_(keep) {}
 
   StepLimit max_step() const override {
     StepLimit limit{1, ""};
     for (const std::vector<ContactPair>* pairs : {&found_.repelling, &found_.passive}) {
       int blocking = -1;
-      const double part = additive_ccd(x0_, x1_, obstacles_->vertices, *pairs, keep_, blocking);
+      const double part = additive_ccd(x0_, x1_, obstacles_.vertices, *pairs, keep_, blocking);
       if (part < limit.fraction)
         limit = {part,
-                 blocking < 0 ? "" : name_of((*pairs)[blocking], *obstacles_, static_cast<int>(x0_.rows()))};
+                 blocking < 0 ? "" : name_of((*pairs)[blocking], obstacles_, static_cast<int>(x0_.rows()))};
     }
     if (fraction_ < 1 && limit.fraction == 1)
       limit.by = "the number of pairs that a longer way may bring together";
@@ -66,16 +72,26 @@ class IpcSweep final : public ContactSweep {
   }
 
   std::unique_ptr<ContactSet> build(const Positions& x) const override {
-    return make_pair_contacts(x, obstacles_->vertices, found_.repelling, barrier_);
+    auto pairs = make_pair_contacts(x, obstacles_.vertices, found_.repelling, barrier_);
+    if (found_.near.empty()) return pairs;
+    std::vector<std::unique_ptr<ContactSet>> sets;
+    sets.push_back(
+        make_surface_contacts(SurfaceContacts::of(x, obstacles_, tree_->coefficients, found_.near,
+                                                  rest_->surface.vertex_area, friction_, barrier_.range),
+                              barrier_));
+    sets.push_back(std::move(pairs));
+    return std::make_unique<ContactStack>(std::move(sets));
   }
 
  private:
   Positions x0_, x1_;  // of the way as far as it was searched
   double fraction_;    // of the way that was asked for
   Candidates found_;
-  std::shared_ptr<const Obstacles> obstacles_;
+  std::shared_ptr<const ObstacleTree> tree_;
+  const Obstacles& obstacles_;
+  std::shared_ptr<const RestingCloth> rest_;
   BarrierParameters barrier_;
-  double keep_;
+  double friction_, keep_;
 };
 
 }  // namespace
@@ -105,7 +121,12 @@ std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obsta
         return tree.obstacles == obstacles && tree.range == range && tree.kind == kind;
       },
       [&] {
-        ObstacleTree tree{obstacles, range, kind, {}, make_broad_phase(kind)};
+        ObstacleTree tree{obstacles,
+                          range,
+                          kind,
+                          {},
+                          OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, range),
+                          make_broad_phase(kind)};
         tree.boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * range);
         tree.tree->update(tree.boxes.triangles);
         return tree;
@@ -125,10 +146,10 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> ob
       broad_phase_(p.broad_phase),
       cloth_tree_(make_broad_phase(p.broad_phase)) {}
 
-bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits,
-                      std::vector<ContactPair>& pairs, Counts& counts) const {
+bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits, FoundPairs& found,
+                      Counts& counts) const {
   const Way way{x0, x1, barrier_.range, obstacles_->vertices, obstacles_->vertices};
-  pairs.clear();
+  found.clear();
   counts = {};
   const auto list_rows = [&](const Positions& end, const BroadPhase* obstacle_tree) {
     boxes_.update(cloth_, x0, end, 0.5 * barrier_.range);
@@ -142,13 +163,13 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& li
   };
   // What all of the cloth does together brings nothing of it nearer to the rest.
   if (self_contact_ && !(list_rows(x1.rowwise() - (x1 - x0).colwise().mean(), nullptr) &&
-                         find_self_pairs(cloth_, boxes_, rows_, way, friction_, limits.primitives, pairs)))
+                         find_self_pairs(cloth_, boxes_, rows_, way, friction_, limits.primitives, found)))
     return false;
   if (!obstacles_->bodies.empty() && !(list_rows(x1, obstacle_tree_->tree.get()) &&
                                        find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes,
-                                                           rows_, way, friction_, limits.primitives, pairs)))
+                                                           rows_, way, friction_, limits.primitives, found)))
     return false;
-  counts.primitives = static_cast<long>(pairs.size());
+  counts.primitives = found.count();
   return true;
 }
 
@@ -156,12 +177,12 @@ std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positio
   const std::lock_guard lock(busy_);
   const long size = std::max(cloth_.triangle_count(), 1000);
   Counts limits{48 * size, 16 * size}, counts;
-  Candidates found;
+  FoundPairs found;
   Positions end = x1;
   double fraction = 1;
-  for (int tries = 1; !search(x0, end, limits, found.repelling, counts); ++tries) {
+  for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {
     if (tries == 1) {  // where much is near already, three times that is reasonable
-      search(x0, x0, {unlimited, unlimited}, found.repelling, counts);
+      search(x0, x0, {unlimited, unlimited}, found, counts);
       const Counts usual = limits;
       limits = {std::max(limits.triangles, 3 * counts.triangles),
                 std::max(limits.primitives, 3 * counts.primitives)};
@@ -171,16 +192,15 @@ std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positio
     if (tries >= 20) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
-  if (!rest_->close.empty()) {
-    const auto middle = std::stable_partition(
-        found.repelling.begin(), found.repelling.end(), [this](const ContactPair& pair) {
-          return !std::binary_search(rest_->close.begin(), rest_->close.end(), pair.vertices);
-        });
-    found.passive.assign(middle, found.repelling.end());
-    found.repelling.erase(middle, found.repelling.end());
-  }
-  return std::make_unique<IpcSweep>(x0, std::move(end), fraction, std::move(found), obstacles_, barrier_,
-                                    keep_);
+  Candidates candidates{std::move(found.pairs), {}, std::move(found.near)};
+  std::vector<ContactPair>& pairs = candidates.repelling;
+  const auto passive = std::stable_partition(pairs.begin(), pairs.end(), [this](const ContactPair& pair) {
+    return pair.weight > 0 && !std::binary_search(rest_->close.begin(), rest_->close.end(), pair.vertices);
+  });
+  candidates.passive.assign(passive, pairs.end());
+  pairs.erase(passive, pairs.end());
+  return std::make_unique<IpcSweep>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
+                                    rest_, barrier_, friction_, keep_);
 }
 
 StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) const {
@@ -193,16 +213,29 @@ void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& 
   const BoundIpc& was = own_kind(before);
   if (was.obstacles_ == obstacles_) return;
   const int n = static_cast<int>(x.rows());
-  std::vector<ContactPair> pairs;
+  FoundPairs found;
   {
     Counts counts;
     const std::lock_guard lock(was.busy_);
-    was.search(x, x, {unlimited, unlimited}, pairs, counts);
+    was.search(x, x, {unlimited, unlimited}, found, counts);
   }
   MeanMoves moves(n);  // by friction's force
-  for (const ContactPair& pair : pairs) {
+  const Positions by = obstacles_->vertices - was.obstacles_->vertices;
+  const auto surface = SurfaceContacts::of(x, *was.obstacles_, was.obstacle_tree_->coefficients, found.near,
+                                           was.cloth_.vertex_area, was.friction_, was.barrier_.range);
+  for (const SurfaceContact& contact : surface.contacts) {
+    const std::vector<double> pressures = surface.pressures(contact, was.barrier_.range);
+    for (int i = contact.first; i < contact.last; ++i) {
+      const NearestFeature& f = surface.features[i];
+      Eigen::Vector3d move = Eigen::Vector3d::Zero();
+      for (int k = 0; k < 3; ++k)
+        if (f.vertices[k] >= 0) move += f.weights[k] * by.row(f.vertices[k]).transpose();
+      moves.add(contact.vertex, move, f.friction * pressures[i - contact.first]);
+    }
+  }
+  for (const ContactPair& pair : found.pairs) {
     const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
-    if ((is_cloth(0) && is_cloth(3)) || pair.friction == 0) continue;
+    if ((is_cloth(0) && is_cloth(3)) || pair.weight == 0 || pair.friction == 0) continue;
     const PairPositions at = positions_of(pair, x, was.obstacles_->vertices);
     if (!within_range(pair, at, was.barrier_.range)) continue;
     const Contact contact = contact_at(pair, at, was.barrier_.range);

@@ -9,9 +9,11 @@
 
 namespace drape {
 
-/// What a sweep found: pairs that repel each other, and pairs that are only not to pass through each other.
+/// What a sweep found: pairs that repel each other, pairs that are only not to pass through each other, and
+/// the cloth's vertices with the triangles whose surface repels them.
 struct Candidates {
   std::vector<ContactPair> repelling, passive;
+  std::vector<NearTriangle> near;
 };
 
 /// What follows from the cloth's rest shape. A level that is bound again, as conditions change, shares it.
@@ -26,12 +28,13 @@ struct RestingCloth {
   static std::shared_ptr<const RestingCloth> of(const Level& level, double range, bool self_contact);
 };
 
-/// The obstacles' boxes, and a tree of them, kept likewise.
+/// The obstacles' boxes, a tree of them and what else depends on the range, kept likewise.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
   double range;
   BroadPhaseKind kind;
   SweptBoxes boxes;
+  OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;
 
   static std::shared_ptr<const ObstacleTree> of(std::shared_ptr<const Obstacles> obstacles, double range,
@@ -60,7 +63,7 @@ class BoundIpc final : public BoundContact, public MovableObstacles {
     bool operator==(const Counts&) const = default;
   };
   /// False if there are more than `limits`. Called by one thread at a time.
-  bool search(const Positions& x0, const Positions& x1, const Counts& limits, std::vector<ContactPair>& pairs,
+  bool search(const Positions& x0, const Positions& x1, const Counts& limits, FoundPairs& found,
               Counts& counts) const;
 
   double friction_, keep_;

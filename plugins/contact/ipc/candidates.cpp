@@ -1,6 +1,8 @@
 #include "plugins/contact/ipc/candidates.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include "core/contact/pair_geometry.h"
 #include "core/numerics/parallel.h"
@@ -81,35 +83,45 @@ void owned_edges_near(const Side& a, int s, const Side& b, int t, const Found& f
 
 /// Calls at(s, t, list) for every entry of the rows and joins the lists.
 template <class At>
-bool collect(const AdjacencyList& rows, long limit, std::vector<ContactPair>& pairs, const At& at) {
+bool collect(const AdjacencyList& rows, long limit, FoundPairs& found, const At& at) {
   const int count = static_cast<int>(rows.start.size()) - 1;
-  std::vector<std::vector<ContactPair>> lists((count + grain - 1) / grain);
-  std::atomic<long> found = static_cast<long>(pairs.size());
+  std::vector<FoundPairs> lists((count + grain - 1) / grain);
+  std::atomic<long> number = found.count();
   parallel_for(count, grain, [&](int begin, int end) {
-    std::vector<ContactPair>& list = lists[begin / grain];
-    for (int s = begin; s < end && found.load(std::memory_order_relaxed) <= limit; ++s) {
-      const std::size_t before = list.size();
+    FoundPairs& list = lists[begin / grain];
+    for (int s = begin; s < end && number.load(std::memory_order_relaxed) <= limit; ++s) {
+      const long before = list.count();
+      const auto first_near = static_cast<std::ptrdiff_t>(list.near.size());
       for (const int* t = rows.begin(s); t != rows.end(s); ++t) at(s, *t, list);
-      found += static_cast<long>(list.size() - before);
+      std::stable_sort(list.near.begin() + first_near, list.near.end(),
+                       [](const NearTriangle& a, const NearTriangle& b) { return a.vertex < b.vertex; });
+      number += list.count() - before;
     }
   });
-  if (found > limit) return false;
-  pairs.reserve(found);
-  for (const auto& list : lists) pairs.insert(pairs.end(), list.begin(), list.end());
+  if (number > limit) return false;
+  found.pairs.reserve(number);
+  for (const FoundPairs& list : lists) {
+    found.pairs.insert(found.pairs.end(), list.pairs.begin(), list.pairs.end());
+    found.near.insert(found.near.end(), list.near.begin(), list.near.end());
+  }
   return true;
 }
+
+/// What is left of the weight of a contact between the cloth's vertices where the obstacle stands out by this
+/// much.
+double share(double sagitta, double range) { return std::min(1.0, 8 * sagitta / range); }
 
 }  // namespace
 
 bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows, const Way& way,
-                     double friction, long limit, std::vector<ContactPair>& pairs) {
+                     double friction, long limit, FoundPairs& found) {
   const Side side{cloth, boxes, 0};
-  return collect(rows, limit, pairs, [&](int s, int t, std::vector<ContactPair>& list) {
+  return collect(rows, limit, found, [&](int s, int t, FoundPairs& list) {
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_near(pair, way)) return;
       pair.weight = weight;
       pair.friction = friction;
-      list.push_back(pair);
+      list.pairs.push_back(pair);
     };
     for (const auto& [a, b] : {std::pair(s, t), std::pair(t, s)})
       owned_vertices_near(side, a, side, b, [&](int v) {
@@ -125,23 +137,30 @@ bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const Adjace
 
 bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Obstacles& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows, const Way& way,
-                         double friction, long limit, std::vector<ContactPair>& pairs) {
+                         double friction, long limit, FoundPairs& found) {
   const Surface& other = obstacles.surface;
+  const Dihedrals& dihedrals = obstacles.dihedrals;
   const Side own{cloth, boxes, 0}, their{other, obstacle_boxes, static_cast<int>(way.x0.rows())};
-  return collect(rows, limit, pairs, [&](int s, int t, std::vector<ContactPair>& list) {
+  return collect(rows, limit, found, [&](int s, int t, FoundPairs& list) {
     const auto add = [&](ContactPair pair, double weight) {
-      if (!may_come_near(pair, way)) return;
+      if (!may_come_near(pair, way)) return false;
       pair.weight = weight;
       pair.friction = obstacles.bodies[obstacles.body_of(other.triangles(t, 0))].friction.value_or(friction);
-      list.push_back(pair);
+      list.pairs.push_back(pair);
+      return true;
     };
-    owned_vertices_near(own, s, their, t,
-                        [&](int v) { add(vertex_triangle(own, v, their, t), cloth.vertex_area[v]); });
+    owned_vertices_near(own, s, their, t, [&](int v) {
+      if (add(vertex_triangle(own, v, their, t), 0)) list.near.push_back({v, t});
+    });
     owned_vertices_near(their, t, own, s, [&](int v) {
-      add(vertex_triangle(their, v, own, s), 0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]));
+      const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
+      add(vertex_triangle(their, v, own, s), 0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
+                                                 share(dihedrals.vertex_sagitta(v, length), way.range));
     });
     owned_edges_near(own, s, their, t, [&](int e, int f) {
-      add(edge_edge(own, e, their, f), 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]));
+      const double length = std::sqrt(cloth.edge_length_squared[e]);
+      add(edge_edge(own, e, their, f), 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
+                                           share(dihedrals.edge_sagitta(f, length), way.range));
     });
   });
 }

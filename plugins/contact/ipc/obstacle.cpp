@@ -142,6 +142,7 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.surface.append(Surface::of(body.mesh, body.form.frames.empty() ? Topology::of(body.mesh.triangles, m)
                                                                        : body.form.frames[0]->topology));
   }
+  all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);
   return all;
 }

@@ -7,6 +7,7 @@
 
 #include "core/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
+#include "plugins/contact/ipc/dihedrals.h"
 #include "plugins/contact/ipc/sound_mesh.h"
 #include "plugins/contact/ipc/surface.h"
 
@@ -72,6 +73,7 @@ struct Obstacles {
   std::vector<int> first_vertex;  ///< of each body, and their number in all
   Positions vertices;             ///< of all bodies
   Surface surface;
+  Dihedrals dihedrals;
 
   static Obstacles of(std::vector<Obstacle> bodies);
   int body_of(int vertex) const;

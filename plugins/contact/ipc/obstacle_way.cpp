@@ -210,24 +210,24 @@ struct ObstacleWay::Search {
   std::unique_ptr<BroadPhase> cloth_tree, tree;
   SweptBoxes cloth_boxes, boxes;
   AdjacencyList rows;
-  std::vector<ContactPair> pairs;
+  FoundPairs found;
 };
 
 /// The pairs that come within the range on a leg; false if there are more than `limit`.
 bool ObstacleWay::find(const Leg& leg, Search& s, long limit) const {
   s.boxes.update(after_.surface, leg.from, leg.to, 0.5 * s.range + leg.off_chord);
   s.tree->update(s.boxes.triangles);
-  s.pairs.clear();
+  s.found.clear();
   if (!s.cloth_tree->overlaps(*s.tree, limit, s.rows)) return false;
   leave_moving(s.rows, leg, after_);
   return find_obstacle_pairs(s.cloth, s.cloth_boxes, after_, s.boxes, s.rows,
-                             {s.x, s.x, s.range + leg.off_chord, leg.from, leg.to}, 0, limit, s.pairs);
+                             {s.x, s.x, s.range + leg.off_chord, leg.from, leg.to}, 0, limit, s.found);
 }
 
 double ObstacleWay::smallest_gap(Search& s) const {
   find(leg(0, 0), s, std::numeric_limits<long>::max());
   double gap = s.range;
-  for (const ContactPair& pair : s.pairs) {
+  for (const ContactPair& pair : s.found.pairs) {
     const PairPositions at = positions_of(pair, s.x, before_.vertices);
     gap = std::min(gap, connection(at, closest(pair.kind, at)).norm());
   }
@@ -255,15 +255,15 @@ StepLimit ObstacleWay::advance(Search& s, double kept, int rounds) const {
       limit *= 2;
       continue;
     }
-    std::vector<double> parts(s.pairs.size());
+    std::vector<double> parts(s.found.pairs.size());
     parallel_for(static_cast<int>(parts.size()), 64, [&](int begin, int stop) {
       for (int i = begin; i < stop; ++i)
-        parts[i] = PairOnLeg(s.pairs[i], s.x, leg, after_).advance(kept, rounds);
+        parts[i] = PairOnLeg(s.found.pairs[i], s.x, leg, after_).advance(kept, rounds);
     });
     const auto least = std::min_element(parts.begin(), parts.end());
     if (least != parts.end() && *least < 1)
       return {between<double>(time, end, *least),
-              name_of(s.pairs[least - parts.begin()], after_, static_cast<int>(s.x.rows()))};
+              name_of(s.found.pairs[least - parts.begin()], after_, static_cast<int>(s.x.rows()))};
     length = 2 * (end - time);
     time = end;
   }

@@ -1,0 +1,72 @@
+#include "plugins/contact/ipc/dihedrals.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace drape {
+namespace {
+
+constexpr double flat_to_rounding = 1e-6;  // [rad]
+
+}  // namespace
+
+Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
+  const Eigen::Index n = vertices.rows(), count = surface.edges.rows();
+  // From each edge at right angles to its first and second triangle's third vertex.
+  Positions away[2] = {Positions::Zero(count, 3), Positions::Zero(count, 3)};
+  std::vector<char> triangles(count, 0);
+  for (int t = 0; t < surface.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int e = surface.triangle_edges(t, k);
+      const Eigen::RowVector3d from = vertices.row(surface.edges(e, 0)),
+                               along = vertices.row(surface.edges(e, 1)) - from,
+                               to = vertices.row(surface.triangles(t, k)) - from;
+      away[std::min<int>(triangles[e]++, 1)].row(e) = to - to.dot(along) / along.squaredNorm() * along;
+    }
+  Dihedrals d;
+  d.edge_angle.resize(count);
+  d.edge_curvature.setZero(count);
+  d.vertex_angle.setZero(n);
+  d.vertex_curvature.setZero(n);
+  d.edge_on_border.resize(count);
+  d.vertex_on_border.assign(n, 0);
+  for (int e = 0; e < count; ++e) {
+    const Eigen::Vector3d a = away[0].row(e), b = away[1].row(e);
+    d.edge_on_border[e] = triangles[e] != 2;
+    d.edge_angle[e] = d.edge_on_border[e] ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
+    if (d.edge_angle[e] < flat_to_rounding) d.edge_angle[e] = 0;
+    if (!d.edge_on_border[e]) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
+    for (int k = 0; k < 2; ++k) {
+      const int v = surface.edges(e, k);
+      d.vertex_angle[v] = std::max(d.vertex_angle[v], d.edge_angle[e]);
+      d.vertex_curvature[v] = std::max(d.vertex_curvature[v], d.edge_curvature[e]);
+      if (d.edge_on_border[e]) d.vertex_on_border[v] = 1;
+    }
+  }
+  return d;
+}
+
+double Dihedrals::sagitta(double angle, double curvature, double length) {
+  return length / 8 * std::max(2 * angle, curvature * length);
+}
+
+OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihedrals& dihedrals,
+                                              double range) {
+  constexpr double whole = 0.25, none = 1;  // radii of curvature of four ranges, and of one
+  const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
+  OperatorCoefficients c;
+  c.edge.setZero(count);
+  Eigen::VectorXd missing = Eigen::VectorXd::Zero(n);
+  for (int e = 0; e < count; ++e) {
+    if (dihedrals.edge_on_border[e]) continue;
+    const double bends = (range * dihedrals.edge_curvature[e] - whole) / (none - whole);
+    c.edge[e] = 1 - std::clamp(bends, 0.0, 1.0);
+    for (int k = 0; k < 2; ++k) missing[surface.edges(e, k)] += 1 - c.edge[e];
+  }
+  c.vertex.resize(n);
+  for (int v = 0; v < n; ++v) c.vertex[v] = dihedrals.vertex_on_border[v] ? 0 : std::max(0.0, 1 - missing[v]);
+  return c;
+}
+
+}  // namespace drape

@@ -1,0 +1,176 @@
+#include "plugins/contact/ipc/surface_contacts.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+
+#include "core/contact/barrier.h"
+#include "core/contact/friction.h"
+#include "core/numerics/parallel.h"
+
+namespace drape {
+namespace {
+
+using Eigen::Matrix3d, Eigen::Vector3d;
+
+constexpr int grain = 1024;
+
+Matrix3d projected(const Matrix3d& h, Projection projection) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(h);
+  Vector3d values = eigen.eigenvalues();
+  for (double& value : values) value = projection.map(value);
+  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
+class SurfaceSet final : public ContactSet {
+ public:
+  SurfaceSet(SurfaceContacts all, const BarrierParameters& parameters)
+      : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {
+    parallel_for(static_cast<int>(barriers_.size()), grain, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) barriers_[i] = barrier(all_.features[i].distance / p_.range);
+    });
+    double sum = 0;
+    for (const SurfaceContact& contact : all_.contacts)
+      for (int i = contact.first; i < contact.last; ++i) {
+        const NearestFeature& f = all_.features[i];
+        smallest_gap_ = std::min(smallest_gap_, f.distance);
+        sum += contact.weight * f.coefficient * barriers_[i].value;
+      }
+    // Where a vertex touches, terms of both signs may be infinite.
+    value_ = smallest_gap_ > 0 ? p_.stiffness * p_.range * sum : std::numeric_limits<double>::infinity();
+  }
+
+  int contact_count() const override { return static_cast<int>(all_.features.size()); }
+  double smallest_gap() const override { return smallest_gap_; }
+  double value(const Positions&) const override { return value_; }
+
+  double add_gradient(const Positions&, Positions& g) const override {
+    for (const SurfaceContact& contact : all_.contacts)
+      for (int i = contact.first; i < contact.last; ++i)
+        g.row(contact.vertex) +=
+            stiffness(contact, i) * barriers_[i].first * all_.features[i].normal.transpose();
+    return value_;
+  }
+
+  Stencils stencils() const override {
+    Stencils result = Stencils::Constant(vertex_count(), 4, -1);
+    for (int i = 0; i < vertex_count(); ++i) result(i, 0) = all_.contacts[i].vertex;
+    return result;
+  }
+
+  void add_hessian(const Positions&, Projection projection, BlockSink& sink) const override {
+    for (int k = 0; k < vertex_count(); ++k) {
+      const SurfaceContact& contact = all_.contacts[k];
+      Matrix3d h = Matrix3d::Zero();
+      for (int i = contact.first; i < contact.last; ++i) h += stiffness(contact, i) * curvature(i);
+      // One plane's b'' n nᵀ is positive semidefinite.
+      const NearestFeature& first = all_.features[contact.first];
+      const bool is_one_plane = contact.last == contact.first + 1 && first.is_face() && first.coefficient > 0;
+      if (!projection.is_exact() && !is_one_plane) h = projected(h, projection);
+      sink.add(k, 0, 0, h.data());
+    }
+  }
+
+  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
+    std::vector<FrictionContact> frictions;
+    for (const SurfaceContact& contact : all_.contacts) {
+      const std::vector<double> pressures = all_.pressures(contact, p_.range);
+      for (int i = contact.first; i < contact.last; ++i) {
+        const NearestFeature& f = all_.features[i];
+        const double force = f.friction * p_.stiffness * pressures[i - contact.first];
+        if (force > 0)
+          frictions.push_back({{contact.vertex, -2, f.vertices[0], f.vertices[1], f.vertices[2]},
+                               {contact.vertex, -1, -1, -1},
+                               {1, 0, 0, 0},
+                               f.normal,
+                               force});
+      }
+    }
+    return make_friction(std::move(frictions), from, slips, p_.slip_distance);
+  }
+
+ private:
+  int vertex_count() const { return static_cast<int>(all_.contacts.size()); }
+
+  double stiffness(const SurfaceContact& contact, int i) const {
+    return p_.stiffness * contact.weight * all_.features[i].coefficient;
+  }
+
+  /// The Hessian of d̂ b(distance / d̂).
+  Matrix3d curvature(int i) const {
+    const NearestFeature& f = all_.features[i];
+    Matrix3d h = barriers_[i].second / p_.range * f.normal * f.normal.transpose();
+    if (!f.is_face())
+      h += barriers_[i].first / f.distance *
+           (Matrix3d::Identity() - f.normal * f.normal.transpose() - f.along * f.along.transpose());
+    return h;
+  }
+
+  SurfaceContacts all_;
+  BarrierParameters p_;
+  std::vector<Derivatives> barriers_;  // by distance / d̂
+  double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+SurfaceContacts SurfaceContacts::of(const Positions& x, const Obstacles& obstacles,
+                                    const OperatorCoefficients& coefficients,
+                                    const std::vector<NearTriangle>& near, const Eigen::VectorXd& vertex_area,
+                                    double friction, double range) {
+  std::vector<int> start;  // of each vertex' entries
+  for (int i = 0; i < static_cast<int>(near.size()); ++i)
+    if (i == 0 || near[i].vertex != near[i - 1].vertex) start.push_back(i);
+  const int count = static_cast<int>(start.size());
+  start.push_back(static_cast<int>(near.size()));
+  std::vector<SurfaceContacts> pieces((count + grain - 1) / grain);
+  parallel_for(count, grain, [&](int begin, int end) {
+    SurfaceContacts& piece = pieces[begin / grain];
+    FeatureSearch search(obstacles, coefficients, friction, range);
+    for (int k = begin; k < end; ++k) {
+      const int first = static_cast<int>(piece.features.size()), v = near[start[k]].vertex;
+      search.append(x.row(v), &near[start[k]], near.data() + start[k + 1], piece.features);
+      if (const int last = static_cast<int>(piece.features.size()); last > first)
+        piece.contacts.push_back({v, vertex_area[v], first, last});
+    }
+  });
+  SurfaceContacts all;
+  for (const SurfaceContacts& piece : pieces) {
+    const int shift = static_cast<int>(all.features.size());
+    for (SurfaceContact contact : piece.contacts) {
+      contact.first += shift;
+      contact.last += shift;
+      all.contacts.push_back(contact);
+    }
+    all.features.insert(all.features.end(), piece.features.begin(), piece.features.end());
+  }
+  return all;
+}
+
+std::vector<double> SurfaceContacts::pressures(const SurfaceContact& contact, double range) const {
+  const int count = contact.last - contact.first;
+  const NearestFeature* f = features.data() + contact.first;
+  std::vector<double> pressures(count);
+  for (int i = 0; i < count; ++i)
+    pressures[i] = -contact.weight * f[i].coefficient * barrier(f[i].distance / range).first;
+  for (int i = 0; i < count; ++i) {
+    while (pressures[i] < 0) {
+      int most_alike = -1;
+      for (int k = 0; k < count; ++k)
+        if (pressures[k] > 0 &&
+            (most_alike < 0 || f[k].normal.dot(f[i].normal) > f[most_alike].normal.dot(f[i].normal)))
+          most_alike = k;
+      const double taken = most_alike < 0 ? -pressures[i] : std::min(-pressures[i], pressures[most_alike]);
+      if (most_alike >= 0) pressures[most_alike] -= taken;
+      pressures[i] = taken == -pressures[i] ? 0 : pressures[i] + taken;
+    }
+  }
+  return pressures;
+}
+
+std::unique_ptr<ContactSet> make_surface_contacts(SurfaceContacts contacts,
+                                                  const BarrierParameters& parameters) {
+  return std::make_unique<SurfaceSet>(std::move(contacts), parameters);
+}
+
+}  // namespace drape

@@ -1,0 +1,284 @@
+// The barrier between vertices and a surface of triangles.
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/contact/barrier.h"
+#include "core/contact/pair_geometry.h"
+#include "core/mesh/generate.h"
+#include "plugins/contact/ipc/surface_contacts.h"
+#include "tests/support/evaluate.h"
+
+using namespace drape;
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+constexpr double range = 0.01;
+
+struct Random {
+  std::mt19937 engine;
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  }
+};
+
+/// One vertex of weight 1 near a mesh, all of whose triangles are candidates.
+struct Scene {
+  Obstacles obstacles;
+  OperatorCoefficients coefficients;
+  std::vector<NearTriangle> near;
+  Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
+  BarrierParameters parameters;
+
+  explicit Scene(const TriangleMesh& mesh) : obstacles(Obstacles::of({{"mesh", mesh, 0.5}})) {
+    parameters.range = range;
+    parameters.stiffness = 1 / range;  // E = Σ coefficient b
+    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, range);
+    for (int t = 0; t < mesh.triangles.rows(); ++t) near.push_back({0, t});
+  }
+  SurfaceContacts contacts(const Vector& p) const {
+    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, near, area, 0, range);
+  }
+  std::unique_ptr<ContactSet> set(const Vector& p) const {
+    return make_surface_contacts(contacts(p), parameters);
+  }
+  double value(const Vector& p) const { return set(p)->value(p.transpose()); }
+  Vector gradient(const Vector& p) const { return gradient_of(*set(p), p.transpose()).transpose(); }
+  Eigen::Matrix3d hessian(const Vector& p, Projection projection) const {
+    return dense(hessian_of(*set(p), p.transpose(), projection));
+  }
+  double distance(const Vector& p) const {
+    double smallest = 1e300;
+    const Positions& v = obstacles.vertices;
+    for (const auto& t : obstacles.surface.triangles.rowwise()) {
+      PairPositions x;
+      x << p, v.row(t[0]).transpose(), v.row(t[1]).transpose(), v.row(t[2]).transpose();
+      smallest = std::min(smallest, connection(x, closest(PairKind::point_triangle, x)).norm());
+    }
+    return smallest;
+  }
+};
+
+/// A sheet of 5 cm with hills and valleys of this height and wave length, its vertices moved in its plane.
+TriangleMesh hills(int columns, double height, double wave, Random& random) {
+  TriangleMesh mesh = grid({0.05, 0.05}, columns, columns, Diagonals::criss_cross);
+  const double cell = 0.05 / (columns - 1), a = random(0, 6), b = random(0, 6);
+  for (auto v : mesh.vertices.rowwise()) {
+    for (int c = 0; c < 2; ++c)
+      if (v[c] > 1e-9 && v[c] < 0.05 - 1e-9) v[c] += random(-0.2, 0.2) * cell;
+    if (height > 0)
+      v[2] = height * (std::sin(2 * M_PI * v[0] / wave + a) * std::sin(2 * M_PI * v[1] / wave + b) +
+                       random(-0.1, 0.1));
+  }
+  return mesh;
+}
+
+/// Over the middle of a mesh, or below it.
+Vector near_middle(const Scene& scene, Random& random) {
+  const auto vertices = scene.obstacles.vertices;
+  const Eigen::Index v = static_cast<Eigen::Index>(random(0, 1) * static_cast<double>(vertices.rows() - 1));
+  return Vector(0.5 * vertices.row(v)) + Vector(0.0125, 0.0125, 0) +
+         Vector(random(-1, 1), random(-1, 1), random(-1.5, 1.5)) * range;
+}
+
+}  // namespace
+
+TEST_CASE("surface: a flat sheet is its plane, whatever its triangles") {
+  Random random;
+  std::vector<TriangleMesh> sheets = {grid({0.05, 0.05}, 2, 2, Diagonals::one_way),
+                                      random_triangulation({0.05, 0.05}, 300, 1)};
+  for (const int columns : {3, 11, 41}) sheets.push_back(hills(columns, 0, 1, random));
+  for (const TriangleMesh& flat : sheets) {
+    const Scene scene(flat);
+    int off_border = 0;
+    for (int i = 0; i < 400; ++i) {
+      Vector p(random(-0.01, 0.06), random(-0.01, 0.06), random(-1, 1) * range);
+      if (i % 4 == 0) p.head<2>() = flat.vertices.row(i % flat.vertices.rows()).head<2>();  // above a vertex
+      const Vector foot(std::clamp(p.x(), 0.0, 0.05), std::clamp(p.y(), 0.0, 0.05), 0);
+      const double distance = (p - foot).norm();
+      const Derivatives b = barrier(distance / range);
+      CAPTURE(p.transpose(), flat.vertices.rows());
+      CHECK(scene.value(p) == Approx(b.value).epsilon(1e-10).margin(1e-14));
+      const Vector g = b.first / range * (p - foot) / distance;
+      CHECK((scene.gradient(p) - g).norm() <= 1e-9 * (1 + g.norm()));
+      if (i % 4 != 0) CHECK(scene.contacts(p).features.size() == (distance < range ? 1 : 0));
+      off_border += foot == p - Vector(0, 0, p.z());
+    }
+    CHECK(off_border > 100);
+  }
+}
+
+TEST_CASE("surface: energy and force are continuous where the nearest features change") {
+  Random random;
+  int changes = 0, negative = 0;
+  for (int round = 0; round < 12; ++round) {
+    const Scene scene(hills(12, round % 3 == 0 ? 3e-4 : 2e-3, 0.02, random));
+    const Vector from = near_middle(scene, random), to = near_middle(scene, random);
+    constexpr int steps = 4000;
+    const Vector step = (to - from) / steps;
+    const double h = step.norm();
+    std::vector<std::array<int, 3>> before;
+    double energy = 0;
+    Vector force;
+    for (int k = 0; k <= steps; ++k) {
+      const Vector p = from + k * step;
+      const SurfaceContacts contacts = scene.contacts(p);
+      std::vector<std::array<int, 3>> features;
+      double slope = 0, bend = 0;  // bounds of the first and second derivative
+      for (const NearestFeature& f : contacts.features) {
+        features.push_back(f.vertices);
+        negative += f.coefficient < 0;
+        const Derivatives b = barrier(std::max(f.distance - h, 1e-3 * f.distance) / range);
+        slope += std::abs(f.coefficient * b.first) / range;
+        bend += std::abs(f.coefficient) *
+                (b.second / range - b.first / std::max(f.distance - h, 1e-3 * f.distance)) / range;
+      }
+      const double value = scene.value(p);
+      const Vector gradient = scene.gradient(p);
+      if (k > 0 && contacts.features.size() > 0 && scene.distance(p) > 0.1 * range) {
+        if (features != before) ++changes;
+        CAPTURE(round, k, p.transpose(), features.size(), before.size());
+        CHECK((gradient - force).norm() <= 2 * bend * h + 1e-3 * slope * h / range + 20 * h / range / range);
+        CHECK(std::abs(value - energy - 0.5 * step.dot(gradient + force)) <=
+              2 * (bend + 20 / range / range) * h * h);
+      }
+      before = features;
+      energy = value;
+      force = gradient;
+    }
+  }
+  CHECK(changes > 300);
+  CHECK(negative > 300);
+}
+
+TEST_CASE("surface: derivatives, and projections as a whole") {
+  Random random;
+  int negative = 0, indefinite = 0;
+  for (int round = 0; round < 10; ++round) {
+    const Scene scene(hills(12, 2e-3, 0.02, random));
+    for (int i = 0; i < 200; ++i) {
+      const Vector p = near_middle(scene, random);
+      if (scene.distance(p) > 0.95 * range || scene.distance(p) < 0.02 * range) continue;
+      const Vector g = scene.gradient(p);
+      const Eigen::Matrix3d h = scene.hessian(p, Projection::none);
+      const auto value = [&](const Positions& x) { return scene.value(x.transpose()); };
+      const auto by_x = [&](const Positions& x) {
+        return Positions(scene.gradient(x.transpose()).transpose());
+      };
+      const double size = 1e-5 * range;
+      std::vector<std::size_t> counts;  // of features around p: differences are of no use where they change
+      for (int c = 0; c < 6; ++c)
+        counts.push_back(scene.contacts(p + (c % 2 ? 3 : -3) * size * Vector::Unit(c / 2)).features.size());
+      const bool steady = std::ranges::all_of(counts, [&](std::size_t n) { return n == counts[0]; });
+      CAPTURE(p.transpose(), scene.contacts(p).features.size());
+      CHECK((differences(value, p.transpose(), size).transpose() - g).norm() <=
+            1e-5 * (g.norm() + 1 / range));
+      if (steady) CHECK((differences(by_x, p.transpose(), size) - h).norm() <= 1e-4 * h.norm());
+      for (const NearestFeature& f : scene.contacts(p).features) negative += f.coefficient < 0;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
+      indefinite += eigen.eigenvalues()[0] < -1e-9 * h.norm();
+      for (const auto projection : {Projection::clamp, Projection::absolute}) {
+        const Vector values = projection == Projection::clamp ? Vector(eigen.eigenvalues().cwiseMax(0))
+                                                              : Vector(eigen.eigenvalues().cwiseAbs());
+        const Eigen::Matrix3d expected =
+            eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+        CHECK((scene.hessian(p, projection) - expected).norm() <= 1e-12 * h.norm());
+      }
+    }
+  }
+  CHECK(negative > 100);
+  CHECK(indefinite > 100);
+}
+
+TEST_CASE("surface: what is nearest is never weighed less than once, however rough the surface") {
+  Random random;
+  // From hills that are wide against the range to pits that are a tenth of it.
+  for (const auto& [columns, height, wave] :
+       {std::tuple(12, 2e-3, 0.02), std::tuple(41, 2e-3, 0.03), std::tuple(41, 5e-4, 0.005),
+        std::tuple(81, 1e-3, 0.002), std::tuple(81, 2e-4, 0.002), std::tuple(81, 3e-5, 0.002)}) {
+    const Scene scene(hills(columns, height, wave, random));
+    double least = 1e300;
+    for (int i = 0; i < 300; ++i) {
+      const Vector p = near_middle(scene, random);
+      const double distance = scene.distance(p);
+      if (distance >= range || distance < 1e-6 * range) continue;
+      const SurfaceContacts contacts = scene.contacts(p);
+      CAPTURE(columns, height, wave, p.transpose(), distance);
+      REQUIRE(contacts.contacts.size() == 1);
+      const auto nearest = std::ranges::min(contacts.features, {}, &NearestFeature::distance);
+      CHECK(nearest.distance == Approx(distance).epsilon(1e-9));
+      CHECK(nearest.coefficient >= 1 - 1e-9);
+      least = std::min(least, scene.value(p) / barrier(distance / range).value);
+      double net = 0;
+      for (const double pressure : contacts.pressures(contacts.contacts[0], range)) {
+        CHECK(pressure >= 0);
+        net += pressure;
+      }
+      CHECK(net > 0);
+    }
+    CAPTURE(columns, height, wave, least);
+    CHECK(least > 0.99);
+  }
+}
+
+TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
+  Random random;
+  for (const double height : {0.0, 2e-3, 5e-3}) {
+    const Scene scene(hills(12, height, 0.02, random));
+    const Positions& v = scene.obstacles.vertices;
+    for (int i = 0; i < 60; ++i) {
+      const auto t = scene.obstacles.surface.triangles.row(
+          static_cast<int>(random(0.3, 0.7) * scene.obstacles.surface.triangle_count()));
+      const double s = i % 3 > 0 ? 0 : random(0, 0.5), r = i % 3 > 1 ? 0 : random(0, 0.5);
+      const Vector foot = (1 - s - r) * v.row(t[0]) + s * v.row(t[1]) + r * v.row(t[2]);
+      const Vector way(random(-1, 1), random(-1, 1), random(-1, 1));
+      double before = 0;
+      for (double part = 1e-2; part > 1e-9; part *= 0.1) {
+        const Vector p = foot + part * range * way.normalized();
+        const double value = scene.value(p), nearest = barrier(scene.distance(p) / range).value;
+        CAPTURE(height, i, part);
+        CHECK(value > before);
+        CHECK(value > 0.9 * nearest);
+        before = value;
+      }
+      CHECK(scene.value(foot) > 20);
+    }
+  }
+}
+
+TEST_CASE("surface: friction is that of the net normal force") {
+  Random random;
+  int negative = 0;
+  for (int round = 0; round < 6; ++round) {
+    const Scene scene(hills(12, round % 2 ? 3e-4 : 2e-3, 0.02, random));
+    for (int i = 0; i < 200; ++i) {
+      const Vector p = near_middle(scene, random);
+      const SurfaceContacts contacts = scene.contacts(p);
+      if (contacts.contacts.empty() || scene.distance(p) < 1e-3 * range) continue;
+      double net = 0;
+      for (const NearestFeature& f : contacts.features) {
+        net -= f.coefficient * barrier(f.distance / range).first;
+        negative += f.coefficient < 0;
+      }
+      double sum = 0;
+      for (const double pressure : contacts.pressures(contacts.contacts[0], range)) sum += pressure;
+      CHECK(sum == Approx(std::max(net, 0.0)).epsilon(1e-9).margin(1e-12));
+    }
+  }
+  CHECK(negative > 50);
+  // On a flat sheet it is μ times the force, along the sheet, at edges and vertices too.
+  const Scene flat(hills(12, 0, 1, random));
+  for (int i = 0; i < 50; ++i) {
+    const Vector p = Vector(flat.obstacles.vertices.row(40 + i % 20)) + Vector(0, 0, 0.4 * range);
+    const Vector to = p + Vector(1e-3, 2e-3, 0);
+    const auto friction = flat.set(p)->friction(p.transpose(), {});
+    REQUIRE(friction);
+    const Vector drag = gradient_of(*friction, to.transpose()).transpose();
+    const Vector expected = 0.5 * flat.gradient(p).norm() * Vector(1, 2, 0).normalized();
+    CHECK((drag - expected).norm() <= 1e-6 * expected.norm());
+  }
+}

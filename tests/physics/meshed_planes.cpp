@@ -1,0 +1,98 @@
+// A plane is a plane, whatever the triangles that it is made of.
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/mesh/generate.h"
+#include "core/mesh/io.h"
+#include "tests/support/command.h"
+#include "tests/support/slope.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// A square of 0.6 m about the origin, in cells of this size; its inner vertices moved in the plane.
+TriangleMesh plane(double cell, double jitter) {
+  const int columns = 1 + static_cast<int>(std::lround(0.6 / cell));
+  TriangleMesh mesh = grid({0.6, 0.6}, columns, columns, Diagonals::criss_cross);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> move(-jitter * cell, jitter * cell);
+  for (auto v : mesh.vertices.rowwise())
+    for (int c = 0; c < 2; ++c)
+      if (v[c] > 1e-9 && v[c] < 0.6 - 1e-9) v[c] += move(random);
+  // So that cloth of 2 cm cells lies neither on its edges nor on its vertices.
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(0.3037, 0.2951, 0);
+  return mesh;
+}
+
+struct Floor {
+  std::string name, contact;
+};
+
+/// The same plane in many ways, the exact one first.
+std::vector<Floor> floors(const Scratch& folder) {
+  std::vector<Floor> all = {{"half-space", "shapes, shapes: [{name: floor, shape: half_space}]"}};
+  for (const auto& [name, cell, jitter] :
+       {std::tuple("two triangles", 0.6, 0.0), std::tuple("0.1 m", 0.1, 0.0),
+        std::tuple("0.025 m", 0.025, 0.0), std::tuple("0.01 m", 0.01, 0.0),
+        std::tuple("0.025 m, jittered", 0.025, 0.3)}) {
+    const auto file = folder / (std::to_string(all.size()) + ".ply");
+    write_mesh(file, plane(cell, jitter));
+    all.push_back({name, "ipc, obstacles: [{name: floor, file: " + file.string() + "}]"});
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("Cloth rests at the same gap on a plane of any triangles") {
+  const Scratch folder;
+  const Material cotton;
+  const double expected = resting_gap(cotton.area_density() * gravity, contact_stiffness(cotton), range);
+  for (const auto& [name, contact] : floors(folder)) {
+    INFO(name);
+    Solved s = scene_from(on_a_slope(0, 0, contact, "force_tolerance: 1e-6"));
+    for (Positions& start : s.scene->starts) start.col(2).setConstant(0.95e-3);
+    run_method(s);
+    REQUIRE(s.levels.back().outcome == Outcome::converged);
+    REQUIRE(s.levels.back().smallest_gap);
+    CHECK(*s.levels.back().smallest_gap == Approx(expected).epsilon(1e-4));
+    CHECK(s.x().col(2).maxCoeff() == Approx(expected).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("Without friction cloth slides down a plane of any triangles at 0.05 degrees") {
+  const Scratch folder;
+  double exact = 0;
+  for (const auto& [name, contact] : floors(folder)) {
+    INFO(name);
+    const Solved s =
+        solve_yaml(on_a_slope(0.05 * M_PI / 180, 0, contact,
+                              "force_tolerance: 1e-4, max_steps: 40, step_growth: 1, step_size: 0.2"));
+    CHECK(s.levels.back().outcome == Outcome::out_of_steps);
+    const Positions moved = s.x() - s.scene->starts.back();
+    if (exact == 0) exact = moved.col(0).mean();
+    CHECK(exact > 5e-3);
+    CHECK(moved.col(0).minCoeff() == Approx(exact).epsilon(0.01));
+    CHECK(moved.col(0).maxCoeff() == Approx(exact).epsilon(0.01));
+  }
+}
+
+TEST_CASE("On a plane of any triangles friction holds to within 0.5 % of its coefficient") {
+  constexpr double slip = 1e-4, mu = 0.4;  // the default slip distance
+  const Scratch folder;
+  for (const auto& [name, contact] : floors(folder)) {
+    INFO(name);
+    const Solved stuck =
+        solve_yaml(on_a_slope(std::atan(0.995 * mu), mu, contact, "force_tolerance: 1e-4, max_steps: 500"));
+    CHECK(stuck.levels.back().outcome == Outcome::converged);
+    CHECK((stuck.x() - stuck.scene->starts.back()).col(0).maxCoeff() < 2 * slip);
+    const Solved slid =
+        solve_yaml(on_a_slope(std::atan(1.005 * mu), mu, contact,
+                              "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: 0.1"));
+    CHECK(slid.levels.back().outcome == Outcome::out_of_steps);
+    CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * slip);
+  }
+}
