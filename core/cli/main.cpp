@@ -121,6 +121,12 @@ int report(const std::vector<std::filesystem::path>& folders, std::filesystem::p
   return 0;
 }
 
+nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
+  nlohmann::ordered_json schema = json_schema(schema_of<ExperimentParameters>("experiment"), &registry);
+  schema["properties"]["methods"].update(named_plugins_schema("solver", registry));
+  return schema;
+}
+
 void require_command(const CLI::App& app, const std::string& word) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -232,11 +238,10 @@ int main_checked(int argc, char** argv) {
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);
   if (*schema_command) {
-    std::cout << (schema_kind == "sweep"
-                      ? sweep_json_schema()
-                      : json_schema(schema_of<ExperimentParameters>("experiment"), &registry))
-                     .dump(2)
-              << "\n";
+    if (schema_kind == "sweep")
+      std::cout << sweep_json_schema().dump(2) << "\n";
+    else
+      std::cout << experiment_json_schema(registry).dump(2) << "\n";
     return 0;
   }
   if (*reference_command)

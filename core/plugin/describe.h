@@ -27,4 +27,8 @@ nlohmann::ordered_json json_value(const ConfigNode& node);
 /// allow the names and parameters of those in it; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
 
+/// For editors: a map of names to plugins of a kind, as an experiment's methods are; without a `type` the
+/// name is the plugin's.
+nlohmann::ordered_json named_plugins_schema(const std::string& kind, const Registry& registry);
+
 }  // namespace drape

@@ -101,4 +101,12 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   return json;
 }
 
+Json named_plugins_schema(const std::string& kind, const Registry& registry) {
+  Json one = plugin_schema(kind, registry);
+  for (Json& alternative : one["anyOf"])
+    if (alternative.contains("required")) alternative["required"].erase(0);  // the type, which comes first
+  one["anyOf"].push_back({{"type", "null"}});
+  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", one}};
+}
+
 }  // namespace drape

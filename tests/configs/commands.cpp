@@ -104,6 +104,15 @@ TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and 
   std::set<std::string> registered;
   for (const drape::RegistryEntry* entry : test_registry().of_kind("energy")) registered.insert(entry->name);
   CHECK((energies == registered));
+  std::set<std::string> solvers;
+  for (const auto& choice : properties["methods"]["additionalProperties"]["anyOf"])
+    if (choice.contains("properties")) {
+      const std::string name = choice["properties"]["type"]["enum"][0];
+      solvers.insert(name);
+      CHECK(choice["properties"].contains("newton"));
+      CHECK(choice["required"].empty());  // a method's name is its solver's where it has no type
+    }
+  CHECK((solvers == std::set<std::string>{"cascadic", "newton", "pcs"}));
 }
 
 TEST_CASE("schema sweep and describe sweep say what a sweep file takes, variations and grids included") {
