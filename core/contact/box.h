@@ -38,11 +38,14 @@ struct Box {
   /// Around the points a and b and everything within `margin` of the segment between them.
   static Box around(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double margin) {
     constexpr double rounding = 1.2e-7;  // above the 2^-23 of the conversion
+    // A float holds no more. A quarter, so that differences are finite too; what lies beyond is cut off alike
+    // in every box, so that boxes that overlap still do.
+    constexpr double most = std::numeric_limits<float>::max() / 4;
     Box box;
     for (int k = 0; k < 3; ++k) {
       const double low = std::min(a[k], b[k]) - margin, high = std::max(a[k], b[k]) + margin;
-      box.lower[k] = static_cast<float>(low - rounding * std::abs(low));
-      box.upper[k] = static_cast<float>(high + rounding * std::abs(high));
+      box.lower[k] = static_cast<float>(std::clamp(low - rounding * std::abs(low), -most, most));
+      box.upper[k] = static_cast<float>(std::clamp(high + rounding * std::abs(high), -most, most));
     }
     return box;
   }

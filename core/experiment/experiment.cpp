@@ -7,6 +7,7 @@
 
 #include "core/experiment/schedule.h"
 #include "core/experiment/yaml_file.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/make.h"
 
 namespace drape {
@@ -14,6 +15,8 @@ namespace drape {
 void LoopParameters::declare(Declaration<LoopParameters>& d) {
   d.add("points", &LoopParameters::points)
       .unit("m")
+      .at_least(-bounds::largest_length)
+      .at_most(bounds::largest_length)
       .meaning("x0, y0, x1, y1, … around the outline")
       .required();
 }
@@ -22,9 +25,21 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape)
       .choices({"square", "rectangle", "disc", "polygon", "file"})
       .meaning("pattern, flat in z = 0 with a corner (a disc: its centre) at the origin, or a mesh file");
-  d.add("side", &ClothParameters::side).unit("m").above(0).meaning("side of a square");
-  d.add("size", &ClothParameters::size).unit("m").above(0).meaning("width and height of a rectangle");
-  d.add("radius", &ClothParameters::radius).unit("m").above(0).meaning("radius of a disc");
+  d.add("side", &ClothParameters::side)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .meaning("side of a square");
+  d.add("size", &ClothParameters::size)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .meaning("width and height of a rectangle");
+  d.add("radius", &ClothParameters::radius)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .meaning("radius of a disc");
   d.add_sections("loops", &ClothParameters::loops).meaning("a polygon's outline, then its holes");
   d.add("file", &ClothParameters::file)
       .path()
@@ -34,15 +49,20 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
       .at_least(3)
-      .at_most(1e7)
+      .at_most(bounds::most_vertices)
       .meaning("about how many vertices the coarsest level has");
   d.add("columns", &ClothParameters::columns)
       .at_least(0)
+      .at_most(bounds::most_vertices)
       .meaning("vertices along the width of a grid; 0 takes it from `vertices`");
   d.add("rows", &ClothParameters::rows)
       .at_least(0)
+      .at_most(bounds::most_vertices)
       .meaning("vertices along the height of a grid; 0 takes it from `vertices`");
-  d.add("seed", &ClothParameters::seed).at_least(0).meaning("of a random triangulation");
+  d.add("seed", &ClothParameters::seed)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .meaning("of a random triangulation");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
@@ -51,18 +71,31 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .meaning(
           "a mesh with the coarsest level's triangles, in place of the rest shape; split at midpoints on "
           "finer levels");
-  d.add("scale", &StartParameters::scale).meaning("factors on the rest shape's x, y, z");
-  d.add("rotate", &StartParameters::rotate).unit("°").meaning("then turned about x, y, z, in this order");
-  d.add("translate", &StartParameters::translate).unit("m").meaning("then moved");
+  d.add("scale", &StartParameters::scale)
+      .at_least(-bounds::largest_scale)
+      .at_most(bounds::largest_scale)
+      .meaning("factors on the rest shape's x, y, z");
+  d.add("rotate", &StartParameters::rotate)
+      .unit("°")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .meaning("then turned about x, y, z, in this order");
+  d.add("translate", &StartParameters::translate)
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("then moved");
   d.add("perturbation", &StartParameters::perturbation)
       .unit("m")
       .at_least(0)
+      .at_most(bounds::largest_length)
       .meaning("amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
       .unit("m")
-      .above(0)
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
       .meaning("wavelength of the noise");
-  d.add("seed", &StartParameters::seed).at_least(0).meaning("of the noise");
+  d.add("seed", &StartParameters::seed).at_least(0).at_most(bounds::largest_int).meaning("of the noise");
 }
 
 namespace {
@@ -78,18 +111,45 @@ void declare_place(Declaration<Place>& d) {
       .meaning(
           "which vertices: the one of the coarsest level nearest to `point`, those within `radius` of it, "
           "those in a box, the border, or by index on the coarsest level");
-  d.add("point", member(&PlaceParameters::point)).unit("m").meaning("of nearest and ball, in the rest shape");
-  d.add("radius", member(&PlaceParameters::radius)).unit("m").at_least(0).meaning("of a ball");
-  d.add("lower", member(&PlaceParameters::lower)).unit("m").meaning("corner of a box, in the rest shape");
-  d.add("upper", member(&PlaceParameters::upper)).unit("m").meaning("opposite corner of a box");
-  d.add("vertices", member(&PlaceParameters::vertices)).meaning("indices, from 0");
+  d.add("point", member(&PlaceParameters::point))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("of nearest and ball, in the rest shape");
+  d.add("radius", member(&PlaceParameters::radius))
+      .unit("m")
+      .at_least(0)
+      .at_most(bounds::largest_coordinate)
+      .meaning("of a ball");
+  d.add("lower", member(&PlaceParameters::lower))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("corner of a box, in the rest shape");
+  d.add("upper", member(&PlaceParameters::upper))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("opposite corner of a box");
+  d.add("vertices", member(&PlaceParameters::vertices))
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .meaning("indices, from 0");
   d.add("move", member(&PlaceParameters::move))
       .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
       .meaning("to the rest place, after `turn`, moved by this; without both, to where the start puts them");
   d.add("turn", member(&PlaceParameters::turn))
       .unit("°")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
       .meaning("to the rest place turned about x, y, z, in this order, through `about`");
-  d.add("about", member(&PlaceParameters::about)).unit("m").meaning("centre of `turn`, in the rest shape");
+  d.add("about", member(&PlaceParameters::about))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("centre of `turn`, in the rest shape");
 }
 
 }  // namespace
@@ -101,6 +161,7 @@ void HandleParameters::declare(Declaration<HandleParameters>& d) {
   d.add("stiffness", &HandleParameters::stiffness)
       .unit("1/s²")
       .at_least(0)
+      .at_most(bounds::largest_modulus)
       .meaning("κ_B of the pull κ_B/2 m ‖x − x̃‖²; by default the number of the membrane modulus")
       .source("supplement, section 4");
 }
@@ -109,6 +170,7 @@ void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
   d.add("method", &ReferenceParameters::method).meaning("method whose finest state it is");
   d.add("force_tolerance", &ReferenceParameters::force_tolerance)
       .at_least(0)
+      .at_most(1e12)
       .meaning("to which that state is solved further, once all methods have ended; 0 leaves it as it is");
   d.add("file", &ReferenceParameters::file)
       .path()

@@ -97,7 +97,7 @@ void KeyParameters::declare(Declaration<KeyParameters>& d) {
       .meaning(
           "path of the parameter, as for --set: in material, energies, contact, pins or handles; a plugin "
           "of a list by its place or its name, as in energies.gravity.acceleration");
-  d.add("at", &KeyParameters::at).required().meaning("pseudo-times, rising");
+  d.add("at", &KeyParameters::at).at_least(-1e9).at_most(1e9).required().meaning("pseudo-times, rising");
   d.add_node("to", &KeyParameters::to)
       .required()
       .meaning("a list of as many values, numbers or lists of them");
@@ -109,9 +109,11 @@ void KeyParameters::declare(Declaration<KeyParameters>& d) {
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("duration", &ScheduleParameters::duration)
       .at_least(0)
+      .at_most(1e9)
       .meaning("pseudo-time in all, in the unit of the keys; 0 goes to the last of them");
   d.add("steps", &ScheduleParameters::steps)
       .at_least(1)
+      .at_most(1e6)
       .meaning("changes of the conditions in that time, evenly spaced")
       .source("supplement, section 4");
   d.add("settle", &ScheduleParameters::settle)

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "core/mesh/extent.h"
 #include "core/mesh/half_edges.h"
 
 namespace drape {
@@ -16,6 +18,12 @@ namespace {
 using Faults = std::vector<std::string>;
 
 std::string text(int number) { return std::to_string(number); }
+
+std::string brief(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", number);
+  return text;
+}
 
 std::string triangle_name(const Triangles& triangles, int t) {
   return "triangle " + text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
@@ -51,11 +59,8 @@ bool check_indices(const TriangleMesh& mesh, Faults& faults) {
                        ", but vertices go from 0 to " + text(n - 1));
       in_range = false;
     }
-  for (int v = 0; v < n; ++v) {
-    if (!mesh.vertices.row(v).allFinite())
-      faults.push_back("vertex " + text(v) + " has a coordinate that is not finite");
+  for (int v = 0; v < n; ++v)
     if (!used[v]) faults.push_back("vertex " + text(v) + " belongs to no triangle");
-  }
   return in_range;
 }
 
@@ -159,11 +164,32 @@ void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
 
 }  // namespace
 
+std::vector<std::string> check_coordinates(const Positions& x) {
+  Faults faults;
+  for (int v = 0; v < x.rows(); ++v) {
+    const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
+    if (!std::isfinite(largest))
+      faults.push_back("vertex " + text(v) + " has a coordinate that is not finite");
+    else if (largest > largest_coordinate)
+      faults.push_back("vertex " + text(v) + " has a coordinate of " + brief(largest) + " m; at most " +
+                       brief(largest_coordinate) + " m can be computed with");
+  }
+  if (x.rows() == 0 || !faults.empty()) return faults;
+  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  if (diagonal < smallest_diagonal)
+    faults.push_back("the mesh is " + brief(diagonal) + " m across; at least " + brief(smallest_diagonal) +
+                     " m can be computed with");
+  return faults;
+}
+
 std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   Faults faults;
   if (mesh.vertices.rows() == 0) faults.push_back("the mesh has no vertices");
   if (mesh.triangles.rows() == 0) faults.push_back("the mesh has no triangles");
-  if (!check_indices(mesh, faults) || mesh.triangles.rows() == 0) return faults;
+  const bool in_range = check_indices(mesh, faults);
+  const Faults coordinates = check_coordinates(mesh.vertices);
+  faults.insert(faults.end(), coordinates.begin(), coordinates.end());
+  if (!in_range || mesh.triangles.rows() == 0) return faults;
   check_shapes(mesh, faults);
   check_duplicates(mesh.triangles, faults);
   check_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), faults);

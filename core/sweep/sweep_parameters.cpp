@@ -1,3 +1,4 @@
+#include "core/plugin/bounds.h"
 #include "core/plugin/describe.h"
 #include "core/sweep/sweep.h"
 
@@ -39,6 +40,7 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .meaning("a map: a path of keys in the experiment, then its value, for every variation");
   d.add("seeds", &SweepParameters::seeds)
       .at_least(0)
+      .at_most(bounds::largest_int)
       .meaning(
           "every variation is run with each of these as start.seed; the experiment's alone if not given");
   d.add("repeats", &SweepParameters::repeats)
@@ -47,10 +49,11 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .meaning("short for the seeds 1, 2, … up to this");
   d.add("methods", &SweepParameters::methods)
       .meaning("which of the experiment's methods to run; all if not given");
-  d.add("threads", &SweepParameters::threads).at_least(1).meaning("of each run");
+  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).meaning("of each run");
   d.add("time_limit", &SweepParameters::time_limit)
       .unit("s")
       .above(0)
+      .at_most(1e9)
       .meaning("a run that takes longer is ended, and has failed; none if not given");
   d.add_node("ablation", &SweepParameters::ablation)
       .meaning(

@@ -92,7 +92,8 @@ TEST_CASE("values out of range or of the wrong type") {
         "error: e.yaml:3:9: \"levels\" must be an integer, not \"two\"\n");
   CHECK(said_of_edit("levels: 2", "levels: [2]") ==
         "error: e.yaml:3:9: \"levels\" must be an integer, not a list\n");
-  CHECK(said_of_edit("side: 1,", "side: 0,") == "error: e.yaml:2:30: \"side\" must be above 0 m, not 0\n");
+  CHECK(said_of_edit("side: 1,", "side: 0,") ==
+        "error: e.yaml:2:30: \"side\" must be at least 1.0e-06 m, not 0\n");
   CHECK(said_of_edit("side: 1,", "side: .nan,") ==
         "error: e.yaml:2:30: \"side\" must be a finite number, not \".nan\"\n");
   CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9]") ==
@@ -181,11 +182,11 @@ TEST_CASE("pins that hold nothing, or what is not there") {
   CHECK(said_of_edit(corner, "{region: vertices}") ==
         "error: e.yaml:7:5: pin 1 (vertices) holds no vertex of the coarsest level; list some under "
         "\"vertices\"\n");
-  CHECK(
-      said_of_edit(corner, "{region: vertices, vertices: [0, 36, -1]}") ==
-      "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to 35\n"
-      "error: e.yaml:7:5: pin 1 (vertices) names vertex -1, but those of the coarsest level go from 0 to "
-      "35\n");
+  CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, 36]}") ==
+        "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to "
+        "35\n");
+  CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, -1]}") ==
+        "error: e.yaml:7:37: item 2 of \"vertices\" must be at least 0, not -1\n");
 }
 
 TEST_CASE("every fault of a config is named at once, in the order of the file, then what was --set") {

@@ -86,6 +86,25 @@ TEST_CASE("broad phase: a box surrounds its points in spite of rounding") {
   CHECK(!Box().overlaps(Box::around({-1, -1, -1}, {1, 1, 1}, 0)));
 }
 
+TEST_CASE("broad phase: boxes beyond what floats hold are cut off, and still overlap") {
+  const Vector p(0.25, 0.5, 0.75);
+  std::vector<Box> boxes;
+  for (int i = 0; i < 100; ++i) boxes.push_back(Box::around(i * p, (i + 1) * p, i % 2 ? 1e39 : 1e300));
+  boxes.push_back(Box::around(1e200 * p, 2e200 * p, 0));
+  boxes.push_back(Box::around(p, -1e60 * p, 1e-3));
+  for (const Box& box : boxes) {
+    for (int k = 0; k < 3; ++k) CHECK(std::isfinite(box.upper[k] - box.lower[k]));
+    CHECK(std::isfinite(box.half_area()));
+  }
+  const AdjacencyList expected = brute_force(boxes, boxes, true);
+  CHECK(expected.items.size() == 102 * 101 / 2 - 1);  // all but the last two
+  for (const BroadPhaseKind kind : kinds) {
+    const auto phase = make_broad_phase(kind);
+    phase->update(boxes);
+    check_same(pairs_of(*phase), expected);
+  }
+}
+
 TEST_CASE("broad phase: every kind finds the pairs that there are") {
   for (const int count : {0, 1, 2, 8, 9, 63, 65, 700, 1500})
     for (const double size : {0.0, 0.1, 0.8}) {

@@ -55,6 +55,17 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
     CHECK(check_mesh(mesh) == Faults{"vertex 1 has a coordinate that is not finite",
                                      "vertex 3 has a coordinate that is not finite"});
   }
+  SECTION("coordinates too large, or a mesh too small, to be computed with") {
+    mesh.vertices(1, 2) = -1e30;
+    CHECK(check_mesh(mesh) ==
+          Faults{"vertex 1 has a coordinate of 1e+30 m; at most 1e+09 m can be computed with"});
+    mesh.vertices = strip().vertices * 1e-30;
+    CHECK(check_mesh(mesh) == Faults{"the mesh is 1.41e-30 m across; at least 1e-09 m can be computed with"});
+    mesh.vertices = strip().vertices * 1e8;
+    CHECK(check_mesh(mesh).empty());
+    mesh.vertices = strip().vertices * 1e-8;
+    CHECK(check_mesh(mesh).empty());
+  }
   SECTION("vertex without triangle") {
     append_vertex(mesh, 5, 5, 5);
     CHECK(check_mesh(mesh) == Faults{"vertex 4 belongs to no triangle"});

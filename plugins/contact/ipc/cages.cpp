@@ -5,6 +5,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -24,7 +25,22 @@ Point point(const TriangleMesh& mesh, int v) {
   return {mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
 }
 
+/// The wrap cuts a mesh into pieces of about alpha before anything else. Refused where there were more than
+/// memory is for, whatever alpha's bounds: a folded mesh has many times the area of its box.
+void refuse_too_many_pieces(const TriangleMesh& mesh, double alpha) {
+  constexpr double most_pieces = 2e7;
+  double area = 0;
+  for (const auto& t : mesh.triangles.rowwise()) {
+    const Eigen::RowVector3d a = mesh.vertices.row(t[0]);
+    area += 0.5 * (mesh.vertices.row(t[1]) - a).cross(mesh.vertices.row(t[2]) - a).norm();
+  }
+  if (area / (alpha * alpha) > most_pieces)
+    throw std::runtime_error(
+        "a cage would take more than 20 million pieces of its mesh; raise the cages' alpha");
+}
+
 SoundMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
+  refuse_too_many_pieces(mesh, alpha);
   std::vector<Point> points;
   std::vector<std::array<std::size_t, 3>> faces;
   for (int v = 0; v < mesh.vertices.rows(); ++v) points.push_back(point(mesh, v));
@@ -107,7 +123,7 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .meaning("how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
   d.add("alpha", &P::alpha)
       .unit("1")
-      .above(0)
+      .at_least(1e-3)
       .below(1)
       .meaning(
           "of the innermost cage, in diagonals of the mesh's box: smaller holes are closed, and triangles "
@@ -115,13 +131,14 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .source("Portaneri et al. 2022");
   d.add("offset", &P::offset)
       .unit("1")
-      .above(0)
+      .at_least(1e-4)
       .below(1)
       .meaning("likewise, how far it is from the mesh")
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth)
       .unit("1")
       .at_least(1)
+      .at_most(10)
       .meaning("alpha and offset of a cage over those of the next finer one");
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/plugin/bounds.h"
 #include "core/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/kept.h"
@@ -15,26 +16,30 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
+      .at_most(bounds::largest_friction)
       .meaning("Coulomb's μ, of the cloth against itself and against obstacles without their own");
   d.add("range", &P::range)
       .unit("m")
-      .above(0)
+      .at_least(bounds::smallest_length)
+      .at_most(1e3)
       .meaning("distance d̂ below which the barrier acts")
       .source("docs/method.md, section 6");
   d.add("stiffness", &P::stiffness)
       .unit("Pa")
-      .above(0)
+      .at_least(1e-9)
+      .at_most(bounds::largest_modulus)
       .meaning("κ: pressure of the barrier is κ |b'(distance / d̂)|; null chooses it from the cloth's weight")
       .source("core/contact/stiffness.h");
   d.add("slip_distance", &P::slip_distance)
       .unit("m")
-      .above(0)
+      .at_least(1e-12)
+      .at_most(1e3)
       .meaning("a contact that has slid less than this sticks: friction is smoothed below")
       .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &P::keep)
       .unit("1")
-      .above(0)
-      .below(1)
+      .at_least(1e-6)
+      .at_most(0.99)
       .meaning("part of every gap that a step leaves")
       .source("Li et al. 2021, additive CCD");
   d.add_choice("broad_phase", &P::broad_phase,

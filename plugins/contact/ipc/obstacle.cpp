@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/mesh/turn.h"
+#include "core/plugin/bounds.h"
 
 namespace drape {
 namespace {
@@ -71,8 +72,16 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
           "what it is: a mesh from a file, a box about the origin, or a sphere about it whose vertices lie "
           "on the sphere");
   d.add("file", &P::file).path().meaning("shape file: the mesh (.obj, .off or .ply), relative to this file");
-  d.add("size", &P::size).unit("m").above(0).meaning("shape box: its edges");
-  d.add("radius", &P::radius).unit("m").above(0).meaning("shape sphere: its radius");
+  d.add("size", &P::size)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
+      .meaning("shape box: its edges");
+  d.add("radius", &P::radius)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
+      .meaning("shape sphere: its radius");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
@@ -84,17 +93,29 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   d.add("frame", &P::frame)
       .unit("1")
       .at_least(0)
+      .at_most(1e6)
       .meaning("which mesh of the animation it is, from 0 and linear in between; for a schedule to change");
   d.add_section("cages", &P::cages)
       .meaning("closed surfaces around it that coarse levels of the cloth meet in its place");
-  d.add("scale", &P::scale).unit("1").above(0).meaning("factor on its coordinates, the first of its moves");
+  d.add("scale", &P::scale)
+      .unit("1")
+      .at_least(1 / bounds::largest_scale)
+      .at_most(bounds::largest_scale)
+      .meaning("factor on its coordinates, the first of its moves");
   d.add("rotate", &P::rotate)
       .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
       .meaning("then turned about the x, then the y, then the z axis by these angles");
-  d.add("translate", &P::translate).unit("m").meaning("then moved by this");
+  d.add("translate", &P::translate)
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .meaning("then moved by this");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
+      .at_most(bounds::largest_friction)
       .meaning("its μ against the cloth, in place of the model's");
 }
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/contact/stiffness.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/plugin.h"
 #include "plugins/contact/shapes/bound_shapes.h"
 
@@ -16,6 +17,10 @@ const std::vector<std::pair<std::string, SolidKind>> words = {{"sphere", SolidKi
                                                               {"cylinder", SolidKind::cylinder},
                                                               {"half_space", SolidKind::half_space}};
 
+/// A cylinder's features are those of a prism, whose sides become more the smaller the range is: here 700
+/// 000.
+constexpr double most_radius_by_range = 5e6;
+
 Solid solid_of(const ShapeParameters& p, int index, double friction) {
   Solid s;
   s.kind = p.shape;
@@ -25,7 +30,9 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
   s.plane = p.normal;
   s.friction = p.friction.value_or(friction);
   if (p.shape == SolidKind::half_space) {
-    if (!(p.normal.norm() > 0)) throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
+    // Its square would underflow.
+    if (!(p.normal.norm() > 1e-100))
+      throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
   } else if (p.shape == SolidKind::box) {
     s.half = p.size / 2;
   } else {
@@ -54,28 +61,42 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
       .source("this project");
   d.add("centre", &ShapeParameters::centre)
       .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
       .meaning("its middle; of a half_space any point of the plane")
       .source("this project");
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
-      .above(0)
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
       .meaning("of a sphere, capsule or cylinder")
       .source("this project");
-  d.add("size", &ShapeParameters::size).unit("m").above(0).meaning("edges of a box").source("this project");
+  d.add("size", &ShapeParameters::size)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
+      .meaning("edges of a box")
+      .source("this project");
   d.add("height", &ShapeParameters::height)
       .unit("m")
-      .above(0)
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
       .meaning("along the z axis before it is turned: of a cylinder, or of a capsule without its round ends")
       .source("this project");
   d.add("rotate", &ShapeParameters::rotate)
       .unit("degrees")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
       .meaning("about the x axis, then y, then z")
       .source("this project");
   d.add("normal", &ShapeParameters::normal)
+      .at_least(-1e6)
+      .at_most(1e6)
       .meaning("of a half_space, towards the cloth; any length")
       .source("this project");
   d.add("friction", &ShapeParameters::friction)
       .at_least(0)
+      .at_most(bounds::largest_friction)
       .meaning("coefficient μ; null: that of all shapes")
       .source("Li et al. 2020, section 5");
 }
@@ -85,34 +106,43 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
   d.add("friction", &Parameters::friction)
       .unit("1")
       .at_least(0)
+      .at_most(bounds::largest_friction)
       .meaning("coefficient μ of Coulomb friction")
       .source("Li et al. 2020, section 5");
   d.add("range", &Parameters::range)
       .unit("m")
-      .above(0)
+      .at_least(bounds::smallest_length)
+      .at_most(1e3)
       .meaning("d̂, the distance below which the barrier acts")
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Parameters::stiffness)
       .unit("Pa")
-      .above(0)
+      .at_least(1e-9)
+      .at_most(bounds::largest_modulus)
       .meaning("κ, the barrier's; null: ten times the cloth's weight a unit of area")
       .source("this project");
   d.add("slip_distance", &Parameters::slip_distance)
       .unit("m")
-      .above(0)
+      .at_least(1e-12)
+      .at_most(1e3)
       .meaning("a contact that has slid less than this sticks: friction is smoothed below")
       .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &Parameters::keep)
       .unit("1")
-      .above(0)
-      .below(1)
+      .at_least(1e-6)
+      .at_most(0.99)
       .meaning("part of every gap that a step leaves")
       .source("Li et al. 2021, additive CCD");
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
-  for (const ShapeParameters& shape : p_.shapes)
+  for (const ShapeParameters& shape : p_.shapes) {
     solids_.push_back(solid_of(shape, static_cast<int>(solids_.size()), p_.friction));
+    const Solid& solid = solids_.back();
+    if (solid.kind == SolidKind::cylinder && solid.radius > most_radius_by_range * p_.range)
+      throw std::runtime_error(solid.name +
+                               " has a radius of more than 5e6 times \"range\"; raise \"range\"");
+  }
 }
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/model/energy.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/parameters.h"
 
 namespace drape {
@@ -17,10 +18,18 @@ class ConstantLoad final : public Energy {
     static void declare(Declaration<PointForce>& d) {
       d.add("point", &PointForce::point)
           .unit("m")
+          .at_least(-bounds::largest_coordinate)
+          .at_most(bounds::largest_coordinate)
           .required()
           .meaning("place in the rest shape; the nearest vertex takes the force")
           .source("this project");
-      d.add("force", &PointForce::force).unit("N").required().meaning("total force").source("this project");
+      d.add("force", &PointForce::force)
+          .unit("N")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
+          .required()
+          .meaning("total force")
+          .source("this project");
     }
   };
 
@@ -30,6 +39,8 @@ class ConstantLoad final : public Energy {
     static void declare(Declaration<Parameters>& d) {
       d.add("force_density", &Parameters::force_density)
           .unit("N/m²")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
           .meaning("force a unit of rest area, everywhere")
           .source("this project");
       d.add_sections("points", &Parameters::points)

@@ -13,6 +13,8 @@ class Gravity final : public Energy {
     static void declare(Declaration<Parameters>& d) {
       d.add("acceleration", &Parameters::acceleration)
           .unit("m/s²")
+          .at_least(-1e7)
+          .at_most(1e7)
           .meaning("acceleration of free fall")
           .source("standard gravity, rounded; z is up");
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/energy.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/parameters.h"
 
 namespace drape {
@@ -15,11 +16,15 @@ class Pressure final : public Energy {
     static void declare(Declaration<Parameters>& d) {
       d.add("pressure", &Parameters::pressure)
           .unit("Pa")
+          .at_least(-bounds::largest_load)
+          .at_most(bounds::largest_load)
           .required()
           .meaning("on the back of every triangle, so that it pushes along the normal; negative for suction")
           .source("this project");
       d.add("centre", &Parameters::centre)
           .unit("m")
+          .at_least(-bounds::largest_coordinate)
+          .at_most(bounds::largest_coordinate)
           .meaning(
               "where the cone that closes an open cloth ends; of no effect where the border is pinned, "
               "nor on a closed mesh")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/model/energy.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/parameters.h"
 
 namespace drape {
@@ -15,12 +16,14 @@ class StrainLimit final : public Energy {
     static void declare(Declaration<Parameters>& d) {
       d.add("limit", &Parameters::limit)
           .unit("1")
-          .above(1)
+          .at_least(1.0001)
+          .at_most(100)
           .meaning("largest principal stretch s of every triangle, never reached")
           .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
       d.add("stiffness", &Parameters::stiffness)
           .unit("Pa")
-          .above(0)
+          .at_least(1e-9)
+          .at_most(bounds::largest_modulus)
           .meaning("κ_s, energy per volume that the barrier is scaled by")
           .source("Li et al. 2021, section 5");
     }

@@ -3,6 +3,7 @@
 #include "core/model/level_model.h"
 #include "core/model/metric.h"
 #include "core/numerics/block_cholesky.h"
+#include "core/plugin/bounds.h"
 #include "core/plugin/plugin.h"
 
 namespace drape {
@@ -15,7 +16,8 @@ class Residuals : public Metric {
     static void declare(Declaration<Parameters>& d) {
       d.add("step_size", &Parameters::step_size)
           .unit("s")
-          .above(0)
+          .at_least(bounds::smallest_time_step)
+          .at_most(bounds::largest_time_step)
           .meaning("h of the implicit step whose Newton direction the decrement measures")
           .source("Li et al. 2021 (C-IPC)");
     }

@@ -49,8 +49,13 @@ class SpringToPlane : public drape::Energy {
       d.add("stiffness", &Parameters::stiffness)
           .unit("1/s²")
           .above(0)
+          .at_most(1e9)
           .meaning("k: spring constant of a unit of mass");
-      d.add("height", &Parameters::height).unit("m").meaning("z0: height of the plane");
+      d.add("height", &Parameters::height)
+          .unit("m")
+          .at_least(-1e3)
+          .at_most(1e3)
+          .meaning("z0: height of the plane");
     }
   };
 
