@@ -514,7 +514,8 @@ class Newton {
     return added_mass_ < most_added_mass;
   }
 
-  double first_added_mass() const { return 1e-3 / (p_.step_size * p_.step_size); }
+  /// Never 0, whatever the step size: multiplying it must lead on.
+  double first_added_mass() const { return std::max(1e-3 / (p_.step_size * p_.step_size), 1e-30); }
 
   /// What kept the last step short, for messages.
   std::string held() const { return limit_.by.empty() ? "" : "; the step is held by " + limit_.by; }

@@ -54,7 +54,7 @@ class RingSearch {
     found_.assign(1, centre);
     marks_[centre] = centre;
     std::size_t next = 0;
-    for (int ring = 0; ring < rings; ++ring)
+    for (int ring = 0; ring < rings && next < found_.size(); ++ring)
       for (const std::size_t last = found_.size(); next < last; ++next) {
         const int from = found_[next];
         for (const int* j = neighbours_.begin(from); j != neighbours_.end(from); ++j) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -463,6 +464,13 @@ TEST_CASE("fields and weights belong to the right state", "[curvature_consistenc
   CHECK((result.fields[1].values - strongest_curvature(f)).cwiseAbs().maxCoeff() == 0);
   CHECK((result.fields[2].values - 2 * strongest_curvature(f)).cwiseAbs().maxCoeff() < 1e-9);
   CHECK(value(result, "d_H_fit") == Approx(level.vertex_area.dot(f.mean.cwiseAbs2())));
+}
+
+TEST_CASE("rings end with the mesh, however many are asked for", "[curvature_consistency]") {
+  const Surface s = torus(12);
+  const VertexCurvatures all = fit(s, 100), more = fit(s, std::numeric_limits<int>::max());
+  CHECK((all.mean - more.mean).cwiseAbs().maxCoeff() == 0);
+  CHECK((all.mean - fit(s, 2).mean).cwiseAbs().maxCoeff() > 0);
 }
 
 TEST_CASE("consistency needs two states of the level", "[curvature_consistency]") {
