@@ -30,7 +30,12 @@ std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positi
   const auto tree = make_broad_phase(BroadPhaseKind::bvh);
   tree->update(boxes.triangles);
   AdjacencyList rows;
-  tree->overlaps(unlimited, rows);
+  // Of triangles: some ten times what a cloth of 200K vertices has with a range of its edges' length.
+  constexpr long most_pairs = 50'000'000;
+  if (!tree->overlaps(most_pairs, rows))
+    throw std::runtime_error(
+        "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
+        "within \"range\" of each other; lower it to about the length of an edge");
   FoundPairs found;
   find_self_pairs(cloth, boxes, rows, {rest, rest, range, none, none}, 0, unlimited, found);
   std::vector<std::array<int, 4>> close;

@@ -1,0 +1,18 @@
+#include <catch2/catch.hpp>
+
+#include "core/mesh/generate.h"
+#include "plugins/contact/ipc/ipc.h"
+
+using namespace drape;
+
+TEST_CASE("ipc: a range across the whole cloth is refused before its pairs take all memory") {
+  const Level level = Level::of(0, grid({1, 1}, 80, 80, Diagonals::one_way));
+  Ipc::Parameters p;
+  p.self_contact = true;
+  p.range = 2 / 79.0;  // two edges
+  CHECK_NOTHROW(Ipc(p).bind(level, Material()));
+  p.range = 1000;
+  CHECK_THROWS_WITH(Ipc(p).bind(level, Material()),
+                    Catch::Contains("more than 50 million pairs of the resting cloth's triangles are within "
+                                    "\"range\" of each other"));
+}
