@@ -92,6 +92,10 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
   if (!std::filesystem::exists(folder.file("results.json")))
     throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
   folder.lock();
+  // A pipe in their place would hold up the run that goes on writing them.
+  for (const char* name : {"steps.csv", "log.jsonl"})
+    if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
+      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment anew");
   return folder;
 }
 

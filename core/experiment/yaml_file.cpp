@@ -2,9 +2,11 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
+#include <algorithm>
 #include <sstream>
 
+#include "core/mesh/file.h"
+#include "core/mesh/message_text.h"
 #include "core/plugin/parameters.h"
 
 namespace drape {
@@ -46,7 +48,14 @@ class Converter {
     node.scalar = yaml.Scalar();
     node.quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
     if (!node.quoted && !tag.empty() && tag != "?")
-      errors_.push_back({node.where, "tag \"" + tag + "\" is not supported; take it out"});
+      errors_.push_back({node.where, "tag \"" + excerpt(tag) + "\" is not supported; take it out"});
+    refuse_nul(node.scalar, node.where);
+  }
+
+  /// Names of files end at a NUL for the system, but not for us.
+  void refuse_nul(const std::string& text, const Location& where) {
+    if (text.find('\0') != std::string::npos)
+      errors_.push_back({where, "\"" + excerpt(text) + "\" has a NUL character; take it out"});
   }
 
   void convert_list(const YAML::Node& yaml, ConfigNode& node) {
@@ -66,6 +75,7 @@ class Converter {
         errors_.push_back({where, "a key must be a word"});
         continue;
       }
+      refuse_nul(entry.first.Scalar(), where);
       node.add(entry.first.Scalar(), convert(entry.second));
       node.key_places.back() = where;
       // yaml-cpp puts a missing value where the next thing stands.
@@ -82,7 +92,20 @@ class Converter {
   bool refused_ = false;
 };
 
+/// yaml-cpp ends a file at some control characters, without a word, and what is not UTF-8 cannot be written
+/// to results.json.
+bool is_text(const std::string& text, const std::string& name, ConfigErrors& errors) {
+  const std::size_t at = first_unprintable(text);
+  if (at == text.npos) return true;
+  const std::size_t line = at == 0 ? 0 : text.rfind('\n', at - 1) + 1;  // npos + 1 is 0
+  errors.push_back(
+      {{name, int(std::count(text.begin(), text.begin() + int(line), '\n')) + 1, int(at - line) + 1},
+       "has the byte " + excerpt({&text[at], 1}) + ", which is no text in UTF-8"});
+  return false;
+}
+
 ConfigNode parse_value(const std::string& text, const std::string& name, ConfigErrors& errors) {
+  if (!is_text(text, name, errors)) return {};
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
     if (documents.size() > 1)
@@ -147,17 +170,12 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 }
 
 ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
-  std::ostringstream text;
-  std::ifstream stream(file);
-  const bool directory = std::filesystem::is_directory(file);
-  if (!stream || directory || (stream.peek() != EOF && !(text << stream.rdbuf()))) {
-    const std::string why = directory                       ? "is a folder, not a file"
-                            : std::filesystem::exists(file) ? "cannot be read"
-                                                            : "no such file";
-    errors.push_back({{file.string(), 0, 0}, why});
+  try {
+    return parse_yaml(read_file(file, largest_config), file.string(), errors);
+  } catch (const FileError& fault) {
+    errors.push_back({{file.string(), 0, 0}, fault.cause});
     return {};
   }
-  return parse_yaml(text.str(), file.string(), errors);
 }
 
 bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
@@ -182,7 +200,7 @@ bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const
     node = step(*node, word, where);
     if (!node) {
       const std::string of_list = " of a list of " + std::to_string(size) + ", counted from 0";
-      errors.push_back({where, "\"" + word + "\" is " +
+      errors.push_back({where, "\"" + excerpt(word) + "\" is " +
                                    (parse_integer(word) ? "not an index" + of_list
                                                         : "neither an index" + of_list +
                                                               ", nor the type or name of an item")});

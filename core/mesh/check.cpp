@@ -15,7 +15,26 @@
 namespace drape {
 namespace {
 
-using Faults = std::vector<std::string>;
+/// The first faults, and how many more there are.
+class Faults {
+ public:
+  void push_back(std::string fault) {
+    if (listed_.size() < most_listed)
+      listed_.push_back(std::move(fault));
+    else
+      ++more_;
+  }
+  bool empty() const { return listed_.empty(); }
+  std::vector<std::string> all() && {
+    if (more_ > 0) listed_.push_back("and " + std::to_string(more_) + " more faults like these");
+    return std::move(listed_);
+  }
+
+ private:
+  static constexpr std::size_t most_listed = 20;
+  std::vector<std::string> listed_;
+  std::size_t more_ = 0;
+};
 
 std::string text(int number) { return std::to_string(number); }
 
@@ -114,8 +133,11 @@ int corner_at(int half_edge, bool end) {
 void check_edge(const Triangles& triangles, const std::vector<int>& sides, Faults& faults) {
   const HalfEdge e = HalfEdge::of(triangles, sides[0]);
   if (sides.size() > 2) {
+    constexpr std::size_t most_named = 8;
     std::string names;
-    for (int h : sides) names += (names.empty() ? " " : ", ") + text(h / 3);
+    for (std::size_t k = 0; k < std::min(sides.size(), most_named); ++k)
+      names += (names.empty() ? " " : ", ") + text(sides[k] / 3);
+    if (sides.size() > most_named) names += ", …";
     faults.push_back(edge_name(e) + " has " + text(static_cast<int>(sides.size())) + " triangles:" + names);
   } else if (sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from) {
     faults.push_back(edge_name(e) + " runs in the same direction in triangles " + text(sides[0] / 3) +
@@ -174,12 +196,12 @@ std::vector<std::string> check_coordinates(const Positions& x) {
       faults.push_back("vertex " + text(v) + " has a coordinate of " + brief(largest) + " m; at most " +
                        brief(largest_coordinate) + " m can be computed with");
   }
-  if (x.rows() == 0 || !faults.empty()) return faults;
+  if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
   const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
   if (diagonal < smallest_diagonal)
     faults.push_back("the mesh is " + brief(diagonal) + " m across; at least " + brief(smallest_diagonal) +
                      " m can be computed with");
-  return faults;
+  return std::move(faults).all();
 }
 
 std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
@@ -187,14 +209,14 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   if (mesh.vertices.rows() == 0) faults.push_back("the mesh has no vertices");
   if (mesh.triangles.rows() == 0) faults.push_back("the mesh has no triangles");
   const bool in_range = check_indices(mesh, faults);
-  const Faults coordinates = check_coordinates(mesh.vertices);
-  faults.insert(faults.end(), coordinates.begin(), coordinates.end());
-  if (!in_range || mesh.triangles.rows() == 0) return faults;
+  const std::vector<std::string> coordinates = check_coordinates(mesh.vertices);
+  for (const std::string& fault : coordinates) faults.push_back(fault);
+  if (!in_range || !coordinates.empty() || mesh.triangles.rows() == 0) return std::move(faults).all();
   check_shapes(mesh, faults);
   check_duplicates(mesh.triangles, faults);
   check_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), faults);
   check_flat_orientation(mesh, faults);
-  return faults;
+  return std::move(faults).all();
 }
 
 double smallest_angle(const TriangleMesh& mesh) {

@@ -1,6 +1,7 @@
 #include "core/mesh/file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,6 +9,8 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+
+#include "core/mesh/message_text.h"
 
 namespace drape {
 namespace {
@@ -17,6 +20,13 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) close(number);
+  }
+};
+
 std::runtime_error failure(const char* what, const std::filesystem::path& path, int error) {
   return std::runtime_error(std::string(what) + path.string() + ": " +
                             std::generic_category().message(error));
@@ -24,14 +34,38 @@ std::runtime_error failure(const char* what, const std::filesystem::path& path, 
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& path) {
-  const File file(std::fopen(path.c_str(), "rb"));
-  if (!file) throw failure("cannot read ", path, errno);
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
+  const std::string name = printable(path.string());
+  const auto refuse = [&](const std::string& cause) { throw FileError(name + ": " + cause, cause); };
+  if (path.native().find('\0') != std::string::npos) refuse("has a NUL character in its name");
+  const auto refuse_number = [&](int error) {
+    const std::string reason = std::generic_category().message(error);
+    throw FileError("cannot read " + name + ": " + reason,
+                    error == ENOENT ? "no such file" : "cannot be read (" + reason + ")");
+  };
+  // A pipe without a writer holds up an open that waits.
+  const Descriptor file{open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
+  struct stat status {};
+  if (file.number < 0 || fstat(file.number, &status) != 0) refuse_number(errno);
+  if (S_ISDIR(status.st_mode)) refuse("is a folder, not a file");
+  if (!S_ISREG(status.st_mode)) refuse("is a pipe or a device; give a file on a disk");
+  const auto refuse_if_larger = [&](std::uintmax_t size) {
+    if (size > most)
+      refuse("is larger than " + std::to_string(most / 1'000'000) + " MB, the most that is read of it");
+  };
+  // The size is a hint: /proc says 0, and a file may grow.
+  refuse_if_larger(static_cast<std::uintmax_t>(status.st_size));
   std::string bytes;
+  bytes.reserve(static_cast<std::size_t>(status.st_size));
   char buffer[1 << 16];
-  while (const std::size_t n = std::fread(buffer, 1, sizeof buffer, file.get())) bytes.append(buffer, n);
-  if (std::ferror(file.get())) throw failure("cannot read ", path, errno);
-  return bytes;
+  while (true) {
+    const ssize_t n = read(file.number, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse_number(errno);
+    if (n == 0) return bytes;
+    bytes.append(buffer, static_cast<std::size_t>(n));
+    refuse_if_larger(bytes.size());
+  }
 }
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {

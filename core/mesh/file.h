@@ -1,13 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace drape {
 
-/// The whole file as bytes. Throws std::runtime_error naming the path and the cause.
-std::string read_file(const std::filesystem::path& path);
+/// A file that cannot be read. `what()` names it; `cause` alone does not.
+struct FileError : std::runtime_error {
+  FileError(const std::string& message, std::string cause)
+      : std::runtime_error(message), cause(std::move(cause)) {}
+  std::string cause;
+};
+
+/// The most that is read of a file [bytes]: of any, and of a config.
+inline constexpr std::uintmax_t largest_file = 2'000'000'000, largest_config = 8'000'000;
+
+/// The whole file as bytes. Every file that a user names or can change is read by this. Throws FileError,
+/// without waiting, for what is no regular file (pipes and devices may give bytes for ever) or has more than
+/// `most` bytes.
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
 /// Writes path + ".part" and renames it, so that nothing half-written stands under the final name.
 /// Throws std::runtime_error naming the path and the cause; the part is then removed.

@@ -19,8 +19,9 @@ using VertexFields = std::vector<VertexField>;
 
 /// Reads a Wavefront OBJ (v and f), an OFF (text) or a PLY (text, binary little or big endian), by
 /// extension. Polygons become fans around their first corner, which is right for convex ones.
-/// Vertices keep their order and are not merged; the geometry is not checked (see check_mesh).
-/// Throws std::runtime_error with "file:line: what is wrong" (in binary parts: the element).
+/// Vertices keep their order and are not merged; coordinates are finite, and no more of the geometry is
+/// checked (see check_mesh). What a file has beyond what it declares is refused. Throws std::runtime_error
+/// with "file:line: what is wrong" (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.

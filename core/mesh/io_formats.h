@@ -13,6 +13,7 @@ namespace drape {
 TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes);
+VertexFields read_ply_fields(const std::filesystem::path& path, std::string_view bytes);
 std::string obj_text(const TriangleMesh& mesh);
 
 /// Throws std::runtime_error unless every field has n values and a name of its own without white space,

@@ -1,7 +1,10 @@
 #include "core/mesh/ply_header.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
+
+#include "core/mesh/message_text.h"
 
 namespace drape {
 namespace {
@@ -13,7 +16,7 @@ PlyType read_type(const TextReader& reader, std::string_view word) {
                                                   "int32", "uint32", "float32", "float64"};
   for (std::size_t i = 0; i < names.size(); ++i)
     if (word == names[i] || word == sized[i]) return static_cast<PlyType>(i);
-  reader.fail("unknown property type '" + std::string(word) + "'");
+  reader.fail("unknown property type '" + excerpt(word) + "'");
 }
 
 PlyProperty read_property(const TextReader& reader) {
@@ -37,6 +40,11 @@ PlyFormat read_format(const TextReader& reader) {
   reader.fail("expected 'format ascii|binary_little_endian|binary_big_endian 1.0'");
 }
 
+template <class Named>
+bool is_named(const std::vector<Named>& all, const std::string& name) {
+  return std::any_of(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+}
+
 }  // namespace
 
 PlyHeader read_ply_header(TextReader& reader) {
@@ -53,16 +61,21 @@ PlyHeader read_ply_header(TextReader& reader) {
     }
     if (words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "format") {
+      if (format) reader.fail("the format is declared twice");
       format = read_format(reader);
     } else if (words[0] == "element") {
       if (words.size() != 3) reader.fail("expected 'element NAME COUNT'");
-      const std::string name(words[1]);
-      elements.push_back({name, reader.count(words[2], "elements '" + name + "'"), {}});
+      const std::string name(words[1]), shown = "'" + excerpt(name) + "'";
+      if (is_named(elements, name)) reader.fail("element " + shown + " is declared twice");
+      elements.push_back({name, reader.count(words[2], "elements " + shown), {}});
     } else if (words[0] == "property") {
       if (elements.empty()) reader.fail("a property stands before the first element");
-      elements.back().properties.push_back(read_property(reader));
+      PlyProperty property = read_property(reader);
+      if (is_named(elements.back().properties, property.name))
+        reader.fail("property '" + excerpt(property.name) + "' is declared twice");
+      elements.back().properties.push_back(std::move(property));
     } else {
-      reader.fail("unknown header line '" + std::string(words[0]) + "'");
+      reader.fail("unknown header line '" + excerpt(words[0]) + "'");
     }
   }
   reader.fail("the header has no end_header");

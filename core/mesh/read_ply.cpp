@@ -10,6 +10,7 @@
 #include "core/mesh/io.h"
 #include "core/mesh/io_formats.h"
 #include "core/mesh/mesh_builder.h"
+#include "core/mesh/message_text.h"
 #include "core/mesh/ply_header.h"
 
 namespace drape {
@@ -30,7 +31,21 @@ class PlyBody {
   PlyBody(TextReader& reader, std::string_view bytes, PlyFormat format, std::filesystem::path path)
       : reader_(reader), bytes_(bytes.substr(reader.position())), format_(format), path_(std::move(path)) {}
 
-  void enter(const PlyElement& element, int number) { element_ = &element, number_ = number; }
+  void enter(const PlyElement& element, int number) {
+    end_line();
+    element_ = &element, number_ = number;
+  }
+
+  /// Nothing but white space may follow the last element.
+  void finish() {
+    end_line();
+    const bool more = format_ == PlyFormat::ascii ? reader_.next_line()
+                                                  : bytes_.find_first_not_of(" \t\r\n") != bytes_.npos;
+    if (!more) return;
+    const std::string message = "the file goes on after the elements that its header declares";
+    if (format_ == PlyFormat::ascii) reader_.fail(message);
+    throw std::runtime_error(path_.string() + ": " + message + reader_.note());
+  }
 
   double next(PlyType type) {
     if (format_ == PlyFormat::ascii) {
@@ -66,11 +81,17 @@ class PlyBody {
 
   [[noreturn]] void fail(const std::string& message) const {
     if (format_ == PlyFormat::ascii) reader_.fail(place() + ": " + message);
-    throw std::runtime_error(path_.string() + ": " + place() + ": " + message);
+    throw std::runtime_error(path_.string() + ": " + place() + ": " + message + reader_.note());
   }
 
  private:
-  std::string place() const { return element_->name + " " + std::to_string(number_); }
+  /// An element of a text may take several lines, but shares none.
+  void end_line() const {
+    if (format_ == PlyFormat::ascii && reader_.has_words_left())
+      fail("its line has more values than the header declares");
+  }
+
+  std::string place() const { return excerpt(element_->name) + " " + std::to_string(number_); }
 
   TextReader& reader_;
   std::string_view bytes_;
@@ -88,7 +109,7 @@ struct PlyContent {
 
 void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>& values) {
   const auto count = static_cast<long long>(body.next(*property.count_type));
-  if (count < 0) body.fail("list '" + property.name + "' has a negative length");
+  if (count < 0) body.fail("list '" + excerpt(property.name) + "' has a negative length");
   values.clear();
   for (long long i = 0; i < count; ++i) values.push_back(body.next(property.type));
 }
@@ -110,6 +131,10 @@ void read_vertices(PlyBody& body, const PlyElement& element, PlyContent& content
   }
 }
 
+bool holds_corners(const PlyProperty& p) {
+  return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
 void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, MeshBuilder& mesh) {
   std::vector<double> values;
   std::vector<int> polygon;
@@ -121,7 +146,7 @@ void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, Mesh
         continue;
       }
       read_list(body, p, values);
-      if (p.name != "vertex_indices" && p.name != "vertex_index") continue;
+      if (!holds_corners(p)) continue;
       if (values.size() < 3) body.fail("a face needs at least three vertices");
       polygon.clear();
       for (double v : values) {
@@ -147,6 +172,13 @@ void skip(PlyBody& body, const PlyElement& element) {
   }
 }
 
+std::string counts_of(const PlyHeader& header) {
+  std::string text;
+  for (const PlyElement& e : header.elements)
+    text += (text.empty() ? "" : ", ") + std::to_string(e.count) + " " + e.name;
+  return "the header declares " + excerpt(text);
+}
+
 PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
   TextReader reader(path, bytes, '\0');
   const PlyHeader header = read_ply_header(reader);
@@ -156,6 +188,11 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   };
   if (named("vertex") != 1) reader.fail("the header must have one element 'vertex'");
   if (named("tristrips") != 0) reader.fail("triangle strips are not read; convert them to faces");
+  for (const PlyElement& e : header.elements)
+    if (e.name == "face" && e.count > 0 &&
+        std::count_if(e.properties.begin(), e.properties.end(), holds_corners) != 1)
+      reader.fail("element 'face' must have one list 'vertex_indices'");
+  reader.set_note(counts_of(header));
 
   PlyContent content;
   int vertex_count = 0;
@@ -170,6 +207,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     else
       skip(body, element);
   }
+  body.finish();
 
   content.mesh.coordinates.resize(3 * static_cast<std::size_t>(vertex_count));
   for (int axis = 0; axis < 3; ++axis) {
@@ -178,7 +216,12 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     if (found == content.names.end())
       throw std::runtime_error(path.string() + ": vertices have no property '" + name + "'");
     const auto& column = content.columns[found - content.names.begin()];
-    for (std::size_t v = 0; v < column.size(); ++v) content.mesh.coordinates[3 * v + axis] = column[v];
+    for (std::size_t v = 0; v < column.size(); ++v) {
+      if (!std::isfinite(column[v]))
+        throw std::runtime_error(path.string() + ": vertex " + std::to_string(v) +
+                                 " has a coordinate that is not finite");
+      content.mesh.coordinates[3 * v + axis] = column[v];
+    }
   }
   return content;
 }
@@ -190,7 +233,11 @@ TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes)
 }
 
 VertexFields read_ply_fields(const std::filesystem::path& path) {
-  const PlyContent content = read_content(path, read_file(path));
+  return read_ply_fields(path, read_file(path));
+}
+
+VertexFields read_ply_fields(const std::filesystem::path& path, std::string_view bytes) {
+  const PlyContent content = read_content(path, bytes);
   VertexFields fields;
   for (std::size_t i = 0; i < content.names.size(); ++i) {
     const std::string& name = content.names[i];

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
+
+#include "core/mesh/message_text.h"
 
 namespace drape {
 namespace {
@@ -12,16 +15,21 @@ namespace {
 constexpr std::string_view white_space = " \t\r\v\f";
 
 template <class Number>
-bool parse(std::string_view word, Number& number) {
+std::errc parse(std::string_view word, Number& number) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);  // from_chars knows no plus
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size();
+  return end == word.data() + word.size() ? error : std::errc::invalid_argument;
 }
+
+std::string in_quotes(std::string_view word) { return "'" + excerpt(word) + "'"; }
 
 }  // namespace
 
 TextReader::TextReader(std::filesystem::path path, std::string_view text, char comment)
-    : path_(std::move(path)), text_(text), comment_(comment) {}
+    : path_(std::move(path)), text_(text), comment_(comment) {
+  if (constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; text_.starts_with(byte_order_mark))
+    position_ = byte_order_mark.size();
+}
 
 bool TextReader::next_line() {
   words_.clear();
@@ -48,13 +56,22 @@ std::string_view TextReader::next_word(const std::string& expected) {
 
 double TextReader::number(std::string_view word) const {
   double value = 0;
-  if (!parse(word, value)) fail("'" + std::string(word) + "' is not a number");
+  const std::errc error = parse(word, value);
+  if (error == std::errc::result_out_of_range)
+    fail(in_quotes(word) + " is too large or too small for a 64-bit number");
+  if (error != std::errc()) fail(in_quotes(word) + " is not a number");
+  return value;
+}
+
+double TextReader::coordinate(std::string_view word) const {
+  const double value = number(word);
+  if (!std::isfinite(value)) fail(in_quotes(word) + " is not a finite coordinate");
   return value;
 }
 
 long long TextReader::integer(std::string_view word) const {
   long long value = 0;
-  if (!parse(word, value)) fail("'" + std::string(word) + "' is not an integer");
+  if (parse(word, value) != std::errc()) fail(in_quotes(word) + " is not an integer");
   return value;
 }
 
@@ -73,7 +90,8 @@ int TextReader::count(std::string_view word, const std::string& things) const {
 }
 
 void TextReader::fail(const std::string& message) const {
-  throw std::runtime_error(path_.string() + ":" + std::to_string(line_) + ": " + message);
+  if (text_.empty()) throw std::runtime_error(path_.string() + ": is empty");
+  throw std::runtime_error(path_.string() + ":" + std::to_string(line_) + ": " + message + note());
 }
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace drape {
@@ -19,18 +20,26 @@ class TextReader {
   const std::vector<std::string_view>& words() const { return words_; }
   /// The next word, on this line or a later one; an error names what was `expected` where the text ends.
   std::string_view next_word(const std::string& expected);
+  /// Whether next_word has words of this line to give out.
+  bool has_words_left() const { return next_ < words_.size(); }
   /// Drops the words of this line that next_word has not given out.
   void finish_line() { next_ = words_.size(); }
   /// Bytes up to the end of this line.
   std::size_t position() const { return position_; }
 
   double number(std::string_view word) const;
+  double coordinate(std::string_view word) const;  ///< a number that is finite
   long long integer(std::string_view word) const;
   /// integer(word), which must lie in 0 … limit - 1; `what` names it in the error.
   int index(std::string_view word, int limit, const std::string& what) const;
 
   /// integer(word), a number of `things`, each of which takes at least a byte of the text.
   int count(std::string_view word, const std::string& things) const;
+
+  /// What every error from now on ends with, in parentheses.
+  void set_note(std::string note) { note_ = std::move(note); }
+  /// The note as an error ends with it; empty without one.
+  std::string note() const { return note_.empty() ? "" : " (" + note_ + ")"; }
 
   [[noreturn]] void fail(const std::string& message) const;  ///< std::runtime_error "file:line: message"
 
@@ -42,6 +51,7 @@ class TextReader {
   int line_ = 0;
   std::vector<std::string_view> words_;
   std::size_t next_ = 0;
+  std::string note_;
 };
 
 }  // namespace drape

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <set>
 
+#include "core/mesh/message_text.h"
+
 namespace drape {
 namespace {
 
@@ -67,7 +69,7 @@ std::string Location::text() const {
 
 std::string ConfigError::text() const {
   const std::string place = where.text();
-  return place.empty() ? message : place + ": " + message;
+  return printable(place.empty() ? message : place + ": " + message);
 }
 
 const ConfigNode* ConfigNode::find(const std::string& key) const {

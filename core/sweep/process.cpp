@@ -8,8 +8,9 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <stdexcept>
+
+#include "core/mesh/file.h"
 
 namespace drape {
 
@@ -86,9 +87,7 @@ Said run_program(const std::vector<std::string>& words) {
 std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
 
 std::string text_of_file(const std::filesystem::path& file) {
-  std::ostringstream text;
-  if (std::ifstream in(file, std::ios::binary); in && in.peek() != EOF) text << in.rdbuf();
-  return text.str();
+  return std::filesystem::exists(file) ? read_file(file) : std::string();
 }
 
 }  // namespace drape

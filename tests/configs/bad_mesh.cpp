@@ -1,5 +1,7 @@
 // What the command says to a cloth from a bad mesh file: the file, and the line or the element.
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
@@ -66,15 +68,17 @@ TEST_CASE("a malformed mesh file is named with its line") {
   CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 one 0\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: 'one' is not a number\n");
   CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 nan 0\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 has a coordinate that is not finite\n");
+        "error: in/e.yaml:2:8: in/cloth.obj:5: 'nan' is not a finite coordinate\n");
   CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 1\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: a vertex needs three coordinates\n");
   CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 10\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:17: face names vertex 10, but 9 vertices precede it\n");
   CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:17: a face needs at least three vertices\n");
-  CHECK(said_of("OFF\n3 1 0\n0 0 0\n1 0 0\n", "cloth.off") ==
-        "error: in/e.yaml:2:8: in/cloth.off:4: the file ends before vertex 2\n");
+  CHECK(
+      said_of("OFF\n3 1 0\n0 0 0\n1 0 0\n", "cloth.off") ==
+      "error: in/e.yaml:2:8: in/cloth.off:4: the file ends before vertex 2 (the header declares 3 vertices, "
+      "1 faces)\n");
   CHECK(said_of("ply\nformat ascii 1.0\nelement vertex 3\n", "cloth.ply") ==
         "error: in/e.yaml:2:8: in/cloth.ply:3: the header has no end_header\n");
 }
@@ -87,9 +91,10 @@ TEST_CASE("a mesh that is no surface with one side up is named with the element"
         "one of them is inverted\n"
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 7, 8) faces the other way than most of this flat "
         "mesh\n");
-  CHECK(said_of("") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no vertices\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n");
+  CHECK(said_of("") == "error: in/e.yaml:2:8: in/cloth.obj: is empty\n");
+  CHECK(said_of("v 0 0 0\n") ==
+        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 0 belongs to no triangle\n");
   CHECK(said_of(sheet + "v 0 0 1\nf 1 10 5\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n");
   CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
@@ -112,4 +117,37 @@ TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
   CHECK(said_of(bent, "cloth.obj", "--set 'energies=[neo_hookean, quadratic_bending, gravity]'") ==
         "error: --set energies: quadratic_bending: the rest shape of level 0 is not flat (angle 0.420534 at "
         "the edge of vertices 1 and 4); use hinge\n");
+}
+
+TEST_CASE("however many faults a mesh has, few are listed") {
+  std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
+  for (int k = 0; k < 200000; ++k) mesh += " 1 2 3";
+  const std::string said = said_of(mesh + "\n");
+  CHECK(said.size() < 10000);
+  CHECK_THAT(said, Catch::Matchers::Contains("in/cloth.obj: and ") &&
+                       Catch::Matchers::EndsWith("more faults like these\n"));
+
+  mesh = "v 0 0 0\nv 1 0 0\n";
+  for (int k = 0; k < 1000; ++k)
+    mesh += "v " + std::to_string(k) + " 1 " + std::to_string(k) + "\nf 1 2 -1\n";
+  CHECK_THAT(said_of(mesh),
+             Catch::Matchers::Contains("edge (0, 1) has 1000 triangles: 0, 1, 2, 3, 4, 5, 6, 7, …\n"));
+}
+
+TEST_CASE("a mesh whose squares overflow is not said to have no area") {
+  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 1e100 0\n")) ==
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 has a coordinate of 1e+100 m; at most 1e+09 m can "
+        "be computed with\n");
+}
+
+TEST_CASE("a pipe or a device in a mesh's place is refused, not waited for") {
+  const Scratch folder;
+  REQUIRE(mkfifo((folder / "cloth.obj").c_str(), 0600) == 0);
+  folder.write("e.yaml", experiment_with("cloth.obj"));
+  CHECK(drape_with("check e.yaml", folder.path).err ==
+        "error: e.yaml:2:8: cloth.obj: is a pipe or a device; give a file on a disk\n");
+  std::filesystem::remove(folder / "cloth.obj");
+  std::filesystem::create_symlink("/dev/zero", folder / "cloth.obj");
+  CHECK(drape_with("check e.yaml", folder.path).err ==
+        "error: e.yaml:2:8: cloth.obj: is a pipe or a device; give a file on a disk\n");
 }

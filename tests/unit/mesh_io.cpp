@@ -160,7 +160,8 @@ TEST_CASE("PLY in binary of either byte order and mixed types", "[io]") {
   CHECK(read_ply_fields(path)[0].values == Eigen::Vector4d(0, -300, -600, -900));
 
   const fs::path cut = scratch.file("cut.ply", bytes.substr(0, bytes.size() - 1));
-  CHECK_THROWS_WITH(read_mesh(cut), cut.string() + ": face 1: the file ends");
+  CHECK_THROWS_WITH(read_mesh(cut),
+                    cut.string() + ": face 1: the file ends (the header declares 4 vertex, 2 face)");
 }
 
 TEST_CASE("malformed files are refused with file and line", "[io]") {
@@ -168,6 +169,7 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string counts = " (the header declares 3 vertex, 1 face)";
   const auto [name, text, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
       {"a.obj", "v 0 0 0\nv 1 zero 0\n", ":2: 'zero' is not a number"},
       {"a.obj", "v 0 0\n", ":1: a vertex needs three coordinates"},
@@ -176,13 +178,20 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
       {"a.obj", "v 0 0 0\nf 0 1 1\n", ":2: face names vertex 0, but 1 vertices precede it"},
       {"a.obj", "v 0 0 0\nf 1 1\n", ":2: a face needs at least three vertices"},
       {"a.obj", "v 0 0 0\nf 1 a/1 1\n", ":2: 'a' is not an integer"},
-      {"a.off", "", ":0: the file ends where OFF is expected"},
+      {"a.off", "", ": is empty"},
+      {"a.obj", "", ": is empty"},
+      {"a.ply", "", ": is empty"},
+      {"a.obj", "# nothing\n", ":1: the file ends without a vertex"},
       {"a.off", "ply\n", ":1: an OFF file begins with OFF, not 'ply'"},
       {"a.off", "OFF BINARY\n", ":1: binary OFF is not read; convert it to text or to PLY"},
-      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n", ":4: the file ends before vertex 2"},
-      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", ":4: vertex 1 is not in 0 … 0"},
-      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n", ":4: a face of 3 vertices names fewer"},
-      {"a.off", "OFF\n1 1 0\n0 0 0\n2 0 0\n", ":4: a face needs at least three vertices"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n",
+       ":4: the file ends before vertex 2 (the header declares 3 vertices, 1 faces)"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n",
+       ":4: vertex 1 is not in 0 … 0 (the header declares 1 vertices, 1 faces)"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0\n",
+       ":4: a face of 3 vertices names fewer (the header declares 1 vertices, 1 faces)"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n2 0 0\n",
+       ":4: a face needs at least three vertices (the header declares 1 vertices, 1 faces)"},
       {"a.off", "OFF\n999999999 1 0\n", ":2: the file has no room for 999999999 vertices"},
       {"a.ply", "plyy\n", ":1: a PLY file begins with a line 'ply'"},
       {"a.ply", "ply\nformat ascii 2.0\n",
@@ -200,13 +209,121 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
       {"a.ply", "ply\nformat ascii 1.0\nend_header\n", ":3: the header must have one element 'vertex'"},
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float z\nend_header\n",
        ": vertices have no property 'y'"},
-      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: face 0: vertex 3 is not in 0 … 2"},
-      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n", ":13: face 0: a face needs at least three vertices"},
-      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", ":13: the file ends where face 0 is expected"},
-      {"a.ply", ply + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", ":11: 'x' is not a number"},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", ":13: face 0: vertex 3 is not in 0 … 2" + counts},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n2 0 1\n",
+       ":13: face 0: a face needs at least three vertices" + counts},
+      {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", ":13: the file ends where face 0 is expected" + counts},
+      {"a.ply", ply + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", ":11: 'x' is not a number" + counts},
   }));
   const fs::path path = scratch.file(name, text);
   CHECK_THROWS_WITH(read_mesh(path), path.string() + message);
+}
+
+TEST_CASE("counts that do not fit the file are told as such", "[io]") {
+  const Scratch scratch;
+  const auto said = [&](const std::string& name, const std::string& text) -> std::string {
+    try {
+      read_mesh(scratch.file(name, text));
+    } catch (const std::exception& error) {
+      return std::string(error.what()).substr((scratch.root / name).string().size());
+    }
+    return "";
+  };
+  const auto ply = [](int vertices, int faces) {
+    return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertices) +
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
+           "\nproperty list uchar int vertex_indices\nend_header\n"
+           "0 0 0\n1 0 0\n0 1.5 0\n1 1 0\n3 0 1 2\n3 2 1 3\n";
+  };
+  CHECK(said("a.ply", ply(4, 2)) == "");
+  CHECK(said("a.ply", ply(3, 2)) ==
+        ":13: face 0: a face needs at least three vertices (the header declares 3 vertex, 2 face)");
+  CHECK(said("a.ply", ply(2, 2)) ==
+        ":12: face 0: a face needs at least three vertices (the header declares 2 vertex, 2 face)");
+  CHECK(said("a.ply", ply(5, 2)) ==
+        ":14: vertex 4: its line has more values than the header declares (the header declares 5 vertex, 2 "
+        "face)");
+  CHECK(said("a.ply", ply(4, 1)) ==
+        ":15: the file goes on after the elements that its header declares (the header declares 4 vertex, 1 "
+        "face)");
+  CHECK(said("a.ply", ply(4, 3)) ==
+        ":15: the file ends where face 2 is expected (the header declares 4 vertex, 3 face)");
+  const auto off = [](int vertices, int faces) {
+    return "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) +
+           " 0\n0 0 0\n1 0 0\n0 1.5 0\n1 1 0\n3 0 1 2\n3 2 1 3\n";
+  };
+  CHECK(said("a.off", off(4, 2)) == "");
+  CHECK(said("a.off", off(3, 2)) ==
+        ":6: a face needs at least three vertices (the header declares 3 vertices, 2 faces)");
+  CHECK(said("a.off", off(5, 2)) ==
+        ":8: the file ends before face 1 (the header declares 5 vertices, 2 faces)");
+  CHECK(said("a.off", off(4, 1)) ==
+        ":8: the file goes on after its last face (the header declares 4 vertices, 1 faces)");
+
+  // In binary, where no line tells.
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  CHECK(said("a.ply", header + std::string(12, '\0')) == "");
+  CHECK(said("a.ply", header + std::string(12, '\0') + "\r\n") == "");
+  CHECK(said("a.ply", header + std::string(13, '\0')) ==
+        ": the file goes on after the elements that its header declares (the header declares 1 vertex)");
+  CHECK(said("a.ply", header + std::string(8, '\0') + std::string("\0\0\xc0\x7f", 4)) ==
+        ": vertex 0 has a coordinate that is not finite");
+}
+
+TEST_CASE("what is declared twice, left over, not finite or no text is refused", "[io]") {
+  const Scratch scratch;
+  const std::string element = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
+  const auto [name, text, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
+      {"a.ply", element + "property float x\n", ":5: property 'x' is declared twice"},
+      {"a.ply", element + "property list uchar int x\n", ":5: property 'x' is declared twice"},
+      {"a.ply", element + "element vertex 2\n", ":5: element 'vertex' is declared twice"},
+      {"a.ply", element + "format ascii 1.0\n", ":5: the format is declared twice"},
+      {"a.ply",
+       element + "element face 1\nproperty list uchar int vertex_index\nproperty list uchar int "
+                 "vertex_indices\nend_header\n",
+       ":8: element 'face' must have one list 'vertex_indices'"},
+      {"a.ply", element + "element face 1\nproperty int vertex_indices\nend_header\n",
+       ":7: element 'face' must have one list 'vertex_indices'"},
+      {"a.off", "OFF\n1 0 0 7\n0 0 0\n",
+       ":2: the line goes on after the numbers of vertices, faces and edges"},
+      {"a.off", "OFF\n1 0 0\n0 0 0 junk\n",
+       ":3: 'junk' is not a number (the header declares 1 vertices, 0 faces)"},
+      {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 0 1 1 1 1 1\n",
+       ":4: the line has too many values (the header declares 1 vertices, 1 faces)"},
+      {"a.obj", "v 0 0 0 junk\n", ":1: 'junk' is not a number"},
+      {"a.obj", "v 0 0 0 1 1 1 1 1\n", ":1: the line has too many values"},
+      {"a.obj", "v 0 0 0\nhello\n", ":2: no line of an OBJ file begins with 'hello'"},
+      {"a.obj", "v 0 0 0\nf 1/x 1 1\n", ":2: 'x' is not an integer"},
+      {"a.obj", "v 0 0 0\nf 1/1/1/1 1 1\n", ":2: '1/1' is not an integer"},
+      {"a.obj", "v 0 nan 0\n", ":1: 'nan' is not a finite coordinate"},
+      {"a.obj", "v 0 -inf 0\n", ":1: '-inf' is not a finite coordinate"},
+      {"a.off", "OFF\n1 0 0\n0 0 inf\n",
+       ":3: 'inf' is not a finite coordinate (the header declares 1 vertices, 0 faces)"},
+      {"a.obj", "v 0 1e999 0\n", ":1: '1e999' is too large or too small for a 64-bit number"},
+      {"a.obj", std::string("v 0 1\0 0\n", 9), ":1: '1\\x00' is not a number"},
+      {"a.obj", "v 0 \x1b[2J 0\n", ":1: '\\x1b[2J' is not a number"},
+  }));
+  const fs::path path = scratch.file(name, text);
+  CHECK_THROWS_WITH(read_mesh(path), path.string() + message);
+}
+
+TEST_CASE("a word of a megabyte is shortened in the message", "[io]") {
+  const Scratch scratch;
+  const std::string word(1000000, 'x');
+  for (const std::string text : {"v 0 0 " + word, "f " + word, word, "v 0 0 0\nf 1/" + word + " 1 1"}) try {
+      read_mesh(scratch.file("a.obj", text));
+      FAIL("it was read");
+    } catch (const std::exception& error) {
+      CHECK(std::string(error.what()).size() < 500);
+    }
+}
+
+TEST_CASE("a byte order mark is no part of the first word", "[io]") {
+  const Scratch scratch;
+  check_square(
+      read_mesh(scratch.file("m.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1.5 0\nv 0 1 -.25\nf 1 2 3 4\n")));
 }
 
 TEST_CASE("unknown formats and missing files name what to do", "[io]") {
