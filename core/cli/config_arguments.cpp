@@ -1,5 +1,6 @@
 #include "core/cli/config_arguments.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -14,7 +15,10 @@ std::string positive_integer(const std::string& text) {
 }
 
 int report_errors(const ConfigErrors& errors) {
-  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
+  constexpr std::size_t most_listed = 40;
+  for (std::size_t k = 0; k < std::min(errors.size(), most_listed); ++k)
+    std::cerr << "error: " << errors[k].text() << "\n";
+  if (errors.size() > most_listed) std::cerr << "error: and " << errors.size() - most_listed << " more\n";
   return exit_bad_input;
 }
 

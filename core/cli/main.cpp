@@ -1,8 +1,8 @@
 // The `drape` command. Exit codes: 0 done and converged, 1 a run that ended otherwise, 2 bad input.
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "core/cli/config_arguments.h"
 #include "core/cli/exit_codes.h"
@@ -11,6 +11,8 @@
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
 #include "core/experiment/run_folder.h"
+#include "core/mesh/file.h"
+#include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
 #include "core/plugin/words.h"
@@ -42,7 +44,7 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
 int list(const std::string& kind, const Registry& registry) {
   const std::vector<std::string> all(std::begin(kinds), std::end(kinds));
   if (!kind.empty() && std::find(all.begin(), all.end(), kind) == all.end())
-    throw std::runtime_error("there is no kind \"" + kind + "\"; the kinds are " + joined(all));
+    throw std::runtime_error("there is no kind \"" + excerpt(kind) + "\"; the kinds are " + joined(all));
   for (const char* k : kinds) {
     if (!kind.empty() && kind != k) continue;
     std::cout << k << "\n";
@@ -71,7 +73,7 @@ int describe_plugin(const std::string& name, const Registry& registry) {
   }
   if (found) return 0;
   const std::string near = nearest_word(name, names);
-  std::cerr << "error: no plugin is called \"" << name << "\"; "
+  std::cerr << "error: no plugin is called \"" << excerpt(name) << "\"; "
             << (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?") << "\n";
   return exit_bad_input;
 }
@@ -81,10 +83,8 @@ int reference_into(const std::filesystem::path& folder, const Registry& registry
   int pages = 0;
   for (const auto& entry : registry.entries()) {
     const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
-    std::ifstream in(file, std::ios::binary);
-    if (!in) continue;
-    const std::string page(std::istreambuf_iterator<char>(in), {});
-    write_atomically(file, with_parameters(page, *entry));
+    if (!std::filesystem::exists(file)) continue;
+    write_atomically(file, with_parameters(read_file(file), *entry));
     ++pages;
   }
   if (pages == 0)
@@ -135,7 +135,7 @@ void require_command(const CLI::App& app, const std::string& word) {
   }
   const std::string near = nearest_word(word, commands);
   throw std::runtime_error(
-      "there is no command \"" + word + "\"; " +
+      "there is no command \"" + excerpt(word) + "\"; " +
       (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
 }
 
@@ -146,7 +146,7 @@ int main_checked(int argc, char** argv) {
   app.failure_message([](const CLI::App* app, const CLI::Error& error) {
     const std::string command =
         app->get_subcommands().empty() ? "" : " " + app->get_subcommands()[0]->get_name();
-    return std::string("error: ") + error.what() + "; see `drape" + command + " --help`\n";
+    return "error: " + printable(error.what()) + "; see `drape" + command + " --help`\n";
   });
 
   const RunCommand run(app);
@@ -216,16 +216,17 @@ int main_checked(int argc, char** argv) {
   }
   if (*compare_command) {
     const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
-    std::cout << comparison.text();
+    std::cout << printable_lines(comparison.text());
     return comparison.broken() ? exit_bound_broken : 0;
   }
   if (*table_command) {
     const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
-    std::cout << table_text(rows, columns, format);
+    const std::string table = table_text(rows, columns, format);
+    std::cout << (format == TableFormat::json ? table : printable_lines(table));
     return all_pass(rows) ? 0 : exit_not_converged;
   }
   if (*table1_command) {
-    std::cout << table1_text(read_run(run_folder));
+    std::cout << printable_lines(table1_text(read_run(run_folder)));
     return 0;
   }
   if (sweep.job_chosen() || sweep.chosen()) stop_on_signals();
@@ -254,8 +255,12 @@ int main_checked(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return main_checked(argc, argv);
+  } catch (const nlohmann::json::exception& error) {
+    std::cerr << "error: a results file is not as drape writes it (" << printable(error.what())
+              << "); run the experiment anew\n";
+    return exit_bad_input;
   } catch (const std::exception& error) {
-    std::cerr << "error: " << error.what() << "\n";
+    std::cerr << "error: " << printable(reason_of(error)) << "\n";
     return exit_bad_input;
   }
 }

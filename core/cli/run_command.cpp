@@ -2,11 +2,13 @@
 
 #include <csignal>
 #include <iostream>
+#include <sstream>
 #include <thread>
 
 #include "core/cli/exit_codes.h"
 #include "core/cli/stop_signals.h"
 #include "core/experiment/run_folder.h"
+#include "core/mesh/message_text.h"
 #include "core/numerics/parallel.h"
 #include "core/view/live_view.h"
 
@@ -102,7 +104,8 @@ int RunCommand::resume(const Registry& registry) const {
   }
   std::string warning;
   Checkpoint checkpoint = checkpoint_to_resume(folder, warning);
-  if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
+  std::istringstream warnings(warning);
+  for (std::string line; std::getline(warnings, line);) std::cerr << "warning: " << printable(line) << "\n";
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;

@@ -7,6 +7,7 @@
 #include "core/cli/config_arguments.h"
 #include "core/cli/exit_codes.h"
 #include "core/experiment/machine.h"
+#include "core/mesh/message_text.h"
 #include "core/report/run_table.h"
 #include "core/sweep/local_engine.h"
 #include "core/sweep/memory.h"
@@ -82,8 +83,7 @@ void SweepCommand::check_options(int threads) const {
 int SweepCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
   ConfigErrors errors;
   const std::optional<Sweep> sweep = read_sweep(config_, registry, errors, most_levels_);
-  for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
-  if (!sweep) return exit_bad_input;
+  if (!sweep) return report_errors(errors);
   const int threads = threads_ ? threads_ : sweep->parameters.threads;
   check_options(threads);
   const SweepFolder folder(out_.empty() ? std::filesystem::path("results") / sweep->parameters.name
@@ -109,7 +109,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
   folder.prepare(sweep, options.threads);
   run_locally(sweep, folder, folder.missing(sweep, retry_failed_), options);
   const auto json = folder.refresh();
-  std::cout << list_of_runs(json);
+  std::cout << printable_lines(list_of_runs(json));
   if (stop_signal()) {
     std::cerr << "stopped on request; the same command goes on with what is missing\n";
     return 128 + stop_signal();
@@ -122,7 +122,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
   const auto stop = [&] { return stop_signal() != 0; };
   if (cancel_) {
     cancel_jobs(folder, stop);
-    std::cout << list_of_runs(folder.refresh());
+    std::cout << printable_lines(list_of_runs(folder.refresh()));
     return 0;
   }
   std::optional<SlurmJobs> jobs;
@@ -150,7 +150,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
     return 128 + stop_signal();
   }
   const auto json = folder.settle();
-  std::cout << list_of_runs(json);
+  std::cout << printable_lines(list_of_runs(json));
   return exit_code_of(folder);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/mesh/file.h"
+#include "core/mesh/message_text.h"
 
 namespace drape {
 
@@ -42,7 +43,7 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
         for (std::size_t k = 0; k < metric_values.size(); ++k)
           if (v.name == metric_values[k]) error[k] = v.value;
     } catch (const std::exception& problem) {
-      fault(name + ": " + problem.what());
+      fault(name + ": " + reason_of(problem));
     }
   }
   if (target.energy != 0) error.back() = (energy - target.energy) / std::abs(target.energy);

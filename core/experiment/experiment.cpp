@@ -7,6 +7,7 @@
 
 #include "core/experiment/schedule.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/message_text.h"
 #include "core/plugin/bounds.h"
 #include "core/plugin/make.h"
 
@@ -234,7 +235,7 @@ void check_name(const std::string& what, const std::string& name, const Location
         return c >= 0x80 || std::isalnum(c) || c == '_' || c == '-' || c == '.';
       });
   if (!usable)
-    errors.push_back({where, what + " \"" + name +
+    errors.push_back({where, what + " \"" + excerpt(name) +
                                  "\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
                                  "not beginning with \".\""});
 }
@@ -356,7 +357,8 @@ class Maker {
       ConfigNode resolved;
       check_name("method", name, written.where, errors_);
       if (!names.insert(name).second)
-        errors_.push_back({written.where, "method \"" + name + "\" is given twice; rename one of them"});
+        errors_.push_back(
+            {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
       if (auto solver = make_from<Solver>(registry_, node, errors_, &resolved))
         e_.methods.emplace_back(name, solver);
       resolved_map.add(name, resolved);
@@ -373,7 +375,7 @@ class Maker {
     if (!reference.method.empty() && !reference.file.empty())
       refuse("takes either a method or a file, not both");
     else if (!reference.method.empty() && !methods.count(reference.method))
-      refuse("must be one of the methods, not \"" + reference.method + "\"");
+      refuse("must be one of the methods, not \"" + excerpt(reference.method) + "\"");
     else if (reference.method.empty() && reference.force_tolerance > 0)
       refuse("needs the method whose finest state is solved further, as in {method: " +
              (methods.empty() ? "newton" : *methods.rbegin()) + ", force_tolerance: 1e-5}");

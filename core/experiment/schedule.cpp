@@ -5,6 +5,7 @@
 
 #include "core/experiment/places.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/message_text.h"
 #include "core/model/stretch_limit.h"
 #include "core/plugin/make.h"
 #include "core/plugin/words.h"
@@ -140,7 +141,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
   for (std::size_t k = 0; k < p.keys.size(); ++k) {
     const KeyParameters& key = p.keys[k];
     const Location where = e.source.find("schedule")->find("keys")->items[k].where;
-    const std::string name = "key \"" + key.set + "\"";
+    const std::string name = "key \"" + excerpt(key.set) + "\"";
     const auto refuse = [&](const std::string& what) { errors.push_back({where, name + " " + what}); };
     if (std::find(changeable.begin(), changeable.end(), key.set.substr(0, key.set.find('.'))) ==
         changeable.end())
@@ -174,7 +175,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
           make_from<ContactModel>(*e.registry, read.contact, own);
       }
       for (const ConfigError& error : own)
-        errors.push_back({where, "key \"" + p.keys[k].set + "\": " + error.message});
+        errors.push_back({where, "key \"" + excerpt(p.keys[k].set) + "\": " + error.message});
       if (!own.empty()) break;
     }
 }

@@ -42,8 +42,9 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
   if (!fs::exists(file))
     throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
   nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
-  if (!results.is_object() || !results.contains("methods"))
-    throw std::runtime_error(file.string() + ": is damaged; run the experiment anew");
+  const bool sound = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
+                     (!results.contains("complete") || results["complete"].is_boolean());
+  if (!sound) throw std::runtime_error(file.string() + ": is damaged; run the experiment anew");
   return results;
 }
 

@@ -3,7 +3,9 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
+#include "core/mesh/message_text.h"
 #include "core/plugin/words.h"
 
 namespace drape {
@@ -35,7 +37,8 @@ std::string shown(const ConfigNode& node) {
       break;
   }
   const bool number = !node.quoted && parse_number(node.scalar);
-  return number ? node.scalar : (node.quoted ? "the text \"" : "\"") + node.scalar + "\"";
+  const std::string text = excerpt(node.scalar);
+  return number ? text : (node.quoted ? "the text \"" : "\"") + text + "\"";
 }
 
 std::string with_unit(double value, const Parameter& p) {
@@ -166,21 +169,20 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   }
   std::vector<std::string> known;
   for (const Parameter& p : parameters) known.push_back(p.name);
+  std::map<std::string, size_t> first_of;
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
-    const auto same_key = [&](const auto& entry) { return entry.first == key; };
-    const size_t first =
-        size_t(std::find_if(map.entries.begin(), map.entries.end(), same_key) - map.entries.begin());
+    const size_t first = first_of.emplace(key, i).first->second;
     const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
     if (first != i) {
-      errors.push_back({map.key_places[i], "repeated key \"" + key + "\"" + in + "; it is first set at " +
-                                               map.key_places[first].text()});
+      errors.push_back({map.key_places[i], "repeated key \"" + excerpt(key) + "\"" + in +
+                                               "; it is first set at " + map.key_places[first].text()});
     } else if (index == known.size()) {
       const std::string nearest = nearest_word(key, known);
       const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
                                : known.empty()  ? "; it takes no keys"
                                                 : "; known keys are " + joined(known);
-      errors.push_back({map.key_places[i], "unknown key \"" + key + "\"" + in + hint});
+      errors.push_back({map.key_places[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
       parameters[index].read(
           object, parameters[index].path ? from_here(node) : spelt_out(node, parameters[index]), errors);

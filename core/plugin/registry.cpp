@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/mesh/message_text.h"
 #include "core/plugin/make.h"
 #include "core/plugin/words.h"
 
@@ -57,7 +58,7 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
   const std::string nearest = nearest_word(type->scalar, names);
   errors.push_back(
-      {type->where, "unknown " + kind + " \"" + type->scalar + "\"; " +
+      {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
                         (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
                         (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names))});
   return nullptr;
@@ -82,7 +83,7 @@ std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& k
   try {
     return entry->make(parameters.get());
   } catch (const std::exception& error) {
-    errors.push_back({node.where, entry->name + ": " + error.what()});
+    errors.push_back({node.where, entry->name + ": " + reason_of(error)});
     return nullptr;
   }
 }

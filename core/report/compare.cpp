@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/mesh/message_text.h"
 #include "core/plugin/parameters.h"
 #include "core/plugin/words.h"
 #include "core/report/html.h"
@@ -132,7 +133,7 @@ std::vector<Bound> parse_bounds(const std::vector<std::string>& texts) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       const std::string near = nearest_word(key, known);
       throw std::runtime_error(
-          "--bound " + text + ": there is no figure \"" + key + "\"; " +
+          "--bound " + excerpt(text) + ": there is no figure \"" + excerpt(key) + "\"; " +
           (near.empty() ? "there are " + joined(known) : "did you mean \"" + near + "\"?"));
     }
     const std::optional<double> ratio = parse_number(text.substr(equals + 1));
@@ -204,8 +205,16 @@ std::string Comparison::text() const {
       text += (text.empty() || text.back() == '\n' ? "" : ", ") + std::to_string(counts[word]) + " " +
               (*word ? word : "the same");
   text += ". Times within 10 % or 0.05 s of each other, and other figures within 1 %, count as the same.\n";
-  for (const std::string& name : lost_) text += "only in the first: " + name + "\n";
-  for (const std::string& name : gained_) text += "only in the second: " + name + "\n";
+  const auto list = [&](const char* where, const std::vector<std::string>& names) {
+    constexpr std::size_t most_listed = 40;
+    for (std::size_t k = 0; k < std::min(names.size(), most_listed); ++k)
+      text += std::string("only in the ") + where + ": " + names[k] + "\n";
+    if (names.size() > most_listed)
+      text += std::string("only in the ") + where + ": and " + std::to_string(names.size() - most_listed) +
+              " more\n";
+  };
+  list("first", lost_);
+  list("second", gained_);
   for (const std::string& line : broken_) text += "broken: " + line + "\n";
   if (bounds_ > 0 && broken_.empty()) text += bounds_ == 1 ? "The bound holds.\n" : "All bounds hold.\n";
   return text;

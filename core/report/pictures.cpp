@@ -8,6 +8,7 @@
 
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
+#include "core/mesh/message_text.h"
 #include "core/mesh/topology.h"
 #include "core/report/colours.h"
 #include "core/report/render.h"
@@ -81,7 +82,7 @@ class PictureMaker {
     try {
       return checked_mesh(path);
     } catch (const std::exception& error) {
-      set_.notes.emplace_back(error.what());
+      set_.notes.emplace_back(reason_of(error));
       return {};
     }
   }
@@ -132,7 +133,7 @@ class PictureMaker {
             if (field.name == "principal_curvature_other") fields.principal_other = field.values;
           }
         } catch (const std::exception& error) {
-          set_.notes.emplace_back(error.what());
+          set_.notes.emplace_back(reason_of(error));
         }
         fields_.insert_or_assign({method.name, {pair.coarse, pair.fine}}, std::move(fields));
       }
@@ -195,7 +196,7 @@ class PictureMaker {
         try {
           draw_fold(method, level.level);
         } catch (const std::exception& error) {
-          set_.notes.push_back(fold_picture(method, level.level) + ": " + error.what());
+          set_.notes.push_back(fold_picture(method, level.level) + ": " + reason_of(error));
         }
       }
     }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/mesh/message_text.h"
 #include "core/plugin/config_node.h"
 #include "core/plugin/words.h"
 #include "core/report/html.h"
@@ -49,7 +50,7 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
     const std::string near = nearest_word(column, known);
     throw std::runtime_error(
-        "there is no column \"" + column + "\"; " +
+        "there is no column \"" + excerpt(column) + "\"; " +
         (near.empty() ? "the columns are " + joined(known) : "did you mean \"" + near + "\"?"));
   }
   if (!chosen.empty()) return chosen;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "core/experiment/run_folder.h"
+#include "core/mesh/message_text.h"
 #include "core/sweep/memory.h"
 
 namespace drape {
@@ -141,7 +142,7 @@ bool still_in_queue(const SlurmJobs& jobs, int& silent) {
     return queued;
   } catch (const std::runtime_error& error) {
     if (++silent > 600) throw;
-    if (silent == 1) std::fprintf(stderr, "warning: %s; asking again\n", error.what());
+    if (silent == 1) std::fprintf(stderr, "warning: %s; asking again\n", printable(error.what()).c_str());
     return true;
   }
 }

@@ -8,6 +8,7 @@
 
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/io.h"
+#include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/words.h"
 #include "core/sweep/experiment_files.h"
@@ -133,8 +134,8 @@ class Reader {
     for (const auto& method : experiment.methods) known.push_back(method.first);
     for (const std::string& name : chosen)
       if (std::find(known.begin(), known.end(), name) == known.end())
-        errors.push_back(
-            {where, "there is no method \"" + name + "\"; the experiment's methods are " + joined(known)});
+        errors.push_back({where, "there is no method \"" + excerpt(name) +
+                                     "\"; the experiment's methods are " + joined(known)});
   }
 
   void add_runs(const Experiment& experiment, const std::vector<std::string>& methods,

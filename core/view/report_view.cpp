@@ -7,6 +7,7 @@
 
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
+#include "core/mesh/message_text.h"
 #include "core/report/embedded.h"
 #include "core/report/html.h"
 #include "core/view/view_blocks.h"
@@ -135,7 +136,7 @@ class ReportViewMaker {
     try {
       return recorded_frames(run_, level, n);
     } catch (const std::exception& error) {
-      notes_.push_back(std::string("3D viewer: ") + error.what());
+      notes_.push_back("3D viewer: " + reason_of(error));
       return {};
     }
   }
@@ -197,7 +198,7 @@ ReportView report_view(const RunData& run) {
   try {
     return ReportViewMaker(run).make();
   } catch (const std::exception& error) {
-    return {"", "", {std::string("3D viewer: ") + error.what()}};
+    return {"", "", {"3D viewer: " + reason_of(error)}};
   }
 }
 

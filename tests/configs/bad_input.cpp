@@ -2,8 +2,11 @@
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <cstring>
 #include <map>
 
 #include "tests/support/command.h"
@@ -69,6 +72,106 @@ TEST_CASE("a config that is missing, a folder, empty or no YAML") {
   CHECK(said_of("- name\n") == "error: e.yaml:1:1: a config must begin with a map of keys and values\n");
   CHECK(said_of_edit("[0.9, 0.9, 1]", "[0.9, 0.9, 1") ==
         "error: e.yaml:4:48: not valid YAML: illegal flow end\n");
+}
+
+TEST_CASE("a config that is no regular file is refused, not waited for") {
+  const Scratch folder;
+  REQUIRE(mkfifo((folder / "pipe.yaml").c_str(), 0600) == 0);
+  for (const std::string command :
+       {"check pipe.yaml", "run pipe.yaml --out out", "sweep pipe.yaml --out out"})
+    CHECK(drape_with(command, folder.path).err ==
+          "error: pipe.yaml: is a pipe or a device; give a file on a disk\n");
+  CHECK(refused(folder, "check /dev/zero") ==
+        "error: /dev/zero: is a pipe or a device; give a file on a disk\n");
+  folder.write("e.yaml", small_experiment());
+  fs::resize_file(folder / "e.yaml", 100000000);
+  CHECK(drape_with("check e.yaml", folder.path).err ==
+        "error: e.yaml: is larger than 8 MB, the most that is read of it\n");
+  fs::remove(folder / "e.yaml");
+  fs::create_directory(folder / "out");
+  for (const std::string name : {"results.json", "sweep.json"}) {
+    REQUIRE(mkfifo((folder / ("out/" + name)).c_str(), 0600) == 0);
+    for (const std::string command : {"report out", "table out", "compare out out", "run --resume out"}) {
+      const Ended ended = drape_with(command, folder.path);
+      CAPTURE(command, ended.err);
+      CHECK(ended.exit_code == 2);
+    }
+    fs::remove(folder / ("out/" + name));
+  }
+}
+
+TEST_CASE("a start or a reference that is no regular file, or is not finite") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  REQUIRE(mkfifo((folder / "pipe.ply").c_str(), 0600) == 0);
+  for (const std::string key : {"start", "reference"}) {
+    const std::string said = drape_with("check e.yaml --set '" + key + "={file: pipe.ply}'", folder.path).err;
+    CHECK_THAT(said, Catch::Matchers::Contains("pipe.ply: is a pipe or a device"));
+  }
+  REQUIRE(
+      drape_with("run e.yaml --out out --quiet --no-report --levels 1 --method pcs", folder.path).exit_code ==
+      0);
+  const std::string rest = text_of(folder / "out/rest/l0.ply");
+  const std::size_t third_vertex = rest.find("end_header\n") + 11 + 3 * 24;
+  const auto said_with = [&](double coordinate) {
+    std::string start = rest;
+    std::memcpy(start.data() + third_vertex, &coordinate, sizeof coordinate);
+    folder.write("start.ply", start);
+    return drape_with("check e.yaml --set start.file=start.ply", folder.path).err;
+  };
+  CHECK(said_with(std::nan("")) ==
+        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
+  CHECK(said_with(0.1) == "");
+}
+
+TEST_CASE("however many errors there are, and however long, little is printed") {
+  std::string text = small_experiment();
+  for (int k = 0; k < 20000; ++k) text += "key_" + std::to_string(k) + ": 1\n";
+  const std::string said = said_of(text);
+  CHECK(said.size() < 20000);
+  CHECK_THAT(said, Catch::Matchers::EndsWith("error: and 19960 more\n"));
+  const std::string word(1000000, 'x');
+  for (const std::string& edited :
+       {replaced(small_experiment(), "levels: 2", "levels: " + word),
+        replaced(small_experiment(), "levels: 2", word + ": 2"),
+        replaced(small_experiment(), "hinge,", word + ","),
+        replaced(small_experiment(), "shape: square", "shape: " + word),
+        replaced(small_experiment(), "name: small", "name: /" + word),
+        replaced(small_experiment(), "cascadic: {}", "'/" + word + "': {type: pcs}"),
+        replaced(small_experiment(), "levels: 2", "refiner: {type: loop, " + word + ": 1}"),
+        replaced(small_experiment(), "shape: square", "shape: file, file: " + word + ".obj")})
+    CHECK(said_of(edited).size() < 3000);
+}
+
+TEST_CASE("what would act on the terminal is shown escaped") {
+  CHECK(said_of_edit("levels: 2", "levels: \"\\e[2J\\x07\"") ==
+        "error: e.yaml:3:9: \"levels\" must be an integer, not the text \"\\x1b[2J\\x07\"\n");
+  CHECK(said_of_edit("levels: 2", "\"\\e[2J\\n\": 2")
+            .starts_with("error: e.yaml:3:1: unknown key \"\\x1b[2J\\n\"; known"));
+  CHECK(said_of_edit("levels: 2", "levels: 2 \x1b[2J") ==
+        "error: e.yaml:3:11: has the byte \\x1b, which is no text in UTF-8\n");
+  CHECK(said_of_edit("shape: square", "shape: file, file: \"a\\0.obj\"") ==
+        "error: e.yaml:2:28: \"a\\x00.obj\" has a NUL character; take it out\n");
+  const Scratch folder;
+  const std::string red = "$(printf '\\033[31m')";
+  CHECK(refused(folder, "run " + red) == "error: \\x1b[31m: no such file\n");
+  CHECK(refused(folder, red).starts_with("error: there is no command \"\\x1b[31m\""));
+  CHECK(refused(folder, "list " + red).starts_with("error: there is no kind \"\\x1b[31m\""));
+  CHECK(refused(folder, "describe " + red).starts_with("error: no plugin is called \"\\x1b[31m\""));
+  CHECK(refused(folder, "run e.yaml --threads " + red)
+            .starts_with("error: --threads: must be an integer of at least 1, not \\x1b[31m"));
+}
+
+TEST_CASE("errors of the file system are sentences") {
+  const std::string name(300, 'x');
+  const Scratch folder;
+  for (const std::string command : {"check ", "report ", "table ", "run --resume ", "sweep "}) {
+    const Ended ended = drape_with(command + name, folder.path);
+    CAPTURE(command, ended.err);
+    CHECK(ended.exit_code == 2);
+    CHECK(ended.err.find("filesystem error") == std::string::npos);
+    CHECK(ended.err.find("File name too long") != std::string::npos);
+  }
 }
 
 TEST_CASE("keys that are unknown, misspelt, repeated or missing") {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/mesh/message_text.h"
 #include "core/mesh/turn.h"
 #include "core/plugin/bounds.h"
 
@@ -142,7 +143,7 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, int level) {
         body.form.frames = {std::shared_ptr<const SoundMesh>(cages, (*cages)[level].get())};
     }
   } catch (const std::exception& error) {
-    throw std::runtime_error("obstacle \"" + body.name + "\": " + error.what());
+    throw std::runtime_error("obstacle \"" + body.name + "\": " + reason_of(error));
   }
   if (level < p.cages.count) body.name += " (cage " + std::to_string(level) + ")";
   const Form& form = body.form;
