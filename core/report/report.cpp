@@ -130,19 +130,24 @@ std::string machine_line(const RunData& run) {
   return text;
 }
 
+/// A word of caution beside the paper's columns.
+constexpr const char* of_libigl =
+    "Its d<sub>K</sub><sup>fit</sup> may be of libigl's Gaussian curvature, which is not quite the fitted "
+    "quadric's.";
+
 std::string published_section(const RunData& run) {
   if (table1_block(run.table1_scene)) {
     return "<p>The paper's columns are “" + escape(run.table1_scene) +
            "” of its Table 1. It states neither " +
            "units (lengths are taken as metres) nor the scene's geometry: compare ratios between methods, "
            "not " +
-           "figures.</p>\n";
+           "figures. " + of_libigl + "</p>\n";
   }
   const Table1Block& reference = *table1_block("Drape over Sphere in Figure 6");
   return "<h3>For orientation: the paper's “" + reference.scene +
          "”</h3>\n<p>From Table 1 of the supplement, " +
          "another scene than this one. It states no units (lengths are taken as metres): compare ratios " +
-         "between methods, not figures.</p>\n" + published_table(reference);
+         "between methods, not figures. " + of_libigl + "</p>\n" + published_table(reference);
 }
 
 std::string reference_sentence(const RunData& run) {

@@ -276,6 +276,34 @@ TEST_CASE("a quadric is fitted exactly and bends as its graph does", "[curvature
   }
 }
 
+TEST_CASE("a fold has no Gaussian curvature however its frame stands, unlike libigl's", "[curvature]") {
+  // libigl takes the eigenvalues of I⁻¹ II with its lower off-diagonal entry in both places: the same trace,
+  // so the same mean curvature, but another determinant wherever d and e are not zero and κ1 is not κ2.
+  const auto libigl = [](const Vector5d& q) {
+    const double d = q[3], e = q[4], n = 1 / std::sqrt(1 + d * d + e * e);
+    const double E = 1 + d * d, F = d * e, G = 1 + e * e, L = 2 * q[0] * n, M = q[1] * n, N = 2 * q[2] * n;
+    Eigen::Matrix2d m;
+    m << L * G - M * F, M * E - L * F, M * E - L * F, N * E - M * F;
+    m /= E * G - F * F;
+    return std::pair(-0.5 * m.trace(), m.determinant());
+  };
+  const Vector5d fold(1, 0, 0, 0.3, 0.4);  // z - d u - e v = u²
+  CHECK(quadric_curvatures(fold).gaussian == Approx(0).margin(1e-15));
+  CHECK(libigl(fold).first == Approx(quadric_curvatures(fold).mean));
+  CHECK(libigl(fold).second == Approx(-0.02949).epsilon(1e-3));
+
+  const Vector5d bowl(1, 1, 0.5, 1, -0.5);  // K = (4ac - b²)/(1 + d² + e²)²
+  CHECK(quadric_curvatures(bowl).gaussian == Approx(1 / std::pow(2.25, 2)));
+  CHECK(libigl(bowl).first == Approx(quadric_curvatures(bowl).mean));
+  CHECK(libigl(bowl).second < 0);  // a saddle, it says
+
+  const Vector5d level(1, 1, 0.5, 0, 0), round(0.5 * 1.09, 0.12, 0.5 * 1.16, 0.3, 0.4);  // II = I: κ1 = κ2
+  for (const Vector5d& q : {level, round}) {
+    CHECK(libigl(q).first == Approx(quadric_curvatures(q).mean));
+    CHECK(libigl(q).second == Approx(quadric_curvatures(q).gaussian));
+  }
+}
+
 TEST_CASE("a plane has no curvature inside, and only its border's own turning at the border", "[curvature]") {
   const int n = 12;
   const Surface s = plane(n);
