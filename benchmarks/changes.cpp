@@ -62,7 +62,7 @@ class LevelZero : public Observer {
   }
   void level_finished(const LevelResult& result) override {
     ended_ = true;
-    if (result.outcome != Outcome::converged) std::cerr << "level 0: " << result.message << "\n";
+    if (!has_converged(result.outcome)) std::cerr << "level 0: " << result.message << "\n";
   }
   bool stop_requested() override { return ended_; }
 

@@ -58,7 +58,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   level.level = result.level;
   level.file = "frames/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
-  level.converged = result.outcome == Outcome::converged;
+  level.converged = has_converged(result.outcome);
   nlohmann::ordered_json entry = {{"file", level.file}};
   for (const Frame& frame : frames) {
     level.work.push_back(before + frame.work);

@@ -300,7 +300,8 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
   std::vector<std::pair<double, std::string>> frames;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
-    if (!ended_as_asked(r.outcome)) worst = r.outcome;
+    const bool to_rounding = r.outcome == Outcome::converged_to_rounding && worst == Outcome::converged;
+    if (!ended_as_asked(r.outcome) || to_rounding) worst = r.outcome;
     Json& state = entry["levels"][i];
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)

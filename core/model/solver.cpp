@@ -14,6 +14,14 @@ std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer
   return resume(problem, MethodState(), observer);
 }
 
+bool has_converged(const std::string& outcome) {
+  return outcome == to_string(Outcome::converged) || outcome == to_string(Outcome::converged_to_rounding);
+}
+
+bool ended_as_asked(const std::string& outcome) {
+  return has_converged(outcome) || outcome == to_string(Outcome::handed_on);
+}
+
 const char* to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::converged:
@@ -30,6 +38,8 @@ const char* to_string(Outcome outcome) {
       return "refined_early";
     case Outcome::handed_on:
       return "handed_on";
+    case Outcome::converged_to_rounding:
+      return "converged_to_rounding";
   }
   return "";
 }

@@ -26,13 +26,30 @@ struct Problem {
 };
 
 /// How a solve ended. `refined_early`: on request, so that the next level could begin; `handed_on`: the same,
-/// as the experiment's `refine_at` asks.
-enum class Outcome { converged, out_of_steps, stalled, cancelled, infeasible, refined_early, handed_on };
+/// as the experiment's `refine_at` asks; `converged_to_rounding`: as near to equilibrium as doubles allow,
+/// which is not as near as the tolerance asks.
+enum class Outcome {
+  converged,
+  out_of_steps,
+  stalled,
+  cancelled,
+  infeasible,
+  refined_early,
+  handed_on,
+  converged_to_rounding
+};
 const char* to_string(Outcome outcome);
+/// Whether a level is at equilibrium.
+inline bool has_converged(Outcome outcome) {
+  return outcome == Outcome::converged || outcome == Outcome::converged_to_rounding;
+}
 /// Whether a level ended as its experiment asked.
 inline bool ended_as_asked(Outcome outcome) {
-  return outcome == Outcome::converged || outcome == Outcome::handed_on;
+  return has_converged(outcome) || outcome == Outcome::handed_on;
 }
+/// The same of outcomes in words, as results have them.
+bool has_converged(const std::string& outcome);
+bool ended_as_asked(const std::string& outcome);
 
 /// One Newton iteration, as observers see it.
 struct IterationRow {

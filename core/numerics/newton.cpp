@@ -9,6 +9,7 @@
 #include "core/numerics/block_cholesky.h"
 #include "core/numerics/hard_positions.h"
 #include "core/numerics/newton_state.h"
+#include "core/numerics/rounding_floor.h"
 
 namespace drape {
 
@@ -90,12 +91,20 @@ class Newton {
       restore(*run_.from);
     else if (!begin())
       return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
+    bool stuck = false;  // the last step found no descent but in what rounding makes of the forces
     for (bool step_begun = run_.from != nullptr;; step_begun = false) {
       if (!step_begun) {
+        bool at_floor = stuck || (idle_.many() && is_at_rounding_floor());
+        stuck = false;
+        if (at_floor && hard_.pulling()) {
+          pull_on();
+          at_floor = false;
+        }
         while (hard_.pulling() && result_.force_residual <= near_equilibrium * p_.force_tolerance) pull_on();
-        const bool settled = !hard_.pulling() && converged();
+        const bool in_tolerance = !hard_.pulling() && converged();
+        const bool settled = in_tolerance || at_floor;
         const bool changing = conditions_ && !conditions_->finished();
-        if (settled && !changing) return finish_settled();
+        if (settled && !changing) return finish_settled(in_tolerance);
         if (run_.finer_follows && hands_on()) return finish(Outcome::handed_on, "");
         // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
         // widens them twofold.
@@ -118,7 +127,13 @@ class Newton {
       if (run_.finer_follows && observer_.refine_requested())
         return finish(Outcome::refined_early,
                       "refined on request; force residual " + brief(result_.force_residual));
-      if (!step()) return finish(Outcome::stalled, message_);
+      const double step_size = h_;
+      if (!step()) {
+        stuck = is_at_rounding_floor();
+        if (!stuck) return finish(Outcome::stalled, message_);
+        h_ = step_size;
+        added_mass_ = 0;
+      }
       const double gone = (middle() - begun_at_).norm() / diagonal_;
       if (gone > lost_after)
         return finish(Outcome::infeasible,
@@ -159,6 +174,7 @@ class Newton {
     s.iterations_of_step = iterations_of_step_;
     s.strained_for = strained_for_;
     s.slowed = slowed_;
+    s.idle = idle_.memory();
     s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
     s.contacts = f_.contacts().memory();
     s.pattern = f_.pattern_memory();
@@ -189,6 +205,7 @@ class Newton {
     iterations_of_step_ = s.iterations_of_step;
     strained_for_ = s.strained_for;
     slowed_ = s.slowed;
+    idle_.restore(s.idle);
     begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
@@ -220,12 +237,27 @@ class Newton {
     if (p_.decrement_tolerance > 0 &&
         (result_.iterations < 3 || *std::max_element(decrements_, decrements_ + 3) > p_.decrement_tolerance))
       return false;
-    if (!f_.contacts().has_friction()) return true;
-    // At a fixed point of the lag: with the normal forces of here, not of where the step began.
+    renew_friction();
+    return result_.force_residual <= p_.force_tolerance;
+  }
+
+  /// Equilibrium is a fixed point of the lag: with the normal forces of here, not of where the step began.
+  void renew_friction() {
+    if (!f_.contacts().has_friction()) return;
     f_.contacts().renew_lag(result_.x);
     evaluate();
     update_residual();
-    return result_.force_residual <= p_.force_tolerance;
+  }
+
+  /// Whether the forces are no larger than rounding makes them where x is nearest to equilibrium. Takes a
+  /// matrix to find out: for where progress has stopped.
+  bool is_at_rounding_floor() {
+    idle_.restart();
+    renew_friction();
+    age_ = p_.refresh;  // the factor's matrix is overwritten
+    const RoundingFloor floor = rounding_floor(assemble(Projection::none), result_.x, g_, fixed_);
+    rounding_residual_ = floor.norm / scale_;
+    return floor.reached;
   }
 
   /// A start is no preview, pins have to be in their places, and the last of changing conditions is followed
@@ -235,9 +267,15 @@ class Newton {
            !hard_.given_up();
   }
 
-  LevelResult finish_settled() {
+  LevelResult finish_settled(bool in_tolerance) {
     if (conditions_) report_change();
-    if (!hard_.given_up()) return finish(Outcome::converged, "");
+    if (!hard_.given_up())
+      return in_tolerance ? finish(Outcome::converged, "")
+                          : finish(Outcome::converged_to_rounding,
+                                   "the force residual has come down to " + brief(result_.force_residual) +
+                                       ", not to force_tolerance = " + brief(p_.force_tolerance) +
+                                       ": rounding alone makes up to " + brief(rounding_residual_) +
+                                       " of it here, and no step lowers it");
     return finish(Outcome::infeasible,
                   hard_.message(result_.x) + "; the rest of the cloth is at equilibrium");
   }
@@ -266,6 +304,7 @@ class Newton {
     const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
     times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;
     age_ = p_.refresh;
+    idle_.restart();
     bring_held_vertices();
   }
 
@@ -358,6 +397,7 @@ class Newton {
   /// Near equilibrium with held vertices pulled: they are put on their places if nothing is in the way, or
   /// pulled harder, or given up.
   void pull_on() {
+    idle_.restart();
     if (move_with_held_vertices(true) < 1) {
       hard_.pull_harder(result_.x, limit_.by);
       take_positions();
@@ -440,6 +480,7 @@ class Newton {
       if (is_solved_to(solved_part)) break;
     }
     ++result_.steps;
+    idle_.note(energy_, result_.force_residual, noise_of_energy());
     adapt_step_size();
     return true;
   }
@@ -607,7 +648,6 @@ class Newton {
       limit_ = f_.max_step(result_.x, trial_);
     }
     PhaseTimer t(result_.seconds_by_phase, "gradient");
-    const double before = energy_ + inertia_;
     const double force_before = free_norm(r_, fixed_);
     for (alpha_ = limit_.fraction; alpha_ >= shortest_step; alpha_ *= 0.5) {
       trial_ = result_.x + alpha_ * direction_;
@@ -615,7 +655,7 @@ class Newton {
       if (!std::isfinite(energy)) continue;
       const double change = energy - energy_ + inertia_at(trial_) - inertia_;
       bool accept = change <= sufficient_decrease * alpha_ * slope_;
-      if (!accept && std::abs(change) <= energy_noise * (std::abs(before) + scale_of_work()))
+      if (!accept && std::abs(change) <= noise_of_energy())
         accept = shifted_norm(trial_, trial_g_) < force_before;
       if (!accept) continue;
       result_.x.swap(trial_);
@@ -626,8 +666,11 @@ class Newton {
     return false;
   }
 
-  /// Work of the load over the size of the cloth: energies cancel, their rounding does not.
-  double scale_of_work() const { return scale_ * std::sqrt(free_count_); }
+  /// Energies that differ by less are the same. Beside them counts the work of the load over the size of the
+  /// cloth: energies cancel, their rounding does not.
+  double noise_of_energy() const {
+    return energy_noise * (std::abs(energy_ + inertia_) + scale_ * std::sqrt(free_count_));
+  }
 
   double shifted_norm(const Positions& x, const Positions& g) const {
     double sum = 0;
@@ -667,11 +710,15 @@ class Newton {
     observer_.iteration(row, result_.x);
   }
 
+  void add_to_message(const std::string& text) {
+    if (!result_.message.empty() && !text.empty()) result_.message += "; ";
+    result_.message += text;
+  }
+
   LevelResult finish(Outcome outcome, const std::string& message) {
     result_.outcome = outcome;
+    add_to_message(message);
     if (conditions_) result_.conditions = conditions_->state();
-    if (!result_.message.empty() && !message.empty()) result_.message += "; ";
-    result_.message += message;
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
@@ -695,9 +742,11 @@ class Newton {
   ChangeBegun changed_at_;   // when the change under way was begun
   ChangeResponse response_;  // to the part of it that was made last
   int times_held_up_ = 0;
-  int strained_for_ = 0;        // steps in turn
-  bool slowed_ = false;         // h does not grow
-  int iterations_of_step_ = 1;  // that the step may take
+  IdleSteps idle_;
+  double rounding_residual_ = 0;  // that rounding may make, where that was found out last
+  int strained_for_ = 0;          // steps in turn
+  bool slowed_ = false;           // h does not grow
+  int iterations_of_step_ = 1;    // that the step may take
 
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of

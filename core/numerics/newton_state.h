@@ -10,6 +10,7 @@
 #include "core/model/solver.h"
 #include "core/numerics/block_cholesky.h"
 #include "core/numerics/hard_positions.h"
+#include "core/numerics/rounding_floor.h"
 
 namespace drape {
 
@@ -40,9 +41,10 @@ struct NewtonState {
   ChangeBegun changed_at;
   ChangeResponse response;
   int iterations_of_step = 1;  ///< that the step to come may take
-  int strained_for = 0;   ///< steps in turn that ended with forces far beyond the load; negative: without
-  bool slowed = false;    ///< for that, so that h does not grow
-  int times_held_up = 0;  ///< in turn, the change of conditions under way
+  int strained_for = 0;  ///< steps in turn that ended with forces far beyond the load; negative: without
+  bool slowed = false;   ///< for that, so that h does not grow
+  IdleSteps::Memory idle;
+  int times_held_up = 0;             ///< in turn, the change of conditions under way
   std::array<double, 3> begun_at{};  ///< middle of the free vertices, at the start or the last change [m]
   ContactMemory contacts;
   Objective::PatternMemory pattern;

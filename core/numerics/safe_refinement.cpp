@@ -181,7 +181,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       refined.iterations += result.iterations;
       const int left = objective.divide(refined.x);
       refined.cut_short = result.outcome == Outcome::cancelled;
-      idle = left < fewest || result.outcome == Outcome::converged ? 0 : idle + 1;
+      idle = left < fewest || has_converged(result.outcome) ? 0 : idle + 1;
       fewest = std::min(fewest, left);
       if (left == 0 || refined.cut_short || idle == most_idle) break;
       objective.loosen(refined.x);

@@ -70,7 +70,7 @@ struct Sheet {
 
 void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, const MethodRecord& method) {
   const std::string name = prefix + method.name;
-  sheet.converged.emplace_back(name, method.status == "converged");
+  sheet.converged.emplace_back(name, has_converged(method.status));
   for (const RowFigure& f : row_figures()) sheet.add(name, f.name, f.of(run, method));
   if (method.levels.size() > 1)
     for (const LevelRecord& level : method.levels)

@@ -140,7 +140,7 @@ std::string energy_words(double energy, double lowest) {
 }  // namespace
 
 std::string method_verdict(const RunData& run, const MethodRecord& method) {
-  if (method.status != "converged") return "did not converge; its figures are of where it stopped";
+  if (!has_converged(method.status)) return "did not converge; its figures are of where it stopped";
   Figure fastest, lowest, best_preview;
   int compared = 0;
   const auto preview = [&](const MethodRecord& m) {
@@ -150,7 +150,7 @@ std::string method_verdict(const RunData& run, const MethodRecord& method) {
     if (value) best = std::min(best.value_or(*value), *value);
   };
   for (const MethodRecord& m : run.methods) {
-    if (m.status != "converged") continue;
+    if (!has_converged(m.status)) continue;
     ++compared;
     lower(fastest, m.cost(&LevelRecord::seconds));
     lower(lowest, final_energy(run, m));
@@ -169,17 +169,23 @@ std::string method_verdict(const RunData& run, const MethodRecord& method) {
 std::string outcome_sentence(const RunData& run) {
   if (run.methods.empty()) return "The run holds no method's results yet.";
   int converged = 0;
-  for (const MethodRecord& m : run.methods) converged += m.status == "converged";
+  bool to_rounding = false;
+  for (const MethodRecord& m : run.methods) {
+    converged += has_converged(m.status);
+    to_rounding = to_rounding || m.status == to_string(Outcome::converged_to_rounding);
+  }
   const int total = static_cast<int>(run.methods.size());
   std::string text = run.complete ? "" : "The run is not complete; these are the figures it had written. ";
   text += std::to_string(converged) + " of " + std::to_string(total) + (total == 1 ? " method" : " methods") +
           " converged";
-  if (run.force_tolerance) text += " (force residual below " + shortest(*run.force_tolerance) + ")";
+  if (run.force_tolerance)
+    text += " (force residual below " + shortest(*run.force_tolerance) +
+            (to_rounding ? ", or as low as rounding allows)" : ")");
 
   const MethodRecord* lowest = nullptr;
   int compared = 0;
   for (const MethodRecord& m : run.methods) {
-    if (m.status != "converged" || !final_energy(run, m)) continue;
+    if (!has_converged(m.status) || !final_energy(run, m)) continue;
     ++compared;
     if (!lowest || *final_energy(run, m) < *final_energy(run, *lowest)) lowest = &m;
   }
@@ -187,7 +193,7 @@ std::string outcome_sentence(const RunData& run) {
     text += "; <b>" + escape(lowest->name) + "</b> ends with the lowest energy (" +
             figure(final_energy(run, *lowest)) + " J";
     for (const MethodRecord& m : run.methods) {
-      if (&m == lowest || m.status != "converged" || !final_energy(run, m)) continue;
+      if (&m == lowest || !has_converged(m.status) || !final_energy(run, m)) continue;
       text += ", " + escape(m.name) + " " + figure(*final_energy(run, m) - *final_energy(run, *lowest)) +
               " J above";
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/experiment/error_measures.h"
+#include "core/model/solver.h"
 
 namespace drape {
 
@@ -17,11 +18,6 @@ using Figure = std::optional<double>;
 
 /// Figures by name, in the order they were written.
 using NamedFigures = std::vector<std::pair<std::string, Figure>>;
-
-/// Whether a level with this status did what its experiment asks.
-inline bool ended_as_asked(const std::string& status) {
-  return status == "converged" || status == "handed_on";
-}
 
 /// One level of one method, as results.json has it (SI units).
 struct LevelRecord {

@@ -66,7 +66,7 @@ std::vector<RunRow> rows_of(const RunSet& set) {
         for (const MethodRecord& m : run->data->methods)
           if (m.name == method) {
             row.repeats.push_back({run, &m});
-            row.converged += m.status == "converged";
+            row.converged += has_converged(m.status);
           }
       }
       if (!row.repeats.empty()) rows.push_back(std::move(row));
@@ -77,7 +77,7 @@ std::vector<RunRow> rows_of(const RunSet& set) {
 std::optional<Spread> spread_of(const RunRow& row, const RowFigure& figure) {
   std::vector<double> values;
   for (const Repeat& repeat : row.repeats)
-    if (repeat.method->status == "converged")
+    if (has_converged(repeat.method->status))
       if (const Figure value = figure.of(*repeat.run->data, *repeat.method)) values.push_back(*value);
   return spread_of(std::move(values));
 }

@@ -85,7 +85,7 @@ void read_single_runs(const std::vector<fs::path>& folders, RunSet& set) {
     configs_of[run.data->experiment].insert(configs.back());
     ++folders_of[folder_name(folder)];
     bool converged = run.data->complete;
-    for (const MethodRecord& m : run.data->methods) converged = converged && m.status == "converged";
+    for (const MethodRecord& m : run.data->methods) converged = converged && has_converged(m.status);
     run.status = converged ? "converged" : "ended";
     set.runs.push_back(std::move(run));
   }

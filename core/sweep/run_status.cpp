@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/experiment/run_folder.h"
+#include "core/model/solver.h"
 
 namespace drape {
 
@@ -91,7 +92,7 @@ RunStatus settled(const RunFiles& files, RunStatus status) {
   status.state = RunState::converged;
   status.seconds = 0;
   for (const auto& [name, method] : results.at("methods").items()) {
-    if (method.value("status", "") != "converged") status.state = RunState::ended;
+    if (!has_converged(method.value("status", ""))) status.state = RunState::ended;
     status.seconds += method.value("seconds", 0.0);
   }
   status.exit_code = status.state == RunState::converged ? 0 : 1;

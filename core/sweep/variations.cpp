@@ -5,6 +5,8 @@
 #include <cstring>
 #include <map>
 
+#include "core/model/solver.h"
+
 namespace drape {
 
 namespace {
@@ -79,7 +81,7 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
   VariationParameters p;
   schema_of<VariationParameters>("a variation").read(&p, node, errors);
   Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
-  if (p.expect.outcome != "converged" && p.expect.message.empty())
+  if (!has_converged(p.expect.outcome) && p.expect.message.empty())
     errors.push_back({node.find("expect")->where,
                       "\"expect\" of what is not to converge needs a \"message\": a part of what it "
                       "says then"});

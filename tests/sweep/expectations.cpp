@@ -99,6 +99,28 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
   CHECK(!all_pass(rows({}, 0.0)));
 }
 
+TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
+  const auto passes = [](const std::string& status, const std::string& expected) {
+    RunData data;
+    data.methods.push_back({});
+    data.methods[0].status = status;
+    LevelRecord level;
+    level.status = status;
+    level.energy_on_finest = 1;
+    data.methods[0].levels.push_back(level);
+    SetRun run;
+    run.status = "converged";
+    run.expected = expected;
+    run.data = data;
+    return all_pass(table_rows({"set", true, {run}}));
+  };
+  CHECK(passes("converged_to_rounding", "converged"));
+  CHECK(passes("converged_to_rounding", "converged_to_rounding"));
+  CHECK(!passes("converged", "converged_to_rounding"));
+  CHECK(!passes("converged_to_rounding", "stalled"));
+  CHECK(!passes("stalled", "converged"));
+}
+
 TEST_CASE("an expectation says why") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
@@ -109,9 +131,8 @@ TEST_CASE("an expectation says why") {
       drape_with("sweep s.yaml", folder.path).err ==
       "error: s.yaml:4:23: \"expect\" of what is not to converge needs a \"message\": a part of what it says "
       "then\n"
-      "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"infeasible\", \"stalled\", \"out_of_steps\" "
-      "or "
-      "\"refused\", not \"refuse\"; did you mean \"refused\"?\n");
+      "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
+      "\"stalled\", \"out_of_steps\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }
 
 TEST_CASE("a sweep over several experiments names each run by its experiment") {

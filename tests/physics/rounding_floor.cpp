@@ -1,0 +1,52 @@
+#include <catch2/catch.hpp>
+
+#include "tests/support/solve.h"
+
+using namespace drape;
+using Catch::Contains;
+
+namespace {
+
+/// A strip of 1 m by 5 mm that hangs from its end like a fishing rod, asked for a tolerance far below
+/// rounding.
+std::string strip(double membrane, double bending,
+                  const std::string& more =
+                      "newton: {force_tolerance: 1e-10, "
+                      "max_steps: 700}\n") {
+  return "name: strip\ncloth: {shape: rectangle, size: [1, 0.005], columns: 201, rows: 3}\nlevels: 1\n"
+         "material: {density: 1000, thickness: 0.001, poisson_ratio: 0.3, membrane_modulus: " +
+         ConfigNode::of(membrane).scalar + ", bending_modulus: " + ConfigNode::of(bending).scalar +
+         "}\npins: [{region: box, lower: [-1, -1, -1], upper: [0.006, 1, 1]}]\n"
+         "energies: [neo_hookean, hinge, gravity]\nmethods: {newton: {}}\n" +
+         more;
+}
+
+}  // namespace
+
+TEST_CASE("Stiff narrow strips end at the rounding floor, however they come there", "[physics]") {
+  for (const double bending : {1e7, 1e9}) {  // once without any descent, once with idle steps until max_steps
+    const Solved s = solve_yaml(strip(1e9, bending));
+    const LevelResult& r = s.levels.back();
+    CAPTURE(bending, r.steps, r.message);
+    CHECK(r.outcome == Outcome::converged_to_rounding);
+    CHECK_THAT(r.message,
+               Contains("the force residual has come down to ") && Contains("force_tolerance = 1e-10"));
+    CHECK(r.force_residual < 2e-6);
+    // It hangs where it does under a tolerance that can be met.
+    const Solved loose = solve_yaml(strip(1e9, bending, "newton: {force_tolerance: 1e-5, max_steps: 700}\n"));
+    REQUIRE(loose.levels.back().outcome == Outcome::converged);
+    CHECK((r.x - loose.x()).cwiseAbs().maxCoeff() < 1e-6);
+  }
+}
+
+TEST_CASE("Under a schedule the next increment begins at the rounding floor", "[physics]") {
+  const Solved s = solve_yaml(
+      strip(1e9, 1e9,
+            "newton: {force_tolerance: 1e-10, max_steps: 700}\n"
+            "schedule: {steps: 3, settle: true, keys: [{set: energies.gravity.acceleration, at: [0, 1], "
+            "to: [[0, 0, -9.81], [0, 0, -12]]}]}\n"));
+  const LevelResult& r = s.levels.back();
+  CAPTURE(r.steps, r.message);
+  CHECK(r.outcome == Outcome::converged_to_rounding);
+  CHECK(r.conditions.change == 3);
+}

@@ -1,0 +1,224 @@
+#include "core/numerics/rounding_floor.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/mesh/generate.h"
+#include "core/numerics/newton.h"
+#include "core/numerics/newton_state.h"
+
+using namespace drape;
+
+namespace {
+
+using Vector3 = Eigen::Vector3d;
+
+/// By what the forces, or the load among them, are other than the energy's.
+struct Fault {
+  double all = 1, load = 1;
+};
+
+/// Springs ½ k (|x_a − x_b| − L)² along all edges, and a constant force on every vertex: a stiff, narrow
+/// strip that hangs.
+class Springs : public Energy, public BoundEnergy {
+ public:
+  Springs(const TriangleMesh& rest, double k, Vector3 load) : rest_(rest.vertices), k_(k), load_(load) {
+    const Topology topology = Topology::of(rest.triangles, static_cast<int>(rest.vertices.rows()));
+    for (int i = 0; i < rest_.rows(); ++i)
+      for (const int* j = topology.vertex_vertices.begin(i); j != topology.vertex_vertices.end(i); ++j)
+        if (i < *j) edges_.push_back({i, *j});
+  }
+  Fault fault;
+
+  EnergyRole role() const override { return EnergyRole::membrane; }
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
+    return std::make_unique<Springs>(*this);
+  }
+  double value(const Positions& x) const override {
+    double sum = -(x * load_).sum();
+    for (const auto& [a, b] : edges_) sum += 0.5 * k_ * std::pow(stretch<double>(x, a, b), 2);
+    return sum;
+  }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g += fault.all * gradient<double>(x);
+    g.rowwise() -= (fault.load - 1) * load_.transpose();
+    return value(x);
+  }
+  /// In any arithmetic, of positions that are doubles.
+  template <class T>
+  Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor> gradient(const Positions& x) const {
+    Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor> g =
+        -load_.transpose().template cast<T>().replicate(x.rows(), 1);
+    for (const auto& [a, b] : edges_) {
+      const auto d = (x.row(a).template cast<T>() - x.row(b).template cast<T>()).eval();
+      const auto force = (T(k_) * stretch<T>(x, a, b) * d / d.norm()).eval();
+      g.row(a) += force;
+      g.row(b) -= force;
+    }
+    return g;
+  }
+  Stencils stencils() const override {
+    Stencils s(edges_.size(), 2);
+    for (std::size_t e = 0; e < edges_.size(); ++e) s.row(e) << edges_[e][0], edges_[e][1];
+    return s;
+  }
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
+    for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+      const auto [a, b] = edges_[e];
+      const Vector3 d = (x.row(a) - x.row(b)).transpose(), n = d.normalized();
+      const double across = projection.map(k_ * stretch<double>(x, a, b) / d.norm());
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> h = across * Eigen::Matrix3d::Identity() +
+                                                             (k_ - across) * n * n.transpose(),
+                                                         minus = -h;
+      sink.add(e, 0, 0, h.data());
+      sink.add(e, 0, 1, minus.data());
+      sink.add(e, 1, 1, h.data());
+    }
+  }
+
+ private:
+  template <class T>
+  T stretch(const Positions& x, int a, int b) const {
+    return (x.row(a).cast<T>() - x.row(b).cast<T>()).norm() -
+           (rest_.row(a).cast<T>() - rest_.row(b).cast<T>()).norm();
+  }
+
+  Positions rest_;
+  double k_;
+  Vector3 load_;
+  std::vector<std::array<int, 2>> edges_;
+};
+
+/// A strip of 1 m by 5 mm that hangs along x from its first column.
+struct HangingStrip {
+  Level level = Level::of(0, grid({1, 0.005}, 41, 2, Diagonals::one_way));
+  std::shared_ptr<Springs> springs;
+  LevelModel model;
+  PlainObjective objective;
+
+  explicit HangingStrip(double k, Fault fault = {})
+      : springs(std::make_shared<Springs>(level.rest, k, Vector3(1e-3, 0, 0))),
+        model(level, Material(), {{"springs", (springs->fault = fault, springs)}}, held(level)),
+        objective(model) {}
+
+  static std::vector<HeldVertex> held(const Level& level) {
+    std::vector<HeldVertex> held;
+    for (int i = 0; i < level.vertex_count(); ++i)
+      if (level.rest.vertices(i, 0) == 0) held.push_back({i, level.rest.vertices.row(i), 0});
+    return held;
+  }
+  LevelResult solve(NewtonParameters p, Observer& observer, const NewtonState* from = nullptr) {
+    return minimise(objective, from ? Positions() : level.rest.vertices, p,
+                    {Stopwatch(), observer, false, {}, from});
+  }
+};
+
+NewtonParameters far_too_tight(NewtonForm form) {
+  NewtonParameters p;
+  p.form = form;
+  p.force_tolerance = 1e-13;
+  p.max_steps = 400;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("The bound of a vertex adds up what its neighbours' last digits do") {
+  BlockMatrix h(BlockPattern::of(3, {Stencils(Eigen::RowVector2i(0, 1))}));
+  h.set_zero();
+  for (int i = 0; i < 3; ++i)
+    for (int c = 0; c < 3; ++c) h.block(h.pattern->find(i, i))[4 * c] = i + 1;
+  h.block(h.pattern->find(0, 1))[1] = -10;
+  Positions x(3, 3);
+  x << 0, 0, 2, 3, 4, 0, 0, 1, 0;
+  const double u = std::pow(2, -53), identity = std::sqrt(3.0);
+  const Eigen::VectorXd bounds = rounding_bounds(h, x);
+  CHECK(bounds[0] == Approx(u * (identity * 2 + 10 * 5)));
+  CHECK(bounds[1] == Approx(u * (2 * identity * 5 + 10 * 2)));
+  CHECK(bounds[2] == Approx(u * 3 * identity));
+
+  Positions g = Positions::Zero(3, 3);
+  g(0, 1) = 0.99 * bounds[0];
+  g(1, 1) = 1;
+  CHECK(rounding_floor(h, x, g, {0, 1, 0}).reached);
+  CHECK(rounding_floor(h, x, g, {0, 1, 0}).norm == Approx(std::hypot(bounds[0], bounds[2])));
+  CHECK(!rounding_floor(h, x, g, {0, 0, 0}).reached);
+  g(0, 1) = std::nan("");
+  CHECK(!rounding_floor(h, x, g, {0, 1, 0}).reached);
+}
+
+TEST_CASE("Steps are idle while neither energy nor residual falls") {
+  IdleSteps idle;
+  const auto after = [&](int steps, double energy, double residual) {
+    for (int k = 0; k < steps; ++k) idle.note(energy, residual, 1e-12);
+    return idle.many();
+  };
+  CHECK(!after(10, 1, 1e-3));
+  CHECK(after(1, 1 + 1e-13, 0.7e-3));
+  CHECK(!after(1, 1, 0.4e-3));  // the residual has halved
+  CHECK(!after(9, 1, 0.4e-3));
+  CHECK(!after(1, 1 - 2e-12, 0.4e-3));  // the energy has fallen
+  CHECK(after(10, 1 - 2e-12, 0.4e-3));
+  idle.restart();
+  CHECK(!after(10, 1 - 2e-12, 0.4e-3));
+  for (int k = 0; k < 30; ++k) idle.note(1 - 1e-12 * k / 4, 1e-3, 1e-12);  // creeps: falls in the end
+  CHECK(!idle.many());
+  for (int k = 0; k < 30; ++k) idle.note(std::nan(""), 1e-3, 1e-12);
+  CHECK(!idle.many());
+}
+
+TEST_CASE("A strip that is as near to equilibrium as doubles allow has converged to rounding") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
+    for (const double k : {1e4, 1e6, 1e8}) {
+      HangingStrip strip(k);
+      Observer silent;
+      const LevelResult r = strip.solve(far_too_tight(form), silent);
+      CAPTURE(int(form), k, r.steps, r.message);
+      CHECK(r.outcome == Outcome::converged_to_rounding);
+      CHECK(ended_as_asked(r.outcome));
+      CHECK_THAT(r.message,
+                 Catch::StartsWith("the force residual has come down to ") &&
+                     Catch::Contains("not to force_tolerance = 1e-13: rounding alone makes up to "));
+      // Exactly, of the positions as they are.
+      const Eigen::VectorXd bounds = rounding_bounds(strip.objective.matrix(r.x, Projection::none), r.x);
+      const auto exact = strip.springs->gradient<long double>(r.x);
+      for (int i = 0; i < r.x.rows(); ++i)
+        if (!strip.model.fixed()[i]) CHECK(exact.row(i).norm() <= 2 * bounds[i]);
+      // And the strip is where it hangs: k is that of the whole width's springs.
+      CHECK(r.x.col(0).maxCoeff() > 1);
+    }
+}
+
+TEST_CASE("A run that ends at the rounding floor goes on from any of its states to the same bits") {
+  struct Keeping : Observer {
+    std::vector<NewtonState> states;
+    bool checkpoint_due() override { return true; }
+    void checkpoint(const NewtonState& state) override { states.push_back(state); }
+  };
+  Keeping whole;
+  HangingStrip strip(1e6);
+  const NewtonParameters p = far_too_tight(NewtonForm::quasistatic);
+  const LevelResult expected = strip.solve(p, whole);
+  REQUIRE(expected.outcome == Outcome::converged_to_rounding);
+  for (const NewtonState& state : whole.states) {
+    Observer silent;
+    HangingStrip again(1e6);
+    const LevelResult r = again.solve(p, silent, &state);
+    CHECK(r.outcome == expected.outcome);
+    CHECK(r.steps == expected.steps);
+    CHECK(r.x == expected.x);
+  }
+}
+
+TEST_CASE("A strip whose forces are not those of its energy has not converged to rounding") {
+  for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
+    for (const Fault fault : {Fault{-1, 1}, Fault{1, 3}}) {
+      HangingStrip strip(1e6, fault);
+      Observer silent;
+      const LevelResult r = strip.solve(far_too_tight(form), silent);
+      CAPTURE(int(form), fault.all, r.steps, r.message, r.force_residual);
+      const bool uphill = form == NewtonForm::statics && fault.all < 0;  // without inertia, that gives way
+      CHECK(r.outcome == (uphill ? Outcome::stalled : Outcome::out_of_steps));
+      CHECK(r.force_residual > 0.1);
+    }
+}
