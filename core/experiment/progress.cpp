@@ -8,8 +8,24 @@
 
 namespace drape {
 
-Progress::Progress(double tolerance, int levels, bool quiet)
-    : tolerance_(tolerance), levels_(levels), quiet_(quiet), terminal_(isatty(STDERR_FILENO)) {}
+namespace {
+
+/// "gravity.acceleration", "pins.0.move, contact.range", "pins.0.move and 3 more".
+std::string first_two(const std::vector<std::string>& names) {
+  if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
+  return names.empty() ? "" : names[0] + (names.size() == 2 ? ", " + names[1] : "");
+}
+
+}  // namespace
+
+Progress::Progress(double tolerance, int levels, bool quiet, const Conditions* conditions,
+                   std::vector<std::string> changing)
+    : tolerance_(tolerance),
+      levels_(levels),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO)),
+      conditions_(conditions),
+      changing_(first_two(changing)) {}
 
 void Progress::method_started(const std::string& method) { method_ = method; }
 
@@ -17,39 +33,56 @@ void Progress::level_started(int) {
   level_clock_ = Stopwatch();
   last_draw_ = 0;
   first_residual_ = 0;
-  track_.clear();
+  done_ = 0;
+  to_go_ = TimeToGo();
 }
 
 void Progress::iteration(const IterationRow& row, const Positions&) {
-  if (first_residual_ == 0) first_residual_ = row.force_residual;
+  take_note(row);
   const double now = level_clock_.seconds();
-  track_.emplace_back(now, row.force_residual);
+  to_go_.note(now, done_);
   if (quiet_ || now - last_draw_ < (terminal_ ? 0.1 : 10)) return;
   last_draw_ = now;
   draw(row);
 }
 
-/// Carries the residual's decay over the later half of the level so far on to the tolerance.
-double Progress::seconds_to_go() const {
-  if (track_.size() < 8) return -1;
-  const auto& [t0, r0] = track_[track_.size() / 2];
-  const auto& [t1, r1] = track_.back();
-  const double rate = std::log(r0 / r1) / (t1 - t0);
-  return rate > 0 ? std::log(r1 / tolerance_) / rate : -1;
+/// How much has been done: of an equilibrium the part of the way, by the residual's logarithm, to the
+/// tolerance; of a schedule increments as well, of which the beginning is one.
+void Progress::take_note(const IterationRow& row) {
+  const bool scheduled = conditions_ && row.time;
+  const int increment = scheduled ? conditions_->change() : 0, last = scheduled ? conditions_->changes() : 0;
+  if (first_residual_ == 0 || increment != increment_) first_residual_ = best_residual_ = row.force_residual;
+  increment_ = increment;
+  best_residual_ = std::min(best_residual_, row.force_residual);
+  const bool is_solved = !scheduled || conditions_->settles() || increment == last;
+  const double decades = std::log(first_residual_ / tolerance_);
+  const double part = decades > 0 ? std::log(first_residual_ / best_residual_) / decades : 1;
+  done_ = std::max(done_, (increment + (is_solved ? std::clamp(part, 0.0, 1.0) : 0)) / (last + 1));
+}
+
+std::string Progress::line(const IterationRow& row) const {
+  constexpr int width = 16;
+  std::string bar, increment, to_go;
+  for (int k = 0; k < width; ++k) bar += k < done_ * width ? "█" : "░";
+  char text[256];
+  if (conditions_ && row.time) {
+    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, conditions_->changes());
+    increment = text + changing_ + " ";
+  }
+  if (const std::optional<double> seconds = to_go_.seconds()) {
+    std::snprintf(text, sizeof text, "  about %.0f s to go", *seconds);
+    to_go = text;
+  }
+  std::snprintf(text, sizeof text, "step %-4d residual %.2e  energy %.6g J", row.step, row.force_residual,
+                row.energy);
+  const std::string level = "level " + std::to_string(row.level) + "/" + std::to_string(levels_ - 1) + " ";
+  return method_ + std::string(method_.size() < 10 ? 10 - method_.size() : 1, ' ') + level + increment + bar +
+         " " + text + to_go;
 }
 
 void Progress::draw(const IterationRow& row) {
-  const double part = std::clamp(
-      std::log(first_residual_ / row.force_residual) / std::log(first_residual_ / tolerance_), 0.0, 1.0);
-  constexpr int width = 16;
-  std::string bar;
-  for (int k = 0; k < width; ++k) bar += k < part * width ? "█" : "░";
-  char to_go[32] = "";
-  if (const double s = seconds_to_go(); s >= 0) std::snprintf(to_go, sizeof to_go, "  about %.0f s to go", s);
   clear_line();
-  std::fprintf(stderr, "%-9s level %d/%d %s step %-4d residual %.2e  energy %.6g J%s%s", method_.c_str(),
-               row.level, levels_ - 1, bar.c_str(), row.step, row.force_residual, row.energy, to_go,
-               terminal_ ? "" : "\n");
+  std::fprintf(stderr, "%s%s", line(row).c_str(), terminal_ ? "" : "\n");
   std::fflush(stderr);
   drawn_ = terminal_;
 }

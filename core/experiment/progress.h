@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/experiment/time_to_go.h"
 #include "core/model/solver.h"
 #include "core/numerics/stopwatch.h"
 
@@ -12,27 +13,35 @@ namespace drape {
 /// then where standard error is no terminal), and one that stays for every level done.
 class Progress : public Observer {
  public:
-  /// `tolerance` of the force residual is where the bar is full; `levels` how many there are.
-  Progress(double tolerance, int levels, bool quiet);
+  /// `tolerance` of the force residual is where the bar is full; `levels` how many there are. Under
+  /// `conditions` that change, of the parameters `changing`, it is full after the last of them.
+  Progress(double tolerance, int levels, bool quiet, const Conditions* conditions = nullptr,
+           std::vector<std::string> changing = {});
 
   void method_started(const std::string& method);
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
+  /// What is shown after an iteration.
+  std::string line(const IterationRow& row) const;
+
  private:
-  double seconds_to_go() const;
+  void take_note(const IterationRow& row);
   void draw(const IterationRow& row);
   void clear_line();
 
   double tolerance_;
   int levels_;
   bool quiet_, terminal_, drawn_ = false;
-  std::string method_;
-  double first_residual_ = 0;
+  const Conditions* conditions_;
+  std::string changing_, method_;
   Stopwatch level_clock_;
   double last_draw_ = 0;
-  std::vector<std::pair<double, double>> track_;  // seconds, force residual of the level
+  int increment_ = 0;                              // of the conditions, that the residuals are of
+  double first_residual_ = 0, best_residual_ = 0;  // under the present conditions; 0 before the first
+  double done_ = 0;                                // of the level, in [0, 1]
+  TimeToGo to_go_;
 };
 
 }  // namespace drape

@@ -127,10 +127,12 @@ const Solver& solver_of(const Experiment& experiment, const std::string& method)
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
   Session session(folder, recorder, begun, options.checkpoint);
-  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
-                    options.quiet);
-  RunObserver observer(recorder, session, progress, options.view, options.stop);
   const Problem problem = scene.problem();
+  std::vector<std::string> changing;
+  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.set);
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
+                    problem.conditions, changing);
+  RunObserver observer(recorder, session, progress, options.view, options.stop);
 
   bool all_converged = begun.all_converged, cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {

@@ -1,0 +1,117 @@
+#include "core/experiment/time_to_go.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/experiment/progress.h"
+
+using namespace drape;
+
+TEST_CASE("The time to go is right for a steady rate, and unknown at first") {
+  TimeToGo to_go;
+  CHECK(!to_go.seconds());
+  for (int k = 0; k <= 90; ++k) {
+    to_go.note(k, 0.01 * k);
+    if (k < 7) CHECK(!to_go.seconds());
+  }
+  REQUIRE(to_go.seconds());
+  CHECK(*to_go.seconds() == Approx(10).epsilon(0.1));
+}
+
+TEST_CASE("The time to go does not jump, whatever the rate does") {
+  // Nothing for long, then much at once, and slower and slower.
+  TimeToGo to_go;
+  double seconds = 0, done = 0, last = 0;
+  int shown = 0;
+  for (int k = 0; k < 2000; ++k) {
+    seconds += k % 100 == 0 ? 3 : 0.05;
+    if (k % 40 < 10) done += (1 - done) * (k % 400 == 0 ? 0.2 : 0.002);
+    to_go.note(seconds, done);
+    if (!to_go.seconds()) continue;
+    ++shown;
+    if (last > 0) {
+      CHECK(*to_go.seconds() <= 2 * last);
+      CHECK(*to_go.seconds() >= 0.5 * last);
+    }
+    last = *to_go.seconds();
+  }
+  CHECK(shown > 1000);
+}
+
+TEST_CASE("The time to go is unknown where nothing has been done for long") {
+  TimeToGo to_go;
+  for (int k = 0; k <= 20; ++k) to_go.note(k, 0.01 * k);
+  CHECK(to_go.seconds());
+  for (int k = 21; k <= 60; ++k) to_go.note(k, 0.1);  // less than before
+  CHECK(!to_go.seconds());
+}
+
+namespace {
+
+/// Forty increments, `at` of which is under way.
+struct Forty : Conditions {
+  int at = 0;
+  bool settled = true;
+  int changes() const override { return 40; }
+  bool settles() const override { return settled; }
+  void begin(int, bool) override {}
+  ConditionsState state() const override { return {at, {}}; }
+  void restore(int, const ConditionsState&) override {}
+  int change() const override { return at; }
+  bool made() const override { return true; }
+  double time() const override { return at; }
+  StepLimit advance(int, const Positions&) override { return {}; }
+  bool advance_by(double, int, const Positions&) override { return false; }
+};
+
+IterationRow row_of(int step, double residual, std::optional<double> time = {}) {
+  IterationRow row;
+  row.level = 1;
+  row.step = step;
+  row.force_residual = residual;
+  row.energy = -0.25;
+  row.time = time;
+  return row;
+}
+
+std::string line_after(Progress& progress, const IterationRow& row) {
+  progress.iteration(row, Positions());
+  return progress.line(row);
+}
+
+}  // namespace
+
+TEST_CASE("The progress line shows how far a level is from its tolerance") {
+  Progress progress(1e-4, 3, true);
+  progress.method_started("pcs");
+  progress.level_started(1);
+  CHECK(line_after(progress, row_of(0, 1)) ==
+        "pcs       level 1/2 ░░░░░░░░░░░░░░░░ step 0    residual 1.00e+00  energy -0.25 J");
+  CHECK(line_after(progress, row_of(7, 1e-2)) ==
+        "pcs       level 1/2 ████████░░░░░░░░ step 7    residual 1.00e-02  energy -0.25 J");
+  // What has been reached stays, though the residual rises for a while.
+  CHECK(line_after(progress, row_of(8, 10)) ==
+        "pcs       level 1/2 ████████░░░░░░░░ step 8    residual 1.00e+01  energy -0.25 J");
+}
+
+TEST_CASE("Under a schedule the progress line shows which increment of how many, and of what") {
+  Forty conditions;
+  Progress progress(1e-4, 3, true, &conditions, {"pins.0.move"});
+  progress.method_started("newton");
+  progress.level_started(1);
+  CHECK(line_after(progress, row_of(0, 1, 0)) ==
+        "newton    level 1/2 increment 0/40 of pins.0.move ░░░░░░░░░░░░░░░░ step 0    residual 1.00e+00  "
+        "energy -0.25 J");
+  conditions.at = 20;  // half of an increment in the middle of 41
+  line_after(progress, row_of(99, 1, 20));
+  CHECK(line_after(progress, row_of(100, 1e-2, 20)) ==
+        "newton    level 1/2 increment 20/40 of pins.0.move ████████░░░░░░░░ step 100  residual 1.00e-02  "
+        "energy -0.25 J");
+
+  Progress of_many(1e-4, 3, true, &conditions, {"pins.0.move", "material.density", "contact.friction"});
+  of_many.level_started(1);
+  CHECK_THAT(line_after(of_many, row_of(0, 1, 20)),
+             Catch::Contains(" increment 20/40 of pins.0.move and 2 more "));
+  // A solve without conditions after such a one, as of the reference.
+  CHECK_THAT(line_after(of_many, row_of(0, 1)), !Catch::Contains("increment"));
+}
