@@ -505,6 +505,13 @@ TEST_CASE("every method has a verdict beside the others that converged") {
   CHECK(method_verdict(run, run.methods[0]) == "fastest; lowest energy; best preview");
   CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
   CHECK(method_verdict(run, run.methods[2]) == "did not converge; its figures are of where it stopped");
+  run.force_tolerance = 0.001;
+  CHECK(contains(outcome_sentence(run), "2 of 3 methods converged (force residual below 0.001); <b>pcs</b>"));
+
+  run.methods[2].status = "converged_to_rounding";
+  CHECK(method_verdict(run, run.methods[2]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
+  CHECK(contains(outcome_sentence(run),
+                 "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }
 
 TEST_CASE("the viewer has every state, and recorded frames that fit their mesh") {

@@ -99,6 +99,12 @@ TEST_CASE("what did not converge is told with its message") {
   const std::string text = troubles(run);
   CHECK(text.find("<b>a&lt;b</b>, level 0: stalled after 1 iterations at force residual 1.01: held by cloth "
                   "triangle 3 &amp; ball") != std::string::npos);
+
+  level.status = "converged_to_rounding";
+  CHECK(troubles(run) ==
+        "<p>To be known of what converged:</p>\n<ul>\n<li><b>a&lt;b</b>, level 0: held by cloth triangle 3 "
+        "&amp; "
+        "ball</li>\n</ul>\n");
 }
 
 TEST_CASE("Table 1 as text sets the paper's columns beside the run's") {
