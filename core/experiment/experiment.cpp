@@ -46,7 +46,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .path()
       .meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
-      .choices({"one_way", "criss_cross", "random"})
+      .choices({"one_way", "criss_cross", "equilateral", "random"})
       .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
       .at_least(3)

@@ -43,6 +43,10 @@ TriangleMesh make_cloth(const Experiment& e) {
   }
   const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
   if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
+  if (c.triangulation == "equilateral") {
+    const Eigen::Vector2i counts = equilateral_counts(size, c.vertices, c.columns, c.rows);
+    return equilateral(size, counts.x(), counts.y());
+  }
   return make_grid(c, size);
 }
 

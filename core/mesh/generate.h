@@ -19,6 +19,15 @@ enum class Diagonals {
 /// j.
 TriangleMesh grid(Eigen::Vector2d size, int columns, int rows, Diagonals diagonals);
 
+/// A rectangle from (0, 0) to `size` in `rows` rows of triangles' sides, `columns` vertices in the first and
+/// one more in every other, which is shifted by half a side: equilateral triangles where size.y() / (rows -
+/// 1) is √3/2 · size.x() / (columns - 1), and halves of them at the sides x = 0 and x = size.x().
+TriangleMesh equilateral(const Eigen::Vector2d& size, int columns, int rows);
+
+/// Columns and rows for `equilateral` that come nearest to equilateral triangles and, where both given counts
+/// are 0, to `vertices` in all; a count above 0 stays.
+Eigen::Vector2i equilateral_counts(const Eigen::Vector2d& size, int vertices, int columns = 0, int rows = 0);
+
 /// Corners of one closed polygon in order, in either direction; the last is joined to the first.
 using Polygon = std::vector<Eigen::Vector2d>;
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/hierarchy/level.h"
+#include "core/hierarchy/midpoint.h"
 #include "core/mesh/check.h"
 #include "core/mesh/delaunay.h"
 
@@ -70,6 +71,86 @@ TEST_CASE("diagonals go one way or criss-cross", "[generate]") {
   CHECK(valence(Diagonals::criss_cross, 8) == 4);   // (2, 1)
   CHECK(valence(Diagonals::criss_cross, 13) == 4);  // (1, 2)
   CHECK(valence(Diagonals::criss_cross, 14) == 8);  // (2, 2)
+}
+
+namespace {
+
+/// Angles of all triangles whose vertices all satisfy `inside` [degrees].
+template <class Inside>
+std::vector<double> angles_where(const TriangleMesh& mesh, const Inside& inside) {
+  std::vector<double> angles;
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d p = mesh.vertices.row(mesh.triangles(t, k)),
+                               a = mesh.vertices.row(mesh.triangles(t, (k + 1) % 3)),
+                               b = mesh.vertices.row(mesh.triangles(t, (k + 2) % 3));
+      if (!inside(p) || !inside(a) || !inside(b)) continue;
+      angles.push_back(std::acos((a - p).normalized().dot((b - p).normalized())) * 180 / std::numbers::pi);
+    }
+  return angles;
+}
+
+}  // namespace
+
+TEST_CASE("an equilateral triangulation has angles of 60 degrees, and halves at two sides", "[generate]") {
+  const int columns = GENERATE(2, 7, 12), rows = GENERATE(2, 3, 9, 10);
+  const double side = 0.1;
+  const Eigen::Vector2d size((columns - 1) * side, (rows - 1) * std::sqrt(0.75) * side);
+  const TriangleMesh mesh = equilateral(size, columns, rows);
+  CAPTURE(columns, rows);
+  CHECK(mesh.vertices.rows() == columns * rows + rows / 2);
+  CHECK(mesh.triangles.rows() == (rows - 1) * (2 * columns - 1));
+  require_pattern(mesh, size.prod(), 0, 29.9);
+  CHECK(mesh.vertices.colwise().maxCoeff() == Eigen::RowVector3d(size.x(), size.y(), 0));
+  CHECK(mesh.vertices.colwise().minCoeff() == Eigen::RowVector3d(0, 0, 0));
+
+  // Triangles that do not touch the sides x = 0 and x = width.
+  const auto inside = [&](const Eigen::RowVector3d& p) { return p.x() > 0 && p.x() < size.x(); };
+  for (const double angle : angles_where(mesh, inside)) CHECK(angle == Approx(60).epsilon(1e-9));
+  // All others, two a strip, have a half or a whole triangle's angles.
+  for (const double angle : angles_where(mesh, [](const Eigen::RowVector3d&) { return true; }))
+    CHECK(std::min({std::abs(angle - 30), std::abs(angle - 60), std::abs(angle - 90)}) < 1e-9);
+}
+
+TEST_CASE("1→4 refinement keeps an equilateral triangulation, its corners and its sides", "[generate]") {
+  const Eigen::Vector2d size(0.8, 8 * std::sqrt(0.75) * 0.1);
+  const Level coarse = Level::of(0, equilateral(size, 9, 9));
+  const Refinement fine = midpoint_refinement(coarse);
+  const TriangleMesh mesh{fine.weights * coarse.rest.vertices, fine.triangles};
+  require_pattern(mesh, size.prod(), 0, 29.9);
+  const auto inside = [&](const Eigen::RowVector3d& p) {
+    return p.x() > 0.051 && p.x() < size.x() - 0.051;  // beyond the coarse half triangles
+  };
+  const std::vector<double> angles = angles_where(mesh, inside);
+  CHECK(angles.size() > 3 * 100);
+  for (const double angle : angles) CHECK(angle == Approx(60).epsilon(1e-9));
+}
+
+TEST_CASE("an equilateral triangulation is had in about the asked number, nearly equilateral", "[generate]") {
+  for (const Eigen::Vector2d& size : {Eigen::Vector2d(1, 1), {0.4, 0.05}, {0.7, 2.1}, {3, 0.02}})
+    for (const int vertices : {150, 1024, 1600, 20000}) {
+      const Eigen::Vector2i counts = equilateral_counts(size, vertices);
+      const int made = counts.x() * counts.y() + counts.y() / 2;
+      const double side = size.x() / (counts.x() - 1), height = size.y() / (counts.y() - 1);
+      CAPTURE(size.transpose(), vertices, made, height / side);
+      // Whole strips of whole triangles: half a strip more or less, and the number changes by 1/strips.
+      const double allowed = std::max(0.05, 1.2 / (std::min(counts.x(), counts.y()) - 1));
+      CHECK(std::abs(made - vertices) <= allowed * vertices);
+      CHECK(std::abs(height / side / std::sqrt(0.75) - 1) <= allowed);
+    }
+  // A count that is given stays.
+  CHECK(equilateral_counts({1, 1}, 1024, 11, 0) == Eigen::Vector2i(11, 13));
+  CHECK(equilateral_counts({1, 1}, 1024, 0, 13) == Eigen::Vector2i(11, 13));
+  CHECK(equilateral_counts({1, 1}, 1024, 5, 6) == Eigen::Vector2i(5, 6));
+  // Shapes that cannot be met in this number of vertices still do not ask for more.
+  for (const Eigen::Vector2d& size : {Eigen::Vector2d(1e6, 1e-6), {1e-6, 1e6}}) {
+    const Eigen::Vector2i counts = equilateral_counts(size, 1000);
+    CAPTURE(counts.transpose());
+    CHECK(counts.minCoeff() >= 2);
+    CHECK(counts.x() * counts.y() <= 1000);
+  }
+  CHECK_THROWS_WITH(equilateral({1, 0}, 3, 3), "equilateral: the size must be positive");
+  CHECK_THROWS_WITH(equilateral({1, 1}, 1, 3), "equilateral: at least 2 × 2 vertices are needed");
 }
 
 TEST_CASE("Delaunay patterns meet the count, the area and the angle", "[generate]") {
