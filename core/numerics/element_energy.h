@@ -9,6 +9,7 @@
 
 #include "core/model/energy.h"
 #include "core/numerics/element_order.h"
+#include "core/numerics/element_pack.h"
 #include "core/numerics/pack.h"
 #include "core/numerics/parallel.h"
 #include "core/numerics/project_hessian.h"
@@ -61,18 +62,15 @@ class ElementEnergy final : public BoundEnergy {
  public:
   /// Elements m×k, the rest numbers of each, and an order of theirs.
   ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order)
-      : order_(std::move(order)), stencils_(elements.rows(), k) {
-    for (Eigen::Index e = 0; e < elements.rows(); ++e) stencils_.row(e) = elements.row(order_.elements[e]);
+      : order_(std::move(order)), stencils_(in_order(elements, order_)) {
     for (int c = 0; c < order_.chunks(); ++c) {
       first_pack_.push_back(static_cast<int>(packs_.size()));
       const int end = order_.chunk_start[c + 1];
       for (int first = order_.chunk_start[c]; first < end; first += W) {
-        Elements pack{{}, {}, first, std::min(W, end - first)};
-        for (int lane = 0; lane < W; ++lane) {
-          const int e = std::min(first + lane, end - 1);  // lanes left over repeat the last element
-          for (int v = 0; v < k; ++v) pack.vertices[v][lane] = 3 * stencils_(e, v);
-          for (int r = 0; r < rest_size; ++r) pack.rest[r].v[lane] = rest[order_.elements[e]][r];
-        }
+        Elements pack{{stencils_, first, end}, {}};
+        for (int lane = 0; lane < W; ++lane)
+          for (int r = 0; r < rest_size; ++r)
+            pack.rest[r].v[lane] = rest[order_.elements[pack.place(lane)]][r];
         packs_.push_back(pack);
       }
     }
@@ -88,7 +86,7 @@ class ElementEnergy final : public BoundEnergy {
         sums[c] = sum_of_chunk(
             c, [&](const Elements& pack) __attribute__((flatten)) {
               Vector d[k - 1];
-              gather(pack, x, d);
+              pack.gather(x, d);
               return Kernel::value(d, pack.rest);
             });
     });
@@ -101,9 +99,9 @@ class ElementEnergy final : public BoundEnergy {
       sums[c] = sum_of_chunk(
           c, [&](const Elements& pack) __attribute__((flatten)) {
             Vector d[k - 1], by_difference[k - 1];
-            gather(pack, x, d);
+            pack.gather(x, d);
             const T energy = Kernel::gradient(d, pack.rest, by_difference);
-            scatter(pack, by_difference, g);
+            pack.scatter(by_difference, g);
             return energy;
           });
     });
@@ -117,9 +115,9 @@ class ElementEnergy final : public BoundEnergy {
       for (int p = first_pack_[c]; p < first_pack_[c + 1]; ++p) {
         Vector d[k - 1];
         Hessian h;
-        gather(packs_[p], x, d);
+        packs_[p].gather(x, d);
         projected_hessian<Kernel>(d, packs_[p].rest, projection, h);
-        scatter(packs_[p], h, sink);
+        packs_[p].scatter(h, sink);
       }
     });
   }
@@ -131,11 +129,8 @@ class ElementEnergy final : public BoundEnergy {
   using Hessian = SymmetricMatrix<3 * (k - 1), T>;
   using Sums = std::array<double, ElementOrder::max_chunks>;
 
-  struct Elements {
+  struct Elements : ElementPack<k, W> {
     T rest[rest_size];
-    int vertices[k][W];  ///< where their coordinates start: 3 times the index
-    int first;           ///< row of stencils_ in lane 0
-    int active;          ///< lanes that count
   };
 
   template <class Body>
@@ -156,55 +151,6 @@ class ElementEnergy final : public BoundEnergy {
     double result = 0;
     for (int c = 0; c < order_.chunks(); ++c) result += sums[c];
     return result;
-  }
-
-  static void gather(const Elements& pack, const Positions& x, Vector* d) {
-    Vector origin;
-    gather_rows(x.data(), pack.vertices[0], origin[0], origin[1], origin[2]);
-    for (int v = 1; v < k; ++v) {
-      gather_rows(x.data(), pack.vertices[v], d[v - 1][0], d[v - 1][1], d[v - 1][2]);
-      d[v - 1] -= origin;
-    }
-  }
-
-  static void scatter(const Elements& pack, const Vector* by_difference, Positions& g) {
-    Vector all[k];
-    all[0] = -by_difference[0];
-    for (int v = 1; v < k; ++v) {
-      all[v] = by_difference[v - 1];
-      if (v > 1) all[0] -= all[v];
-    }
-    for (int lane = 0; lane < pack.active; ++lane)
-      for (int v = 0; v < k; ++v) {
-        double* to = g.data() + pack.vertices[v][lane];
-        for (int c = 0; c < 3; ++c) to[c] += all[v][c].v[lane];
-      }
-  }
-
-  // Vertex 0's blocks follow from translation invariance: every block row sums to zero.
-  static void scatter(const Elements& pack, const Hessian& h, BlockSink& sink) {
-    T blocks[k][k][9];
-    for (int r = 0; r < 3; ++r)
-      for (int c = 0; c < 3; ++c) {
-        blocks[0][0][3 * r + c] = 0.0;
-        for (int b = 1; b < k; ++b) {
-          T sum = 0.0;
-          for (int a = 1; a < k; ++a) {
-            const T entry = h(3 * (a - 1) + r, 3 * (b - 1) + c);
-            if (a <= b) blocks[a][b][3 * r + c] = entry;
-            sum += entry;
-          }
-          blocks[0][b][3 * r + c] = -sum;
-          blocks[0][0][3 * r + c] += sum;
-        }
-      }
-    for (int lane = 0; lane < pack.active; ++lane)
-      for (int b = 0; b < k; ++b)
-        for (int a = 0; a <= b; ++a) {
-          double one[9];
-          for (int i = 0; i < 9; ++i) one[i] = blocks[a][b][i].v[lane];
-          sink.add(pack.first + lane, a, b, one);
-        }
   }
 
   ElementOrder order_;
