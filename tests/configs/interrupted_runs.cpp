@@ -19,13 +19,11 @@ const std::string endless =
 std::string contents(const fs::path& file) { return fs::exists(file) ? text_of(file) : ""; }
 
 /// Waits until the file has that many lines.
-void wait_for_lines(const fs::path& file, int lines) {
-  for (int k = 0; k < 3000; ++k) {
+void wait_for_lines(Command& command, const fs::path& file, int lines) {
+  command.wait_until(file.string() + " has " + std::to_string(lines) + " lines", [&] {
     const std::string text = contents(file);
-    if (std::count(text.begin(), text.end(), '\n') >= lines) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  FAIL(file << " does not come to " << lines << " lines");
+    return std::count(text.begin(), text.end(), '\n') >= lines;
+  });
 }
 
 }  // namespace
@@ -34,7 +32,7 @@ TEST_CASE("SIGINT ends a run after the step, with everything so far and the repo
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
-  wait_for_lines(folder / "out/steps.csv", 6);
+  wait_for_lines(command, folder / "out/steps.csv", 6);
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
@@ -60,7 +58,7 @@ TEST_CASE("SIGKILL at any moment leaves whole files, that a report can be made o
     const Scratch folder;
     folder.write("e.yaml", small_experiment());
     Command command("exec " + drape_command + " " + endless + fast, folder.path);
-    wait_for_lines(folder / "out/log.jsonl", level_lines);
+    wait_for_lines(command, folder / "out/log.jsonl", level_lines);
     command.send(SIGKILL);
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
 

@@ -269,20 +269,18 @@ const std::string sheets_run =
 const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
 
 /// Waits until the run has made some steps.
-void wait_for_steps(const fs::path& out, int steps) {
-  for (int k = 0; k < 6000; ++k) {
+void wait_for_steps(Command& command, const fs::path& out, int steps) {
+  command.wait_until(out.string() + " has " + std::to_string(steps) + " steps", [&] {
     const std::string rows = fs::exists(out / "steps.csv") ? text_of(out / "steps.csv") : "";
-    if (std::count(rows.begin(), rows.end(), '\n') > steps) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  FAIL("the run makes no " << steps << " steps");
+    return std::count(rows.begin(), rows.end(), '\n') > steps;
+  });
 }
 
 /// What a run of the sheets leaves that was interrupted in the middle.
 void interrupt_sheets(const Scratch& folder) {
   write_sheets(folder);
   Command command("exec " + drape_command + " " + sheets_run, folder.path);
-  wait_for_steps(folder / "out", 12);
+  wait_for_steps(command, folder / "out", 12);
   command.send(SIGINT);
   REQUIRE(command.wait().exit_code == 130);
   REQUIRE_FALSE(is_complete(folder / "out"));
@@ -388,7 +386,7 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
                                   "{type: ipc, obstacles: [{file: box.obj, translate: [0, 0, -1]}]}"));
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
   Command command("exec " + drape_command + " " + sheets_run, folder.path);
-  wait_for_steps(folder / "out", 3);
+  wait_for_steps(command, folder / "out", 3);
   command.send(SIGKILL);
   command.wait();
   write_mesh(folder / "box.obj", grid({0.5, 0.4}, 2, 2, Diagonals::one_way));
@@ -426,7 +424,7 @@ TEST_CASE("A saved state flows on under changed parameters, in a folder of its o
 
   // Interrupted and resumed, it has the bits of one that is not.
   Command command("exec " + drape_command + " " + flow + "--out part --checkpoint 0", folder.path);
-  wait_for_steps(folder / "part", 5);
+  wait_for_steps(command, folder / "part", 5);
   command.send(SIGKILL);
   command.wait();
   drape_with(replaced(go_on, "--resume out", "--resume part"), folder.path);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,9 +11,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <thread>
+
+#include "tests/support/time_limit.h"
 
 /// An empty folder that goes away with the object.
 struct Scratch {
@@ -41,6 +45,9 @@ inline std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// Many times what any command of the tests takes.
+inline const TimeLimit command_limit{120 * test_slowdown(), 60};
+
 /// How a command ended; a signal's exit code is 128 + its number, as in a shell.
 struct Ended {
   int exit_code = -1;
@@ -56,6 +63,7 @@ class Command {
     REQUIRE(pid_ >= 0);
     if (pid_ == 0) {
       setpgid(0, 0);
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // when the test itself is killed
       unsetenv("DRAPE_PLUGIN_PATH");
       const bool ready = chdir(folder.c_str()) == 0 && redirect("/dev/null", O_RDONLY, 0) &&
                          redirect(output_.path / "out", O_WRONLY | O_CREAT, 1) &&
@@ -72,19 +80,29 @@ class Command {
   }
   Command(const Command&) = delete;
 
-  void send(int signal) const { kill(-pid_, signal); }
+  /// Nothing where it has ended already.
+  void send(int signal) const {
+    if (pid_ > 0) kill(-pid_, signal);
+  }
 
-  /// Fails the test case when it takes longer than so many seconds.
-  Ended wait(double seconds = 60) {
-    int status = 0;
-    const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-    while (waitpid(pid_, &status, WNOHANG) == 0) {
-      if (std::chrono::steady_clock::now() > until) FAIL("the command takes more than " << seconds << " s");
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    pid_ = 0;
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), text_of(output_ / "out"),
+  /// Fails the test case when the command takes more than the limit.
+  Ended wait(const TimeLimit& limit = command_limit) {
+    TimeTaken taken(pid_);
+    while (!has_ended()) pause(taken, limit);
+    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), text_of(output_ / "out"),
             text_of(output_ / "err")};
+  }
+
+  /// Waits until the condition holds that the command is to bring about; fails the test case when the command
+  /// ends without, or takes more than the limit.
+  void wait_until(const std::string& what, const std::function<bool()>& condition,
+                  const TimeLimit& limit = command_limit) {
+    INFO("waiting until " << what);
+    TimeTaken taken(pid_);
+    for (bool ended = false; !condition(); ended = has_ended()) {
+      if (ended) FAIL("the command ended before");
+      pause(taken, limit);
+    }
   }
 
  private:
@@ -93,8 +111,21 @@ class Command {
     return from >= 0 && dup2(from, to) == to;
   }
 
+  bool has_ended() {
+    if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) != 0) pid_ = 0;
+    return pid_ == 0;
+  }
+
+  static void pause(TimeTaken& taken, const TimeLimit& limit) {
+    taken.look();
+    const std::string excess = taken.excess(limit);
+    if (!excess.empty()) FAIL("the command " << excess);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+
   Scratch output_;
   pid_t pid_ = 0;
+  int status_ = 0;
 };
 
 inline const std::string drape_command = DRAPE_BUILD_BIN_DIR "/drape";

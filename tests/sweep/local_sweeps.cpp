@@ -40,13 +40,18 @@ int count_of(const Json& runs, const std::string& status) {
 }
 
 /// Waits until so many runs of a sweep that is at work have that status.
-void wait_for(const fs::path& sweep, const std::string& status, int runs) {
-  for (int k = 0; k < 3000; ++k) {
-    if (fs::exists(sweep / "sweep.json"))
-      if (count_of(runs_of(sweep), status) >= runs) return;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  FAIL(sweep << " does not come to " << runs << " runs that are " << status);
+void wait_for(Command& command, const fs::path& sweep, const std::string& status, int runs) {
+  command.wait_until(sweep.string() + " has " + std::to_string(runs) + " runs that are " + status, [&] {
+    return fs::exists(sweep / "sweep.json") && count_of(runs_of(sweep), status) >= runs;
+  });
+}
+
+/// Waits until the run that never ends makes steps.
+void wait_for_endless(Command& command, const Scratch& folder) {
+  wait_for(command, folder / "out", "running", 1);
+  wait_for(command, folder / "out", "converged", 1);
+  command.wait_until("the endless run makes steps",
+                     [&] { return fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); });
 }
 
 /// A folder with two runs that converge at once and, between them, one that never does.
@@ -101,7 +106,7 @@ TEST_CASE("kill -9 in the middle loses nothing but what was running") {
   REQUIRE(drape_with(small_sweep + "--out whole", folder.path).exit_code == 0);
   for (const int done : {1, 9, 17}) {
     Command command("exec " + drape_command + " " + small_sweep + " --out cut", folder.path);
-    wait_for(folder / "cut", "converged", done);
+    wait_for(command, folder / "cut", "converged", done);
     command.send(SIGKILL);  // the sweep alone: its runs are in groups of their own, and must die with it
     REQUIRE(command.wait().exit_code == 128 + SIGKILL);
   }
@@ -124,10 +129,7 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   const Scratch folder;
   write_endless(folder);
   Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
-  wait_for(folder / "out", "running", 1);
-  wait_for(folder / "out", "converged", 1);
-  for (int k = 0; k < 1000 && !fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  wait_for_endless(command, folder);
   const Ended second = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(second.exit_code == 2);
   CHECK_THAT(second.err,
@@ -198,10 +200,7 @@ TEST_CASE("a run that is killed has failed, by name of the signal") {
   const Scratch folder;
   write_endless(folder);
   Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
-  wait_for(folder / "out", "running", 1);
-  wait_for(folder / "out", "converged", 1);
-  for (int k = 0; k < 1000 && !fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  wait_for_endless(command, folder);
   // The one process whose command names this run's folder.
   for (const auto& entry : fs::directory_iterator("/proc")) {
     std::stringstream words;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <chrono>
+#include <ctime>
 #include <set>
 #include <utility>
 
 #include "core/mesh/generate.h"
+#include "tests/support/time_limit.h"
 
 using namespace drape;
 
@@ -100,10 +101,10 @@ TEST_CASE("a fan of a hundred thousand triangles takes no quadratic time", "[top
   const int count = 100000;
   Triangles fan(count, 3);
   for (int t = 0; t < count; ++t) fan.row(t) << 0, 1 + t, 1 + (t + 1) % count;
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor, so that a busy machine does not fail it
   const Topology topology = Topology::of(fan, count + 1);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   CHECK(topology.vertex_vertices.size(0) == count);
   CHECK_FALSE(topology.on_border[0]);
-  CHECK(seconds < 2);  // linear: hundredths of a second; quadratic: minutes
+  CHECK(seconds < 2 * test_slowdown());  // linear: hundredths of a second; quadratic: minutes
 }
