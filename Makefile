@@ -15,7 +15,8 @@
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
 # make clean    remove what was built
 #
-# PRESET=debug, asan or ci chooses another of CMakePresets.json.
+# PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
+# `make test` leaves out the long studies (docs/testing.md).
 
 PRESET ?= release
 JOBS ?= $(shell nproc)
@@ -52,7 +53,7 @@ scenes: build
 	  cat benchmarks/results/$(SCENES_NAME).md; exit $$ended
 
 test: build
-	@ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+	@ctest --preset $(PRESET) -j $(JOBS)
 
 data: configure
 	@third_party/data/fetch data $(BUILD)
@@ -90,4 +91,4 @@ lint: setup
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
 
 clean:
-	rm -rf build build-debug build-asan build-lint
+	rm -rf build build-debug build-clang build-asan build-tsan build-lint
