@@ -90,9 +90,10 @@ VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, 
     for (int i = begin; i < end; ++i) {
       const Vector3d normal = vertex(normals, i), u = normal.unitOrthogonal(), v = normal.cross(u);
       double scale = 0;  // fitting in units of the neighbourhood keeps the normal matrix well conditioned
+      const std::vector<int>& around = search.around(i, rings);  // a second search would find none unmarked
       const auto gather = [&](bool all) {
         offsets.clear();
-        for (const int j : search.around(i, rings)) {
+        for (const int j : around) {
           if (!all && normals.row(j).dot(normals.row(i)) <= 0) continue;
           const Vector3d offset = vertex(x, j) - vertex(x, i);
           offsets.emplace_back(offset.dot(u), offset.dot(v), offset.dot(normal));

@@ -409,6 +409,15 @@ TEST_CASE("a mesh of fewer neighbours than unknowns still gives finite curvature
   CHECK(f.gaussian.allFinite());
 }
 
+TEST_CASE("a vertex whose neighbours' normals all oppose its own is fitted to all of them", "[curvature]") {
+  Surface s = plane(6);
+  s.x.row(0) << 0.2, 0.2, 0.3 * 0.2 - 0.2 * 0.2;  // the corner, turned over inside the plane
+  const VertexCurvatures f = fit(s);
+  CHECK(f.mean.cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(f.gaussian.cwiseAbs().maxCoeff() < 1e-9);
+  CHECK(f.kappa1.allFinite());
+}
+
 TEST_CASE("consistency of two spherical caps is the closed form", "[curvature_consistency]") {
   // Σ m (1/R₁ − 1/R₂)² over a rest square of area 1.
   const double exact_mean = std::pow(1 / 1.5 - 1 / 1.0, 2), exact_gaussian = std::pow(1 / 2.25 - 1, 2);
