@@ -410,7 +410,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.source = std::move(source);
   e.registry = &registry;
   set_first_keys(e.source);
-  const Schema schema = schema_of<ExperimentParameters>();
+  static const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&e.parameters, e.source, errors);
   e.resolved = schema.write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)

@@ -159,6 +159,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
         }
   }
   if (!errors.empty() || p.keys.empty()) return;
+  static const Schema schema = schema_of<ExperimentParameters>();
   // Every keyed value, as its parameter would take it from the file.
   for (std::size_t k = 0; k < p.keys.size(); ++k)
     for (const ConfigNode& value : p.keys[k].to.items) {
@@ -167,7 +168,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
       const Location where = e.source.find("schedule")->find("keys")->items[k].find("to")->where;
       if (set_path(config, p.keys[k].set, value, where, own)) {
         ExperimentParameters read;
-        schema_of<ExperimentParameters>().read(&read, config, own);
+        schema.read(&read, config, own);
         for (const ConfigNode& node : read.energies) make_from<Energy>(*e.registry, node, own);
         if (read.contact.kind == NodeKind::list)
           for (const ConfigNode& node : read.contact.items) make_from<ContactModel>(*e.registry, node, own);
