@@ -6,6 +6,7 @@
 # make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
 #               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
 # make test     build and run every test
+# make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
 # make hard     the hard cases (docs/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
@@ -24,7 +25,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 scenes test data bench hard pictures format fix-format lint clean
+.PHONY: all setup configure build demo table1 scenes test extremes data bench hard pictures format fix-format lint clean
 all: build
 
 setup:
@@ -54,6 +55,9 @@ scenes: build
 
 test: build
 	@ctest --preset $(PRESET) -j $(JOBS)
+
+extremes: build
+	@tests/extremes/run $(BUILD)/bin/drape --count $(or $(EXTREMES),500) --seed $(or $(EXTREMES_SEED),1) --jobs $(JOBS)
 
 data: configure
 	@third_party/data/fetch data $(BUILD)

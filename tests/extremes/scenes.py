@@ -1,0 +1,242 @@
+"""Extreme but legal scenes: small drapes with one or two parameters at their declared bounds.
+
+The JSON Schema that `drape schema` prints is the only source of parameters: one that a new plugin declares takes part
+without being named here. The scenes below are what the parameters are put into, chosen so that most have an effect."""
+
+import copy
+import json
+import math
+import random
+
+FALLING = {"cloth": {"shape": "square", "side": 0.3, "columns": 6, "rows": 6},
+           "start": {"translate": [-0.15, -0.15, 0.13], "perturbation": 1e-3},
+           "energies": ["neo_hookean", "hinge", {"type": "strain_limit", "limit": 1.1}, "gravity"],
+           "contact": [{"type": "ipc", "friction": 0.2,
+                        "obstacles": [{"shape": "sphere", "radius": 0.1, "subdivisions": 1},
+                                      {"shape": "box", "size": [0.4, 0.4, 0.1], "translate": [0, 0, -0.2]}]}]}
+HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "random", "vertices": 40},
+        "pins": [{"region": "ball", "point": [0, 0, 0], "radius": 0.03},
+                 {"region": "nearest", "point": [0.3, 0, 0], "move": [0, 0, -0.02]}],
+        "energies": ["stvk", "quadratic_bending", {"type": "gravity", "acceleration": [0, 5, -8]}],
+        "contact": [{"type": "ipc"},
+                    {"type": "shapes", "friction": 0.3,
+                     "shapes": [{"shape": "sphere", "radius": 0.05, "centre": [0.15, 0.1, -0.06]},
+                                {"shape": "half_space", "normal": [0, 0, 1], "centre": [0, 0, -0.3]},
+                                {"shape": "capsule", "radius": 0.02, "height": 0.2, "centre": [0, 0.3, -0.1]}]}]}
+DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
+           "start": {"translate": [0, 0, 0.06]},
+           "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "move": [0, 0, 0.06]}],
+           "energies": ["neo_hookean", "hinge", "gravity"],
+           "contact": [{"type": "shapes",
+                        "shapes": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
+                                   {"shape": "cylinder", "radius": 0.03, "height": 0.08, "centre": [-0.1, 0, 0]}]}],
+           "schedule": {"steps": 2, "keys": [{"set": "pins.0.move", "at": [0, 1], "to": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
+PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
+                    "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
+                              {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
+          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "move": [0, 0, 0.05], "stiffness": 1e3}],
+          "energies": ["neo_hookean", "hinge", {"type": "pressure", "pressure": 5}, "gravity"],
+          "contact": [{"type": "ipc", "obstacles": [{"shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}]}
+SCENES = [FALLING, HUNG, DRAGGED, PULLED]
+METHODS = ["pcs", "cascadic", "newton"]
+
+
+class Plugin:
+    """A step of a path: the plugin's map in a list (or in a place of its own)."""
+
+    def __init__(self, name, section):
+        self.name, self.section = name, section
+
+    def __str__(self):
+        return self.name
+
+
+class Parameter:
+    def __init__(self, path, schema, nullable):
+        self.path, self.schema, self.nullable = path, schema, nullable
+
+    def __str__(self):
+        return ".".join("[]" if step is None else str(step) for step in self.path)
+
+    def scalar(self):
+        return self.schema["items"] if self.schema.get("type") == "array" else self.schema
+
+    def unbounded(self):
+        """Whether a number's declaration leaves an end open."""
+        s = self.scalar()
+        return s.get("type") in ("number", "integer") and not (
+            ("minimum" in s or "exclusiveMinimum" in s) and ("maximum" in s or "exclusiveMaximum" in s))
+
+    def extremes(self):
+        """The values at the bounds."""
+        values = scalar_extremes(self.scalar())
+        if self.schema.get("type") == "array":
+            size = self.schema.get("minItems", 1)
+            lists = [[v] * size for v in values]
+            if size > 1 and len(values) > 1:
+                lists += [[values[0]] * (size - 1) + [values[1]], [values[1]] + [values[0]] * (size - 1)]
+            values = lists
+        return values + ([None] if self.nullable else [])
+
+
+def ends(s):
+    """The smallest and the largest number that a schema allows; 1e30 for a bound that is missing."""
+    integer, far = s["type"] == "integer", 2**31 - 1 if s["type"] == "integer" else 1e30
+    low, high = s.get("minimum", -far), s.get("maximum", far)
+    if "exclusiveMinimum" in s:
+        bound = s["exclusiveMinimum"]
+        low = bound + 1 if integer else math.nextafter(bound, math.inf) if bound else 1e-30
+    if "exclusiveMaximum" in s:
+        bound = s["exclusiveMaximum"]
+        high = bound - 1 if integer else math.nextafter(bound, -math.inf)
+    return (int(low), int(high)) if integer else (float(low), float(high))
+
+
+def scalar_extremes(s):
+    if "enum" in s:
+        return list(s["enum"])
+    if s.get("type") == "boolean":
+        return [False, True]
+    return list(ends(s)) if s.get("type") in ("number", "integer") else []
+
+
+def alternatives(schema):
+    """The schemas that an `anyOf`, nested or not, chooses from."""
+    if "anyOf" not in schema:
+        return [schema]
+    return [a for s in schema["anyOf"] for a in alternatives(s)]
+
+
+def plugin_name(schema):
+    return schema.get("properties", {}).get("type", {}).get("enum", [None])[0]
+
+
+def parameters_of(schema, path=()):
+    """Every parameter below, those of plugins among them."""
+    options = alternatives(schema)
+    if any(plugin_name(o) for o in options):
+        for o in options:
+            if plugin_name(o):
+                for key, s in o["properties"].items():
+                    if key != "type":
+                        yield from parameters_of(s, path + (Plugin(plugin_name(o), o), key))
+        return
+    nullable = any(o.get("type") == "null" for o in options)
+    for o in options:
+        if o.get("type") == "object":
+            for key, s in o.get("properties", {}).items():
+                yield from parameters_of(s, path + (key,))
+            if isinstance(o.get("additionalProperties"), dict):  # a map by name, as the methods are
+                yield from parameters_of(o["additionalProperties"], path)
+        elif o.get("type") == "array" and any(a.get("type") == "object" for a in alternatives(o["items"])):
+            plugins = any(plugin_name(a) for a in alternatives(o["items"]))
+            yield from parameters_of(o["items"], path if plugins else path + (None,))
+        elif o.get("type") != "null":
+            parameter = Parameter(path, o, nullable)
+            if parameter.extremes():
+                yield parameter
+
+
+def filled(section, rng):
+    """The least that a section needs."""
+    made = {}
+    for key in section.get("required", []):
+        s = alternatives(section["properties"][key])[0]
+        if s.get("type") == "array" and s["items"].get("type") == "object":
+            made[key] = [filled(s["items"], rng)]
+        elif s.get("type") == "array":
+            made[key] = [0.1] * s.get("minItems", 1)
+        elif "enum" in s:
+            made[key] = rng.choice(s["enum"])
+        else:
+            made[key] = 0.1
+    return made
+
+
+def in_plugin(scene, kind, plugin, rng):
+    """The plugin's map in the scene: the one that is there, or a new one."""
+    fresh = {"type": plugin.name, **filled({**plugin.section, "required": [
+        k for k in plugin.section.get("required", []) if k != "type"]}, rng)}
+    if kind == "methods":
+        return scene["methods"].setdefault(plugin.name, {})
+    if kind in ("energies", "contact", "metrics"):
+        entries = scene.setdefault(kind, [])
+        for k, entry in enumerate(entries):
+            if entry == plugin.name:
+                entries[k] = fresh
+            if entry == plugin.name or isinstance(entry, dict) and entry["type"] == plugin.name:
+                return entries[k]
+        entries.append(fresh)
+        return fresh
+    scene[kind] = fresh
+    return fresh
+
+
+def put(scene, schema, parameter, value, rng):
+    at, section = scene, schema
+    steps = list(parameter.path)
+    for k, step in enumerate(steps[:-1]):
+        if isinstance(step, Plugin):
+            at, section = in_plugin(at, steps[k - 1], step, rng), step.section
+        elif step is None:
+            if not at:
+                at.append(filled(section, rng))
+            at = rng.choice([item for item in at if steps[k + 1] in item] or at)
+        elif not isinstance(steps[k + 1], Plugin):
+            below = alternatives(section["properties"][step])
+            section = next(o.get("items", o) for o in below if o.get("type") in ("object", "array"))
+            at = at.setdefault(step, [] if steps[k + 1] is None else {})
+    at[steps[-1]] = value
+
+
+def steps_there(scene, parameter):
+    """How much of the parameter's path the scene has: the more, the likelier it is to have an effect."""
+    at, there = scene, 0
+    for step in parameter.path:
+        if isinstance(step, Plugin):
+            found = [e for e in at if e == step.name or isinstance(e, dict) and e.get("type") == step.name]
+        elif step is None:
+            found = sorted(at, key=lambda item: parameter.path[-1] in item, reverse=True)
+        else:
+            found = [at[step]] if isinstance(at, dict) and step in at else []
+        if not found:
+            break
+        at, there = found[0], there + 1
+    return there
+
+
+class Case:
+    """A scene with some parameters at an extreme."""
+
+    def __init__(self, number, schema, chosen, rng):
+        self.number = number
+        self.words = ", ".join(f"{p}={json.dumps(v)}" for p, v in chosen)
+        there = [sum(steps_there(s, p) for p, _ in chosen) for s in SCENES]
+        suited = [s for s, n in zip(SCENES, there) if n == max(there)]
+        self.config = {"name": f"extreme_{number}", "levels": 2, **copy.deepcopy(rng.choice(suited)),
+                       "newton": {"force_tolerance": 1e-2, "max_steps": 25}, "methods": {}, "frames": 2}
+        for p, value in chosen:
+            put(self.config, schema, p, value, rng)
+        if not self.config["methods"]:
+            self.config["methods"] = {rng.choice(METHODS): {}}
+
+    def text(self):
+        return "".join(f"{key}: {json.dumps(value)}\n" for key, value in self.config.items())
+
+
+def cases(schema, seed, count):
+    """As many different cases: each parameter at each of its extremes and, in turn, a pair of two."""
+    rng = random.Random(seed)
+    parameters = list(parameters_of(schema))
+    singles = [(p, v) for p in parameters for v in p.extremes()]
+    rng.shuffle(singles)
+    made = []
+    while len(made) < count:
+        k = len(made)
+        if k % 2 == 0 and k // 2 < len(singles):
+            chosen = [singles[k // 2]]
+        else:
+            first, second = rng.sample(parameters, 2)
+            chosen = [(p, rng.choice(p.extremes())) for p in (first, second)]
+        made.append(Case(k, schema, chosen, rng))
+    return made
