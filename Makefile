@@ -6,6 +6,8 @@
 # make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
 #               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
 # make test     build and run every test
+# make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
+#               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
@@ -25,7 +27,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 scenes test extremes data bench hard pictures format fix-format lint clean
+.PHONY: all setup configure build demo table1 scenes test fuzz extremes data bench hard pictures format fix-format lint clean
 all: build
 
 setup:
@@ -55,6 +57,11 @@ scenes: build
 
 test: build
 	@ctest --preset $(PRESET) -j $(JOBS)
+
+fuzz: build
+	@cmake --preset fuzz --log-level=WARNING -DDRAPE_BUILD=$(abspath $(BUILD)) >/dev/null
+	@cmake --build build-fuzz -j $(JOBS)
+	@FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS) JOBS=$(JOBS) tests/fuzz/run build-fuzz $(FUZZ_TARGETS)
 
 extremes: build
 	@tests/extremes/run $(BUILD)/bin/drape --count $(or $(EXTREMES),500) --seed $(or $(EXTREMES_SEED),1) --jobs $(JOBS)
@@ -95,4 +102,4 @@ lint: setup
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
 
 clean:
-	rm -rf build build-debug build-clang build-asan build-tsan build-lint
+	rm -rf build build-debug build-clang build-asan build-tsan build-lint build-fuzz

@@ -1,0 +1,49 @@
+// A mesh file of any format; the first byte chooses which: P for PLY, o for OBJ, O for OFF.
+
+#include <cstdint>
+#include <cstdlib>
+#include <iostream>
+#include <stdexcept>
+
+#include "core/mesh/check.h"
+#include "core/mesh/io_formats.h"
+
+namespace {
+
+using namespace drape;
+
+TriangleMesh read(char format, std::string_view bytes) {
+  if (format == 'o') return read_obj("fuzz.obj", bytes);
+  if (format == 'O') return read_off("fuzz.off", bytes);
+  return read_ply("fuzz.ply", bytes);
+}
+
+void require(bool holds, const char* what) {
+  if (holds) return;
+  std::cerr << "broken: " << what << std::endl;
+  std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  try {
+    const TriangleMesh mesh = read(static_cast<char>(data[0]), bytes);
+    require(mesh.triangles.size() == 0 ||
+                (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows()),
+            "a triangle names a vertex that is not there");
+    const bool sound = check_mesh(mesh).empty();
+    if (!mesh.vertices.allFinite()) {  // a binary PLY may say so; whoever reads it asks check_mesh
+      require(!sound, "a coordinate that is not finite is no fault");
+      return 0;
+    }
+    const TriangleMesh again = read_obj("again.obj", obj_text(mesh));
+    require(again.vertices == mesh.vertices && again.triangles == mesh.triangles,
+            "written and read is not the same");
+  } catch (const std::runtime_error& error) {
+    require(std::string_view(error.what()).starts_with("fuzz."), error.what());
+  }
+  return 0;
+}
