@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/model/stretch_limit.h"
+#include "core/model/weak_barrier.h"
 #include "core/numerics/block_cholesky.h"
 #include "core/numerics/hard_positions.h"
 #include "core/numerics/newton_state.h"
@@ -718,6 +719,9 @@ class Newton {
   LevelResult finish(Outcome outcome, const std::string& message) {
     result_.outcome = outcome;
     add_to_message(message);
+    const bool failed =
+        !ended_as_asked(outcome) && outcome != Outcome::cancelled && outcome != Outcome::refined_early;
+    if (failed && result_.x.allFinite()) add_to_message(weak_barrier(model_, result_.x));
     if (conditions_) result_.conditions = conditions_->state();
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();

@@ -88,6 +88,28 @@ class IpcSweep final : public ContactSweep {
     return std::make_unique<ContactStack>(std::move(sets));
   }
 
+  /// At the way's beginning, of the pairs that have a barrier.
+  SmallestGap smallest_gap() const {
+    const int n = static_cast<int>(x0_.rows());
+    SmallestGap smallest;
+    smallest.range = barrier_.range;
+    smallest.stiffness = barrier_.stiffness;
+    const ContactPair* nearest = nullptr;
+    const auto look_at = [&](const ContactPair& pair) {
+      const PairPositions at = positions_of(pair, x0_, obstacles_.vertices);
+      if (!within_range(pair, at, barrier_.range)) return;
+      const double gap = contact_at(pair, at, barrier_.range).gap();
+      if (gap >= smallest.gap) return;
+      smallest.gap = gap;
+      nearest = &pair;
+    };
+    for (const ContactPair& pair : found_.repelling) look_at(pair);
+    for (const ContactPair& pair : found_.passive)  // of an obstacle: what is near a vertex repels it
+      if (pair.vertices[0] >= n || pair.vertices[3] >= n) look_at(pair);
+    if (nearest) smallest.between = name_of(*nearest, obstacles_, n);
+    return smallest;
+  }
+
  private:
   Positions x0_, x1_;  // of the way as far as it was searched
   double fraction_;    // of the way that was asked for
@@ -206,6 +228,10 @@ std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positio
   pairs.erase(passive, pairs.end());
   return std::make_unique<IpcSweep>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
                                     rest_, barrier_, friction_, keep_);
+}
+
+SmallestGap BoundIpc::smallest_gap(const Positions& x) const {
+  return static_cast<const IpcSweep&>(*sweep(x, x)).smallest_gap();
 }
 
 StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) const {

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "core/contact/broad_phase.h"
+#include "core/model/smallest_gap.h"
 #include "plugins/contact/ipc/candidates.h"
 #include "plugins/contact/ipc/ipc.h"
 
@@ -42,7 +43,7 @@ struct ObstacleTree {
 };
 
 /// Contact `ipc` of one level.
-class BoundIpc final : public BoundContact, public MovableObstacles {
+class BoundIpc final : public BoundContact, public MovableObstacles, public NamesSmallestGap {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
            const Material& material);
@@ -53,6 +54,7 @@ class BoundIpc final : public BoundContact, public MovableObstacles {
   std::vector<Touch> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
 
+  SmallestGap smallest_gap(const Positions& x) const override;
   StepLimit max_move(const BoundContact& before, const Positions& x) const override;
   void carry(const BoundContact& before, const Positions& x, Positions& from) const override;
 

@@ -5,7 +5,9 @@
 
 #include "core/contact/bent_advance.h"
 #include "core/contact/contact_stack.h"
+#include "core/model/smallest_gap.h"
 #include "core/numerics/parallel.h"
+#include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
 #include "plugins/contact/shapes/solid_way.h"
 
@@ -59,7 +61,7 @@ class ShapeSweep final : public ContactSweep {
   Candidates candidates_;
 };
 
-class BoundShapes final : public BoundContact, public MovableObstacles {
+class BoundShapes final : public BoundContact, public MovableObstacles, public NamesSmallestGap {
  public:
   explicit BoundShapes(ShapeScene scene) : scene_(std::make_shared<const ShapeScene>(std::move(scene))) {}
 
@@ -82,6 +84,19 @@ class BoundShapes final : public BoundContact, public MovableObstacles {
     std::vector<TriangleMesh> meshes;
     for (const Solid& solid : scene_->solids) meshes.push_back(tessellate(solid, scene_->diagonal));
     return meshes;
+  }
+
+  SmallestGap smallest_gap(const Positions& x) const override {
+    SmallestGap smallest;
+    smallest.range = scene_->barrier.range;
+    smallest.stiffness = scene_->barrier.stiffness;
+    for (const TrianglePair& pair : find_triangles(*scene_, x, x)) {
+      const double gap = separate(scene_->solids[pair.solid], scene_->corners(pair.triangle, x)).gap;
+      if (gap >= std::min(smallest.gap, smallest.range)) continue;
+      smallest.gap = gap;
+      smallest.between = triangle_name(pair.triangle) + " and " + scene_->solids[pair.solid].name;
+    }
+    return smallest;
   }
 
   StepLimit max_move(const BoundContact& before, const Positions& x) const override {

@@ -1,0 +1,75 @@
+#include "core/model/weak_barrier.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/model/smallest_gap.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+using Catch::Contains;
+
+namespace {
+
+/// A square of cloth, whose weight is 1.47 Pa, over a ball.
+std::string over_a_ball(const std::string& contact, int steps) {
+  return "name: ball\ncloth: {shape: square, side: 0.5, columns: 12, rows: 12}\nlevels: 1\n"
+         "material: {density: 472.6, thickness: 3.18e-4, membrane_modulus: 8e4, bending_modulus: 8e5}\n"
+         "start: {translate: [-0.25, -0.25, 0.11]}\nenergies: [neo_hookean, hinge, gravity]\n"
+         "newton: {max_steps: " +
+         std::to_string(steps) + "}\nmethods: {newton: {}}\ncontact: " + contact + "\n";
+}
+
+std::string a_mesh(const std::string& stiffness) {
+  return "{type: ipc, friction: 0.4, stiffness: " + stiffness +
+         ", obstacles: [{name: ball, shape: sphere, radius: 0.1}]}";
+}
+
+std::string a_shape(const std::string& stiffness) {
+  return "{type: shapes, friction: 0.4, stiffness: " + stiffness +
+         ", shapes: [{name: ball, shape: sphere, radius: 0.1}]}";
+}
+
+}  // namespace
+
+TEST_CASE("A barrier that is too weak for the load is named where a run fails, and what to set it to") {
+  for (auto* contact : {&a_mesh, &a_shape}) {
+    const Solved s = solve_yaml(over_a_ball((*contact)("1.47e-4"), 60));
+    const LevelResult& r = s.levels.back();
+    CAPTURE(r.message);
+    REQUIRE(r.outcome == Outcome::out_of_steps);
+    CHECK(*r.smallest_gap < 1e-6);
+    CHECK_THAT(r.message,
+               Contains("; the barrier is too weak for the load: its stiffness is 0.000147 Pa where the "
+                        "load presses with 1.47 Pa, so that the gap between ") &&
+                   Contains("cloth triangle ") && Contains("ball") &&
+                   Contains(" of the contact's range; set its stiffness to about 14.7 (null chooses it "
+                            "from the cloth's weight)"));
+    // It is not where nothing is near.
+    CHECK(weak_barrier(s.model(), s.scene->starts.back()).empty());
+  }
+}
+
+TEST_CASE("A barrier that suits the load is not blamed, however small a gap is") {
+  for (auto* contact : {&a_mesh, &a_shape})
+    for (const char* stiffness : {"null", "1.5"}) {
+      const Solved s = solve_yaml(over_a_ball((*contact)(stiffness), 1000));
+      CAPTURE(stiffness, s.levels.back().message);
+      REQUIRE(s.levels.back().outcome == Outcome::converged);
+      const auto* named = dynamic_cast<const NamesSmallestGap*>(s.model().contacts()[0].get());
+      REQUIRE(named);
+      CHECK(named->smallest_gap(s.x()).gap == Approx(*s.levels.back().smallest_gap));
+      CHECK(weak_barrier(s.model(), s.x()).empty());
+      // Pressed onto the ball by something else than the load.
+      Positions x = s.x();
+      double step = 1e-4;
+      while (named->smallest_gap(x).gap > 1e-7) {
+        Positions lower = x;
+        lower.col(2).array() -= step;
+        if (named->smallest_gap(lower).gap > 0 && s.model().contacts()[0]->intersections(lower).empty())
+          x = lower;
+        else
+          step /= 2;
+      }
+      CHECK(weak_barrier(s.model(), x).empty());
+    }
+}
