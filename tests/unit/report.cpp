@@ -509,7 +509,7 @@ TEST_CASE("every method has a verdict beside the others that converged") {
   CHECK(contains(outcome_sentence(run), "2 of 3 methods converged (force residual below 0.001); <b>pcs</b>"));
 
   run.methods[2].status = "converged_to_rounding";
-  CHECK(method_verdict(run, run.methods[2]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
+  CHECK(method_verdict(run, run.methods[2]) == "3.00× the fastest's time; energy 16.7&nbsp;% higher");
   CHECK(contains(outcome_sentence(run),
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }
