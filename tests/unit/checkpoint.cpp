@@ -40,6 +40,7 @@ Checkpoint full() {
   s.held_by = "ball";
   s.positions = {{3}, 1e4, 0.5, 2, false, true, "post"};
   s.changed_at = {4, 5, 6};
+  s.idle = {3, -0.5, 1e-6};
   s.begun_at = {7, 8, 9};
   s.so_far.conditions = {3, {0.5, 0.25}};
   s.contacts = {Positions::Random(9, 3),
@@ -92,6 +93,9 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.state.under_way.value().pattern.room.blocks.at(1) == std::pair(2, 7));
   CHECK(std::isnan(c.state.under_way->so_far.force_residual));
   CHECK(c.state.under_way->positions.held_by == "post");
+  CHECK(c.state.under_way->idle.steps == 3);
+  CHECK(c.state.under_way->idle.energy == -0.5);
+  CHECK(c.state.under_way->idle.residual == 1e-6);
   CHECK(c.state.under_way->contacts.slips.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
   CHECK(c.state.under_way->contacts.slips.at(0).at(0).by == Eigen::Vector3d(1e-5, 0, 2e-5));
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
@@ -120,7 +124,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 7; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 8; resume it with the drape that wrote it");
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
