@@ -31,6 +31,8 @@ void ConfigArguments::add_to(CLI::App& command) {
       ->check(positive_integer);
   command.add_flag("--allow-start-repair", allow_start_repair,
                    "move a start that touches something up or to a side until it does not");
+  command.add_flag("--allow-memory", allow_memory,
+                   "go on where a run may take more memory than this machine has");
 }
 
 Overrides ConfigArguments::overrides() const {
@@ -48,6 +50,7 @@ Overrides ConfigArguments::overrides() const {
 Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
   ConfigErrors errors;
   experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
+  if (errors.empty()) refuse_too_large(*experiment, arguments.large_memory(), errors);
   if (errors.empty())
     scene = build_scene(*experiment, errors,
                         arguments.allow_start_repair ? TouchingStart::kept : TouchingStart::refused);

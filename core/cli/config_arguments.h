@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/experiment/experiment.h"
+#include "core/experiment/size_estimate.h"
 
 namespace drape {
 
@@ -22,10 +23,12 @@ struct ConfigArguments {
   std::vector<std::string> sets;
   int levels = 0;
   bool allow_start_repair = false;
+  bool allow_memory = false;
   CLI::Option* config_option = nullptr;
 
   void add_to(CLI::App& command);
   Overrides overrides() const;
+  LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }
 };
 
 /// An experiment and the scene built from it; errors are printed and leave both empty.

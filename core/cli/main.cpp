@@ -7,10 +7,11 @@
 #include "core/cli/config_arguments.h"
 #include "core/cli/exit_codes.h"
 #include "core/cli/run_command.h"
-#include "core/cli/stop_signals.h"
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
+#include "core/experiment/machine.h"
 #include "core/experiment/run_folder.h"
+#include "core/experiment/size_estimate.h"
 #include "core/mesh/file.h"
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
@@ -37,7 +38,10 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
   std::cout << arguments.config << ": sound.";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
-  std::cout << "\n";
+  std::cout << "\nMemory to solve them, at most about:";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\n";
   return 0;
 }
 
@@ -229,12 +233,11 @@ int main_checked(int argc, char** argv) {
     std::cout << printable_lines(table1_text(read_run(run_folder)));
     return 0;
   }
-  if (sweep.job_chosen() || sweep.chosen()) stop_on_signals();
-  if (sweep.job_chosen()) return sweep.run_job(stop_signal);
+  if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
   load_plugins(registry, plugin_directories());
   if (run.chosen()) return run.run(registry);
-  if (sweep.chosen()) return sweep.run(registry, stop_signal);
+  if (sweep.chosen()) return sweep.run(registry);
   if (*check_command) return check(check_arguments, registry);
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);

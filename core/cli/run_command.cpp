@@ -108,7 +108,8 @@ int RunCommand::resume(const Registry& registry) const {
   for (std::string line; std::getline(warnings, line);) std::cerr << "warning: " << printable(line) << "\n";
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
   if (scene && checkpoint.own_start)
     begin_from(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
   if (!errors.empty()) return report_errors(errors);
@@ -130,6 +131,7 @@ int RunCommand::flow_on(const Registry& registry) const {
   if (!before) return report_errors(errors);
   const auto experiment = read_experiment(config, arguments_.overrides(), registry, errors);
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
+  if (errors.empty()) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
   if (scene) begin_from(*experiment, *scene, state.level, state.x, errors);
   if (!errors.empty()) return report_errors(errors);

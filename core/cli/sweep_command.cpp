@@ -6,6 +6,7 @@
 
 #include "core/cli/config_arguments.h"
 #include "core/cli/exit_codes.h"
+#include "core/cli/stop_signals.h"
 #include "core/experiment/machine.h"
 #include "core/mesh/message_text.h"
 #include "core/report/run_table.h"
@@ -26,9 +27,7 @@ int exit_code_of(const SweepFolder& folder) {
 void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
               sweep.runs.size(), folder.path().c_str(), threads, threads == 1 ? "" : "s");
-  MemoryEstimate memory;
-  for (const SweepRun& run : sweep.runs)
-    if (read_status(folder.files(run.folder)).has_results()) memory.learn(run, folder.files(run.folder));
+  const MemoryEstimate memory(sweep, folder);
   for (const SweepRun& run : sweep.runs)
     std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n",
                 to_string(read_status(folder.files(run.folder)).state), run.folder.c_str(), run.levels,
@@ -49,7 +48,9 @@ SweepCommand::SweepCommand(CLI::App& app)
   sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
       ->check(positive_integer);
   sweep_->add_option("--memory-limit", memory_limit_, "GB: of all runs together; with slurm, of each")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e9));
+  sweep_->add_flag("--allow-memory", allow_memory_,
+                   "go on where a run may take more memory than this machine has");
   sweep_->add_option("--most-levels", most_levels_, "of every run; an experiment that has fewer keeps them")
       ->check(positive_integer);
   sweep_->add_flag("--dry-run", dry_run_, "check everything and list the runs, without running any");
@@ -80,7 +81,7 @@ void SweepCommand::check_options(int threads) const {
   }
 }
 
-int SweepCommand::run(const Registry& registry, const std::function<int()>& stop_signal) const {
+int SweepCommand::run(const Registry& registry) const {
   ConfigErrors errors;
   const std::optional<Sweep> sweep = read_sweep(config_, registry, errors, most_levels_);
   if (!sweep) return report_errors(errors);
@@ -92,11 +93,12 @@ int SweepCommand::run(const Registry& registry, const std::function<int()>& stop
     show_plan(*sweep, folder, threads);
     return 0;
   }
-  return engine_ == "slurm" ? run_slurm(*sweep, folder, stop_signal) : run_local(*sweep, folder, stop_signal);
+  stop_on_signals();  // until here there is nothing to be stopped in good order
+  return engine_ == "slurm" ? run_slurm(*sweep, folder) : run_local(*sweep, folder);
 }
 
-int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
-                            const std::function<int()>& stop_signal) const {
+int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder) const {
+  if (!allow_memory_) MemoryEstimate(sweep, folder).require(sweep, folder, machine_memory());
   const FolderLock lock(folder.path());
   refuse_while_queued(folder);
   LocalOptions options;
@@ -117,8 +119,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder,
   return exit_code_of(folder);
 }
 
-int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
-                            const std::function<int()>& stop_signal) const {
+int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const {
   const auto stop = [&] { return stop_signal() != 0; };
   if (cancel_) {
     cancel_jobs(folder, stop);
@@ -154,7 +155,8 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder,
   return exit_code_of(folder);
 }
 
-int SweepCommand::run_job(const std::function<int()>& stop_signal) const {
+int SweepCommand::run_job() const {
+  stop_on_signals();
   const SweepFolder folder(out_);
   if (task_ < 0) {
     collect_tasks(folder);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,15 +16,13 @@ class SweepCommand {
 
   bool chosen() const { return sweep_->parsed(); }
   bool job_chosen() const { return job_->parsed(); }
-  /// `stop_signal` gives the signal that asks to stop, 0 before there is one. Both return the exit code.
-  int run(const Registry& registry, const std::function<int()>& stop_signal) const;
-  int run_job(const std::function<int()>& stop_signal) const;
+  /// Both return the exit code.
+  int run(const Registry& registry) const;
+  int run_job() const;
 
  private:
-  int run_local(const struct Sweep& sweep, const class SweepFolder& folder,
-                const std::function<int()>& stop_signal) const;
-  int run_slurm(const struct Sweep& sweep, const class SweepFolder& folder,
-                const std::function<int()>& stop_signal) const;
+  int run_local(const struct Sweep& sweep, const class SweepFolder& folder) const;
+  int run_slurm(const struct Sweep& sweep, const class SweepFolder& folder) const;
   void check_options(int threads) const;
 
   CLI::App *sweep_, *job_;
@@ -34,7 +31,8 @@ class SweepCommand {
   int workers_ = 0, threads_ = 0, task_ = -1;
   double memory_limit_ = 0;
   std::optional<int> most_levels_;
-  bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false;
+  bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false,
+       allow_memory_ = false;
 };
 
 }  // namespace drape

@@ -1,5 +1,8 @@
 #include "core/experiment/machine.h"
 
+#include <sys/resource.h>
+
+#include <algorithm>
 #include <fstream>
 #include <thread>
 
@@ -18,6 +21,14 @@ std::string proc_value(const char* file, const std::string& key) {
   return "";
 }
 
+constexpr double unknown_memory = 1e18;
+
+/// An entry of /proc/meminfo [bytes].
+double memory_of(const std::string& key) {
+  const std::string kilobytes = proc_value("/proc/meminfo", key);
+  return kilobytes.empty() ? unknown_memory : 1024 * std::stod(kilobytes);
+}
+
 }  // namespace
 
 std::string cpu_name() {
@@ -26,6 +37,18 @@ std::string cpu_name() {
 }
 
 int core_count() { return static_cast<int>(std::thread::hardware_concurrency()); }
+
+double machine_memory() {
+  double bytes = memory_of("MemTotal");
+  double container = 0;
+  if (std::ifstream("/sys/fs/cgroup/memory.max") >> container) bytes = std::min(bytes, container);
+  rlimit shell{};
+  if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
+    bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));
+  return bytes;
+}
+
+double available_memory() { return memory_of("MemAvailable"); }
 
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << 5; }
 

@@ -5,6 +5,7 @@
 #include "core/experiment/places.h"
 #include "core/experiment/reference.h"
 #include "core/experiment/schedule.h"
+#include "core/experiment/size_estimate.h"
 #include "core/mesh/check.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
@@ -14,11 +15,9 @@ namespace drape {
 namespace {
 
 TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
-  const double density = std::sqrt(c.vertices / (size.x() * size.y()));
-  const int columns =
-      c.columns > 0 ? c.columns : std::max(2, static_cast<int>(std::lround(density * size.x())));
-  const int rows = c.rows > 0 ? c.rows : std::max(2, static_cast<int>(std::lround(density * size.y())));
-  return grid(size, columns, rows,
+  const GridSize counts = grid_size(c);
+  if (c.triangulation == "equilateral") return equilateral(size, counts.columns, counts.rows);
+  return grid(size, counts.columns, counts.rows,
               c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
 }
 
@@ -43,10 +42,6 @@ TriangleMesh make_cloth(const Experiment& e) {
   }
   const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
   if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
-  if (c.triangulation == "equilateral") {
-    const Eigen::Vector2i counts = equilateral_counts(size, c.vertices, c.columns, c.rows);
-    return equilateral(size, counts.x(), counts.y());
-  }
   return make_grid(c, size);
 }
 
@@ -78,6 +73,8 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
   const std::string& file = e.parameters.start.file;
   try {
     const TriangleMesh mesh = read_mesh(file);
+    for (const std::string& fault : check_coordinates(mesh.vertices))
+      errors.push_back({e.place_of("start"), file + ": " + fault});
     if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
       return mesh.vertices;
     errors.push_back(

@@ -7,6 +7,7 @@
 #include <list>
 #include <thread>
 
+#include "core/experiment/machine.h"
 #include "core/numerics/stopwatch.h"
 #include "core/sweep/memory.h"
 
@@ -17,12 +18,8 @@ namespace {
 class LocalEngine {
  public:
   LocalEngine(const Sweep& sweep, const SweepFolder& folder, const LocalOptions& options)
-      : sweep_(sweep), folder_(folder), options_(options) {
-    for (const SweepRun& run : sweep.runs)
-      if (const RunFiles files = folder.files(run.folder); read_status(files).has_results()) {
-        memory_.learn(run, files);
-        ++had_;
-      }
+      : sweep_(sweep), folder_(folder), options_(options), memory_(sweep, folder) {
+    for (const SweepRun& run : sweep.runs) had_ += read_status(folder.files(run.folder)).has_results();
   }
 
   void run(const std::vector<std::size_t>& missing) {

@@ -1,24 +1,15 @@
 #include "core/sweep/memory.h"
 
 #include <algorithm>
-#include <fstream>
+#include <stdexcept>
+
+#include "core/experiment/size_estimate.h"
 
 namespace drape {
 
-namespace {
-
-// On the sphere, with contact, runs took 0.1 GB and 13 KB a vertex from 6K to 25K vertices. Twice that much a
-// vertex, since factors grow faster than meshes.
-constexpr double program = 1e8, a_vertex = 2.6e4;
-
-}  // namespace
-
-double available_memory() {
-  std::ifstream in("/proc/meminfo");
-  std::string word;
-  for (double kilobytes = 0; in >> word;)
-    if (word == "MemAvailable:" && in >> kilobytes) return 1024 * kilobytes;
-  return 1e18;
+MemoryEstimate::MemoryEstimate(const Sweep& sweep, const SweepFolder& folder) {
+  for (const SweepRun& run : sweep.runs)
+    if (const RunFiles files = folder.files(run.folder); read_status(files).has_results()) learn(run, files);
 }
 
 void MemoryEstimate::learn(const SweepRun& run, const RunFiles& files) {
@@ -33,7 +24,16 @@ void MemoryEstimate::learn(const SweepRun& run, const RunFiles& files) {
 double MemoryEstimate::bytes(const SweepRun& run) const {
   const auto known = peaks_.find({run.vertices, run.levels});
   if (known != peaks_.end() && known->second > 0) return known->second;
-  return program + a_vertex * run.vertices;
+  return estimated_memory(run.vertices);
+}
+
+void MemoryEstimate::require(const Sweep& sweep, const SweepFolder& folder, double machine) const {
+  for (const SweepRun& run : sweep.runs)
+    if (bytes(run) > machine && !read_status(folder.files(run.folder)).has_results())
+      throw std::runtime_error(run.name + ", seed " + std::to_string(run.seed) + ", may need " +
+                               memory_text(bytes(run)) + " of memory, where this machine has " +
+                               memory_text(machine) +
+                               "; take fewer levels or vertices, or allow it with --allow-memory");
 }
 
 }  // namespace drape

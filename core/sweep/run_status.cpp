@@ -42,8 +42,9 @@ RunStatus begin(const RunFiles& files, int threads) {
 }
 
 std::vector<std::string> command(const RunFiles& files, int threads, bool report) {
-  std::vector<std::string> all = {own_program(), "run",     files.config(), "--out",
-                                  files.folder,  "--quiet", "--threads",    std::to_string(threads)};
+  std::vector<std::string> all = {own_program(),   "run",     files.config(), "--out",
+                                  files.folder,    "--quiet", "--threads",    std::to_string(threads),
+                                  "--allow-memory"};  // the sweep has seen to it
   if (!report) all.emplace_back("--no-report");
   return all;
 }

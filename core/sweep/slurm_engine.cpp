@@ -92,9 +92,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
                  const SlurmOptions& options) {
   const fs::path slurm = fs::absolute(folder.slurm()).lexically_normal(), logs = slurm / "logs";
   fs::create_directories(logs);
-  MemoryEstimate memory;
-  for (const SweepRun& run : sweep.runs)
-    if (read_status(folder.files(run.folder)).has_results()) memory.learn(run, folder.files(run.folder));
+  const MemoryEstimate memory(sweep, folder);
   double bytes = 0;
   for (const std::size_t k : missing) bytes = std::max(bytes, 1.2 * memory.bytes(sweep.runs[k]));
   if (options.memory > 0) bytes = options.memory;
@@ -102,16 +100,17 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
   const std::string name = "drape-" + sweep.parameters.name;
   const std::string job =
       quoted(own_program()) + " sweep-job " + quoted(fs::absolute(folder.path()).string());
-  write_atomically(slurm / "job.sh",
-                   directives({"--job-name=" + name,
-                               "--array=" + ranges(missing) +
-                                   (options.workers ? "%" + std::to_string(options.workers) : ""),
-                               "--cpus-per-task=" + std::to_string(options.threads),
-                               "--mem=" + std::to_string(int(std::ceil(bytes / 1048576))) + "M", "--requeue",
-                               "--open-mode=append", "--output=\"" + (logs / "%a.out").string() + "\"",
-                               "--error=\"" + (logs / "%a.err").string() + "\""}) +
-                       "exec " + job + " --threads " + std::to_string(options.threads) +
-                       (options.report ? " --report" : "") + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
+  write_atomically(
+      slurm / "job.sh",
+      directives(
+          {"--job-name=" + name,
+           "--array=" + ranges(missing) + (options.workers ? "%" + std::to_string(options.workers) : ""),
+           "--cpus-per-task=" + std::to_string(options.threads),
+           "--mem=" + std::to_string(std::llround(std::ceil(bytes / 1048576))) + "M", "--requeue",
+           "--open-mode=append", "--output=\"" + (logs / "%a.out").string() + "\"",
+           "--error=\"" + (logs / "%a.err").string() + "\""}) +
+          "exec " + job + " --threads " + std::to_string(options.threads) +
+          (options.report ? " --report" : "") + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
   write_atomically(slurm / "collect.sh",
                    directives({"--job-name=" + name + "-collect", "--requeue", "--mem=100M",
                                "--output=\"" + (logs / "collect.out").string() + "\"",

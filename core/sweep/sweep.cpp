@@ -1,13 +1,12 @@
 #include "core/sweep/sweep.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <tuple>
 
+#include "core/experiment/size_estimate.h"
 #include "core/experiment/yaml_file.h"
-#include "core/mesh/io.h"
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/words.h"
@@ -19,15 +18,6 @@ namespace drape {
 namespace {
 
 using NodeKind = ConfigNode::Kind;
-
-/// About how many vertices the coarsest level has; what a mesh file holds is known only by reading it.
-double coarse_vertices(const ClothParameters& cloth) {
-  try {
-    if (cloth.shape == "file") return double(read_mesh(cloth.file).vertices.rows());
-  } catch (const std::exception&) {  // the run itself will say so
-  }
-  return cloth.columns > 0 && cloth.rows > 0 ? double(cloth.columns) * cloth.rows : cloth.vertices;
-}
 
 /// Takes the methods that are not chosen out of a resolved experiment.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
@@ -144,7 +134,8 @@ class Reader {
     ConfigNode resolved = experiment.resolved;
     keep_methods(resolved, methods);
     run.levels = e.levels;
-    run.vertices = coarse_vertices(e.cloth) * std::pow(4.0, e.levels - 1);
+    const std::vector<double> vertices = estimated_vertices(e);
+    run.vertices = vertices.empty() ? 0 : vertices.back();
     std::vector<int> seeds = sweep_.parameters.seeds;
     if (seeds.empty()) seeds.push_back(e.start.seed);
     for (const int seed : seeds) {

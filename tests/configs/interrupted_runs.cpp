@@ -87,3 +87,57 @@ TEST_CASE("SIGKILL at any moment leaves whole files, that a report can be made o
   }
   CHECK(levels_read >= 8);
 }
+
+namespace {
+
+/// Sends SIGTERM, and again at once: whatever the process is at, it must not finish that.
+Ended ended_by_two_signals(Command& command) {
+  command.send(SIGTERM);
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  command.send(SIGTERM);
+  return command.wait({20 * test_slowdown(), 10});
+}
+
+}  // namespace
+
+TEST_CASE("a second signal ends a run at once") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+  wait_for_lines(command, folder / "out/steps.csv", 6);
+  const Ended ended = ended_by_two_signals(command);
+  CHECK(ended.exit_code == 128 + SIGTERM);
+  CHECK(ended.out == "");
+  CHECK_THAT(ended.err, !Catch::Contains("stopped on request"));
+}
+
+TEST_CASE("a second signal ends a run at once while metrics and the report are made") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  // A metric of neighbourhoods of thousands of vertices each, which takes seconds.
+  Command command(
+      "exec " + drape_command +
+          " run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
+          "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
+          "--set frames=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
+      folder.path);
+  wait_for_lines(command, folder / "out/log.jsonl", 6);  // both levels have ended
+  CHECK(ended_by_two_signals(command).exit_code == 128 + SIGTERM);
+}
+
+TEST_CASE("what has begun nothing yet ends with the first signal") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  for (const std::string line : {"check e.yaml", "run e.yaml --out out"}) {
+    INFO(line);
+    Command command("exec " + drape_command + " " + line +
+                        " --allow-memory --levels 1 --set cloth.columns=2000 --set cloth.rows=2000",
+                    folder.path);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    command.send(SIGTERM);
+    const Ended ended = command.wait({20 * test_slowdown(), 10});
+    CHECK(ended.exit_code == 128 + SIGTERM);
+    CHECK(ended.out == "");
+    CHECK(!fs::exists(folder / "out"));
+  }
+}

@@ -1,0 +1,90 @@
+#include "core/experiment/size_estimate.h"
+
+#include <catch2/catch.hpp>
+
+using namespace drape;
+
+namespace {
+
+ClothParameters rectangle(double width, double height, int vertices) {
+  ClothParameters c;
+  c.shape = "rectangle";
+  c.size = {width, height};
+  c.vertices = vertices;
+  return c;
+}
+
+/// Of a square of so many columns and rows.
+Experiment grid_of(int columns, int levels) {
+  Experiment e;
+  e.parameters.cloth.columns = e.parameters.cloth.rows = columns;
+  e.parameters.levels = levels;
+  return e;
+}
+
+std::string refusal(const Experiment& e, LargeMemory large = LargeMemory::refused) {
+  ConfigErrors errors;
+  refuse_too_large(e, large, errors);
+  REQUIRE(errors.size() <= 1);
+  return errors.empty() ? "" : errors[0].message;
+}
+
+}  // namespace
+
+TEST_CASE("A grid has about as many vertices as were asked for, or is refused with both numbers") {
+  const GridSize size = grid_size(rectangle(2, 0.5, 1024));
+  CHECK(size.columns == 64);
+  CHECK(size.rows == 16);
+  CHECK_THROWS_WITH(grid_size(rectangle(1e6, 1e-6, 1024)),
+                    "rectangle: about 1024 vertices are asked for, but its grid of even cells has "
+                    "3.2e+07 × 2 = 6.4e+07; set columns and rows, or ask for another number of vertices");
+  ClothParameters c = rectangle(1e6, 1e-6, 1024);
+  c.columns = 512;
+  c.rows = 2;
+  CHECK(grid_size(c).columns == 512);
+  c.triangulation = "equilateral";
+  c.columns = 0;
+  CHECK_THROWS_WITH(grid_size(c),
+                    "rectangle: a grid of 1e+09 × 2 vertices is too large; a coarsest level has "
+                    "at most 1e+07");
+  c.triangulation = "one_way";
+  c.columns = c.rows = 10000;
+  CHECK_THROWS_WITH(grid_size(c),
+                    "rectangle: a grid of 10000 × 10000 vertices is too large; a coarsest level has at most "
+                    "1e+07");
+}
+
+TEST_CASE("Vertices by level are known before anything is built") {
+  CHECK((estimated_vertices(grid_of(6, 3).parameters) == std::vector<double>{36, 121, 441}));
+  ExperimentParameters disc;
+  disc.cloth.shape = "disc";
+  disc.cloth.vertices = 100;
+  disc.levels = 2;
+  CHECK((estimated_vertices(disc) == std::vector<double>{100, 400}));
+  disc.cloth.shape = "file";
+  CHECK(estimated_vertices(disc).empty());
+}
+
+TEST_CASE("Memory is estimated within what was measured") {
+  // Peaks of benchmarks/results: the sphere and the cube on 98K vertices, the bunny's cloth on 187K.
+  CHECK(estimated_memory(97969) > 3.34e9);
+  CHECK(estimated_memory(97969) < 2 * 2.26e9);
+  CHECK(estimated_memory(187489) > 5.06e9);
+  CHECK(estimated_memory(6241) > 0.22e9);
+  CHECK(estimated_memory(6241) < 0.4e9);
+}
+
+TEST_CASE("What exceeds the machine's memory is refused unless it is allowed") {
+  CHECK(refusal(grid_of(6, 3)) == "");
+  // 31.7 million vertices: 1.6 TB.
+  CHECK_THAT(refusal(grid_of(12, 10)),
+             Catch::Matches("level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of memory, "
+                            "where this machine has [0-9.]+ GB; take at most [0-9] levels, or allow it with "
+                            "--allow-memory"));
+  CHECK(refusal(grid_of(12, 10), LargeMemory::allowed) == "");
+  // What indices cannot count is refused in any case.
+  const std::string why = refusal(grid_of(1000, 10), LargeMemory::allowed);
+  CHECK(why ==
+        "level 9 would have about 2.6e+11 vertices, more than the 4e+07 that can be counted; take at most 3 "
+        "levels");
+}
