@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -136,8 +137,9 @@ TriangleMesh inside(Triangulation& triangulation) {
       in_order(std::move(triangles))};
 }
 
-TriangleMesh refined(const std::vector<Polygon>& loops, const std::vector<Ring>& rings, double spacing,
-                     double longest_edge, unsigned seed) {
+/// Nothing where corners and angles ask for more than so many vertices.
+std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::vector<Ring>& rings,
+                                    double spacing, double longest_edge, unsigned seed, double most) {
   Triangulation triangulation;
   insert_loops(loops, spacing, triangulation);
   insert_first_inner(rings, spacing, seed, triangulation);
@@ -149,7 +151,14 @@ TriangleMesh refined(const std::vector<Polygon>& loops, const std::vector<Ring>&
   constexpr double shape_bound = 0.125;  // sin² of the smallest angle, 20.7°: refinement ends for certain
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
   mesher.set_seeds(hole_points.begin(), hole_points.end(), false);
-  mesher.refine_mesh();
+  mesher.init();
+  // A step adds a vertex or makes way for one; where rounding makes it add one that is there, there is no
+  // end.
+  constexpr double steps_each = 20;
+  double steps = 0;
+  while (mesher.try_one_step_refine_mesh())
+    if (++steps > steps_each * most || static_cast<double>(triangulation.number_of_vertices()) > most)
+      return std::nullopt;
   return inside(triangulation);
 }
 
@@ -180,6 +189,12 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
     for (std::size_t i = 0; i < ring.size(); ++i) border += std::sqrt(side(ring, i).squared_length());
   }
 
+  const auto refuse = [&](const std::string& nearest) {
+    throw std::runtime_error("polygon: about " + std::to_string(vertices_about) +
+                             " vertices cannot be had; nearest is " + nearest +
+                             " (corners and angles ask for that many)");
+  };
+  const double most = 1e4 + 20.0 * vertices_about;  // far beyond what a first attempt overshoots by
   const double spacing = even_spacing(inner_area, border, vertices_about);
   double longest_edge = 1.4 * spacing;
   TriangleMesh best;
@@ -187,15 +202,13 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
     return std::abs(static_cast<double>(mesh.vertices.rows()) / vertices_about - 1);
   };
   for (int attempt = 0; attempt < 12; ++attempt) {
-    TriangleMesh mesh = refined(loops, rings, spacing, longest_edge, seed);
-    longest_edge *= std::sqrt(static_cast<double>(mesh.vertices.rows()) / vertices_about);
-    if (attempt == 0 || miss(mesh) < miss(best)) best = std::move(mesh);
+    std::optional<TriangleMesh> mesh = refined(loops, rings, spacing, longest_edge, seed, most);
+    if (!mesh) refuse("above " + std::to_string(std::llround(most)));
+    longest_edge *= std::sqrt(static_cast<double>(mesh->vertices.rows()) / vertices_about);
+    if (attempt == 0 || miss(*mesh) < miss(best)) best = std::move(*mesh);
     if (miss(best) < 0.02) break;
   }
-  if (miss(best) > 0.15)
-    throw std::runtime_error("polygon: about " + std::to_string(vertices_about) +
-                             " vertices cannot be had; nearest is " + std::to_string(best.vertices.rows()) +
-                             " (corners and angles ask for that many)");
+  if (miss(best) > 0.15) refuse(std::to_string(best.vertices.rows()));
   return best;
 }
 
