@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdio>
+#include <limits>
 #include <random>
 
 #include "core/experiment/experiment.h"
@@ -9,6 +11,7 @@
 #include "core/mesh/check.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
+#include "core/mesh/message_text.h"
 
 namespace drape {
 
@@ -82,7 +85,7 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
                                   " has other vertices or triangles than the coarsest level; take a "
                                   "mesh like rest/l0.ply of a run's folder"});
   } catch (const std::exception& problem) {
-    errors.push_back({e.place_of("start"), problem.what()});
+    errors.push_back({e.place_of("start"), reason_of(problem)});
   }
   return coarsest.rest.vertices;
 }
@@ -108,6 +111,29 @@ Positions make_start(const Positions& rest, const Positions& shape, const StartP
     x.row(i) = s.place(shape.row(i), across).transpose();
   }
   return x;
+}
+
+/// Whether the cloth starts where its shape can be told: appends what is wrong.
+bool check_start(const Experiment& e, const Level& level, const Positions& x, ConfigErrors& errors) {
+  const auto refuse = [&](const std::string& why) {
+    errors.push_back({e.place_of("start"), "the start of level " + std::to_string(level.index) + " " + why});
+    return false;
+  };
+  for (Eigen::Index v = 0; v < x.rows(); ++v)
+    if (!x.row(v).allFinite())
+      return refuse("has vertex " + std::to_string(v) +
+                    " at no finite place; check its file, scale and translate");
+  constexpr double coarsest_rounding = 1e-6;  // relative to the cloth
+  const Positions& rest = level.rest.vertices;
+  const double size = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const double distance = x.cwiseAbs().maxCoeff();
+  const double rounding = distance * std::numeric_limits<double>::epsilon();
+  if (rounding <= coarsest_rounding * size) return true;
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "is %.3g m from the origin, where rounding moves vertices by %.1g m; move it nearer",
+                distance, rounding);
+  return refuse(text);
 }
 
 }  // namespace
@@ -144,7 +170,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   try {
     cloth = make_cloth(e);
   } catch (const std::exception& error) {
-    errors.push_back({e.place_of("cloth"), error.what()});
+    errors.push_back({e.place_of("cloth"), reason_of(error)});
     return nullptr;
   }
   const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
@@ -155,7 +181,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   try {
     scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
   } catch (const std::exception& error) {
-    errors.push_back({e.place_of("cloth"), error.what()});
+    errors.push_back({e.place_of("cloth"), reason_of(error)});
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
@@ -169,12 +195,13 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
     std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
     for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
           std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));
     } catch (const std::exception& error) {
-      errors.push_back({e.place_of("energies"), error.what()});
+      errors.push_back({e.place_of("energies"), reason_of(error)});
       return nullptr;
     }
     if (touching == TouchingStart::refused)

@@ -96,8 +96,9 @@ void LevelModel::add_up_linear_energies() {
       if (!std::isfinite(linear_at_origin_) || !linear_gradient_.allFinite())
         throw std::runtime_error(
             "energy " + term.name +
-            " has no elements, which says that it is linear, but is not finite where all "
-            "vertices are at the origin");
+            ": its forces are too large to be computed with; are its parameters and the density in SI units? "
+            "(An energy without elements is linear, and must be finite where all vertices are at the "
+            "origin.)");
     }
 }
 

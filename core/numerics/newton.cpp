@@ -11,6 +11,7 @@
 #include "core/numerics/hard_positions.h"
 #include "core/numerics/newton_state.h"
 #include "core/numerics/rounding_floor.h"
+#include "core/numerics/start_fault.h"
 
 namespace drape {
 
@@ -91,7 +92,8 @@ class Newton {
     if (run_.from)
       restore(*run_.from);
     else if (!begin())
-      return finish(Outcome::infeasible, "energy or forces at the start are not finite: " + fault_at_start());
+      return finish(Outcome::infeasible,
+                    "energy or forces at the start are not finite: " + fault_at_start(f_, result_.x, g_));
     bool stuck = false;  // the last step found no descent but in what rounding makes of the forces
     for (bool step_begun = run_.from != nullptr;; step_begun = false) {
       if (!step_begun) {
@@ -447,12 +449,6 @@ class Newton {
     if (g_.rows() == 0) return;
     evaluate();
     update_residual();
-  }
-
-  std::string fault_at_start() const {
-    if (const std::string beyond = beyond_limits(model_.limits(), result_.x, 1); !beyond.empty())
-      return beyond + "; start nearer to the rest shape, or raise the limit";
-    return "a triangle is degenerate there";
   }
 
   void evaluate() {

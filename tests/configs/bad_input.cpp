@@ -124,6 +124,10 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   };
   CHECK(said_with(std::nan("")) ==
         "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
+  CHECK(
+      said_with(1e11) ==
+      "error: e.yaml:4:8: the start of level 0 is 9e+10 m from the origin, where rounding moves vertices by "
+      "2e-05 m; move it nearer\n");
   CHECK(said_with(0.1) == "");
 }
 

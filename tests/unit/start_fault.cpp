@@ -1,0 +1,96 @@
+// What a start that has no finite energy or forces is said to suffer from.
+
+#include "core/numerics/start_fault.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "core/mesh/generate.h"
+#include "core/numerics/linear_energy.h"
+#include "core/numerics/newton.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+/// An energy of triangles with the value and the forces that it is made with, wherever they are.
+class Given final : public Energy {
+ public:
+  Given(double value, double force) : value_(value), force_(force) {}
+  EnergyRole role() const override { return EnergyRole::membrane; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    return std::make_unique<Bound>(value_, force_, level.rest.triangles);
+  }
+
+ private:
+  struct Bound final : BoundEnergy {
+    Bound(double v, double f, Stencils s) : energy(v), force(f), triangles(std::move(s)) {}
+    double value(const Positions&) const override { return energy; }
+    double add_gradient(const Positions&, Positions& g) const override {
+      g.array() += force;
+      return energy;
+    }
+    Stencils stencils() const override { return triangles; }
+    void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+    double energy, force;
+    Stencils triangles;
+  };
+  double value_, force_;
+};
+
+class Load final : public Energy {
+ public:
+  explicit Load(double force) : force_(force) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
+    return std::make_unique<LinearEnergy>(Positions::Constant(level.vertex_count(), 3, force_));
+  }
+
+ private:
+  double force_;
+};
+
+/// The message of a minimisation that cannot begin, after its first words.
+std::string fault(const std::vector<NamedEnergy>& energies, const Positions& start) {
+  static const Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+  const LevelModel model(level, Material(), energies, {});
+  PlainObjective objective(model);
+  Observer observer;
+  const LevelResult r = minimise(objective, start, NewtonParameters(), {Stopwatch(), observer});
+  CHECK(r.outcome == Outcome::infeasible);
+  const std::string first = "energy or forces at the start are not finite: ";
+  REQUIRE(r.message.starts_with(first));
+  return r.message.substr(first.size());
+}
+
+std::shared_ptr<const Energy> given(double value, double force) {
+  return std::make_shared<Given>(value, force);
+}
+
+}  // namespace
+
+TEST_CASE("what is not finite at the start is named: the energy, the triangle, the load or the forces") {
+  const Positions rest = grid({1, 1}, 3, 3, Diagonals::one_way).vertices;
+  const std::string units = "; are the moduli, the density and the loads in SI units?";
+  CHECK(fault({{"soft", given(1, 1)}, {"stiff", given(inf, 1)}}, rest) ==
+        "energy stiff is not, though no triangle is degenerate" + units);
+  CHECK(fault({{"stiff", given(1e200, 1e200)}}, rest) ==
+        "the forces are too large to be computed with" + units);
+  CHECK(fault({{"stiff", given(1, inf)}}, rest) == "the forces at vertex 0 are not" + units);
+  CHECK(fault({{"soft", given(1, 1)}, {"wind", std::make_shared<Load>(1e200)}}, rest) ==
+        "the load is too large to be computed with" + units);
+
+  Positions start = rest;
+  start.row(4) = start.row(3);
+  CHECK(fault({{"stiff", given(inf, 1)}}, start) ==
+        "energy stiff is not, as triangle 1 (0, 4, 3) has no area there; change the start");
+  CHECK(fault({{"stiff", given(1, inf)}}, start) ==
+        "triangle 1 (0, 4, 3) has no area there; change the start");
+  start = 1e-200 * rest;  // small, but no triangle is degenerate
+  CHECK(fault({{"stiff", given(inf, 1)}}, start) ==
+        "energy stiff is not, though no triangle is degenerate" + units);
+  start.row(2)[1] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 is at no finite place; change the start");
+}
