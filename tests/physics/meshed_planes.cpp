@@ -13,15 +13,18 @@ using namespace drape;
 
 namespace {
 
-/// A square of 0.6 m about the origin, in cells of this size; its inner vertices moved in the plane.
-TriangleMesh plane(double cell, double jitter) {
+/// A square of 0.6 m about the origin, in cells of this size; its inner vertices moved by a part of that in
+/// the plane, and all across it, by `uneven` at most [m].
+TriangleMesh plane(double cell, double jitter, double uneven) {
   const int columns = 1 + static_cast<int>(std::lround(0.6 / cell));
   TriangleMesh mesh = grid({0.6, 0.6}, columns, columns, Diagonals::criss_cross);
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> move(-jitter * cell, jitter * cell);
-  for (auto v : mesh.vertices.rowwise())
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (auto v : mesh.vertices.rowwise()) {
     for (int c = 0; c < 2; ++c)
-      if (v[c] > 1e-9 && v[c] < 0.6 - 1e-9) v[c] += move(random);
+      if (v[c] > 1e-9 && v[c] < 0.6 - 1e-9) v[c] += jitter * cell * unit(random);
+    v[2] += uneven * unit(random);
+  }
   // So that cloth of 2 cm cells lies neither on its edges nor on its vertices.
   mesh.vertices.rowwise() -= Eigen::RowVector3d(0.3037, 0.2951, 0);
   return mesh;
@@ -34,12 +37,13 @@ struct Floor {
 /// The same plane in many ways, the exact one first.
 std::vector<Floor> floors(const Scratch& folder) {
   std::vector<Floor> all = {{"half-space", "shapes, shapes: [{name: floor, shape: half_space}]"}};
-  for (const auto& [name, cell, jitter] :
-       {std::tuple("two triangles", 0.6, 0.0), std::tuple("0.1 m", 0.1, 0.0),
-        std::tuple("0.025 m", 0.025, 0.0), std::tuple("0.01 m", 0.01, 0.0),
-        std::tuple("0.025 m, jittered", 0.025, 0.3)}) {
+  for (const auto& [name, cell, jitter, uneven] :
+       {std::tuple("two triangles", 0.6, 0.0, 0.0), std::tuple("0.1 m", 0.1, 0.0, 0.0),
+        std::tuple("0.025 m", 0.025, 0.0, 0.0), std::tuple("0.01 m", 0.01, 0.0, 0.0),
+        std::tuple("0.025 m, jittered", 0.025, 0.3, 0.0),
+        std::tuple("0.025 m, as flat as single precision", 0.025, 0.3, 2e-8)}) {
     const auto file = folder / (std::to_string(all.size()) + ".ply");
-    write_mesh(file, plane(cell, jitter));
+    write_mesh(file, plane(cell, jitter, uneven));
     all.push_back({name, "ipc, obstacles: [{name: floor, file: " + file.string() + "}]"});
   }
   return all;

@@ -57,15 +57,15 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
   const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
   OperatorCoefficients c;
   c.edge.setZero(count);
-  Eigen::VectorXd missing = Eigen::VectorXd::Zero(n);
+  c.vertex.setZero(n);
   for (int e = 0; e < count; ++e) {
     if (dihedrals.edge_on_border[e]) continue;
     const double bends = (range * dihedrals.edge_curvature[e] - whole) / (none - whole);
     c.edge[e] = 1 - std::clamp(bends, 0.0, 1.0);
-    for (int k = 0; k < 2; ++k) missing[surface.edges(e, k)] += 1 - c.edge[e];
+    for (int k = 0; k < 2; ++k)
+      if (const int v = surface.edges(e, k); !dihedrals.vertex_on_border[v])
+        c.vertex[v] = std::max(c.vertex[v], c.edge[e]);
   }
-  c.vertex.resize(n);
-  for (int v = 0; v < n; ++v) c.vertex[v] = dihedrals.vertex_on_border[v] ? 0 : std::max(0.0, 1 - missing[v]);
   return c;
 }
 

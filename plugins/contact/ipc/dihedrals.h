@@ -36,8 +36,8 @@ struct OperatorCoefficients {
 
   /// Edges where the surface bends on the scale of the range count less, down to not at all: there are pits
   /// so narrow that a point sees all round them at once, for which the sum could turn to attraction.
-  /// A vertex makes up for what its edges would take too much. So whatever is nearest to a point has 1 or
-  /// more in all.
+  /// A vertex has the largest coefficient of its edges. So whatever is nearest to a point has 1 or more in
+  /// all, and where coefficients are alike the sum is a mean of those with and without the operator.
   static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double range);
 };
 
