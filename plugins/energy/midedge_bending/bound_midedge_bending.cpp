@@ -1,0 +1,243 @@
+#include "plugins/energy/midedge_bending/bound_midedge_bending.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "core/numerics/dihedral_angle.h"
+#include "core/numerics/element_energy.h"
+#include "core/numerics/parallel.h"
+
+namespace drape {
+namespace {
+
+constexpr int triangles_at_once = 512;
+
+/// The part m ∇²θ of an angle's Hessian, for projected_hessian.
+struct MomentKernel {
+  static constexpr bool convex = false;
+  template <class T, class Map>
+  static void hessian(const Eigen::Matrix<T, 3, 1>* d, const T* moment, Eigen::Matrix<T, 9, 9>& h,
+                      const Map& map) {
+    DihedralAngle<T>(d).hessian(T(0.0), *moment, h, map);
+  }
+};
+
+std::vector<int> places(const ElementOrder& order) {
+  std::vector<int> place(order.elements.size());
+  for (std::size_t i = 0; i < place.size(); ++i) place[order.elements[i]] = static_cast<int>(i);
+  return place;
+}
+
+}  // namespace
+
+BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperators& operators)
+    : angle_order_(level.hinge_order), angle_count_(static_cast<int>(level.hinges.rows())) {
+  make_angles(level);
+
+  // The order wants vertices, none missing; which one stands for a missing one does not matter.
+  const Stencils vertices = triangle_vertices(level, operators);
+  Stencils filled = vertices;
+  for (Eigen::Index t = 0; t < filled.rows(); ++t)
+    for (Eigen::Index i = 0; i < filled.cols(); ++i)
+      if (filled(t, i) == -1) filled(t, i) = filled(t, 0);
+  triangle_order_ = ElementOrder::of(filled, level.rest.vertices);
+
+  stencils_ =
+      Stencils::Constant(angle_count_ + vertices.rows(), std::max<Eigen::Index>(4, vertices.cols()), -1);
+  stencils_.topLeftCorner(angle_count_, 4) = in_order(level.hinges, angle_order_);
+  stencils_.bottomLeftCorner(vertices.rows(), vertices.cols()) = in_order(vertices, triangle_order_);
+  make_terms(operators, places(angle_order_));
+}
+
+void BoundMidedgeBending::make_angles(const Level& level) {
+  const Stencils angles = in_order(level.hinges, angle_order_);
+  for (int c = 0; c < angle_order_.chunks(); ++c) {
+    first_pack_.push_back(static_cast<int>(packs_.size()));
+    const int end = angle_order_.chunk_start[c + 1];
+    for (int first = angle_order_.chunk_start[c]; first < end; first += W)
+      packs_.emplace_back(angles, first, end);
+  }
+  first_pack_.push_back(static_cast<int>(packs_.size()));
+
+  rest_angles_.assign(angle_count_, 0);
+  rest_angles_ = bends(level.rest.vertices);
+  for (int i = 0; i < angle_count_; ++i)
+    if (!std::isfinite(rest_angles_[i]))
+      throw std::runtime_error("midedge_bending: a triangle at the edge of vertices " +
+                               std::to_string(angles(i, 0)) + " and " + std::to_string(angles(i, 1)) +
+                               " of level " + std::to_string(level.index) + " has no area at rest");
+}
+
+Stencils BoundMidedgeBending::triangle_vertices(const Level& level, const ShapeOperators& operators) const {
+  Stencils vertices = Stencils::Constant(level.triangle_count(), most_vertices, -1);
+  int widest = 3;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    vertices.row(t).head<3>() = level.rest.triangles.row(t);
+    int count = 3;
+    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i)
+      for (const int v : level.hinges.row(operators.terms[i].hinge)) {
+        int* const end = &vertices(t, 0) + count;
+        if (std::find(end - count, end, v) == end) vertices(t, count++) = v;
+      }
+    widest = std::max(widest, count);
+  }
+  return vertices.leftCols(widest);
+}
+
+void BoundMidedgeBending::make_terms(const ShapeOperators& operators,
+                                     const std::vector<int>& place_of_angle) {
+  of_angle_.start.assign(angle_count_ + 1, 0);
+  for (const int t : triangle_order_.elements) {
+    const auto row = stencils_.row(angle_count_ + static_cast<Eigen::Index>(of_triangle_.start.size()));
+    of_triangle_.start.push_back(static_cast<int>(of_triangle_.all.size()));
+    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
+      const int angle = place_of_angle[operators.terms[i].hinge];
+      of_triangle_.all.push_back({angle, operators.terms[i].weight});
+      ++of_angle_.start[angle + 1];
+      auto& local = local_.emplace_back();
+      for (int k = 0; k < 4; ++k)
+        local[k] =
+            static_cast<signed char>(std::find(row.begin(), row.end(), stencils_(angle, k)) - row.begin());
+    }
+  }
+  of_triangle_.start.push_back(static_cast<int>(of_triangle_.all.size()));
+
+  for (int a = 0; a < angle_count_; ++a) of_angle_.start[a + 1] += of_angle_.start[a];
+  of_angle_.all.resize(of_triangle_.all.size());
+  std::vector<int> end(of_angle_.start.begin(), of_angle_.start.end() - 1);
+  for (std::size_t t = 0; t + 1 < of_triangle_.start.size(); ++t)
+    for (int i = of_triangle_.start[t]; i < of_triangle_.start[t + 1]; ++i)
+      of_angle_.all[end[of_triangle_.all[i].item]++] = {static_cast<int>(t), of_triangle_.all[i].weight};
+}
+
+template <class Body>
+void BoundMidedgeBending::for_each_angle_pack(int chunk, const Body& body) const {
+  for (int p = first_pack_[chunk]; p < first_pack_[chunk + 1]; ++p) body(packs_[p]);
+}
+
+std::vector<double> BoundMidedgeBending::bends(const Positions& x,
+                                               std::vector<AngleGradient>* gradients) const {
+  std::vector<double> result(angle_count_);
+  if (gradients) gradients->resize(angle_count_);
+  parallel_for(angle_order_.chunks(), 1, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c)
+      for_each_angle_pack(
+          c, [&](const Angles& pack) __attribute__((flatten)) {
+            Angles::Vector d[3], g[3];
+            pack.gather(x, d);
+            const DihedralAngle<Pack<W>> dihedral(d);
+            for (int lane = 0; lane < pack.active; ++lane)
+              result[pack.first + lane] = dihedral.angle()[lane] - rest_angles_[pack.first + lane];
+            if (!gradients) return;
+            dihedral.gradient(Pack<W>(1.0), g);
+            for (int lane = 0; lane < pack.active; ++lane) {
+              AngleGradient& own = (*gradients)[pack.first + lane];
+              for (int v = 0; v < 3; ++v)
+                for (int k = 0; k < 3; ++k) own[v + 1][k] = g[v][k][lane];
+              own[0] = -(own[1] + own[2] + own[3]);
+            }
+          });
+  });
+  return result;
+}
+
+Eigen::Vector3d BoundMidedgeBending::numbers_of(int triangle, const std::vector<double>& bends) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = of_triangle_.start[triangle]; i < of_triangle_.start[triangle + 1]; ++i)
+    sum += of_triangle_.all[i].weight * bends[of_triangle_.all[i].item];
+  return sum;
+}
+
+double BoundMidedgeBending::value(const Positions& x) const {
+  const std::vector<double> bend = bends(x);
+  const double sum = parallel_sum(static_cast<int>(triangle_order_.elements.size()), triangles_at_once,
+                                  [&](int begin, int end) {
+                                    double own = 0;
+                                    for (int t = begin; t < end; ++t)
+                                      own += numbers_of(t, bend).squaredNorm();
+                                    return own;
+                                  });
+  return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
+}
+
+double BoundMidedgeBending::add_gradient(const Positions& x, Positions& g) const {
+  const std::vector<double> bend = bends(x);
+  Numbers numbers(triangle_order_.elements.size());
+  const double sum =
+      parallel_sum(static_cast<int>(numbers.size()), triangles_at_once, [&](int begin, int end) {
+        double own = 0;
+        for (int t = begin; t < end; ++t) own += (numbers[t] = numbers_of(t, bend)).squaredNorm();
+        return own;
+      });
+  angle_order_.for_each_chunk([&](int c) {
+    for_each_angle_pack(
+        c, [&](const Angles& pack) __attribute__((flatten)) {
+          Angles::Vector d[3], by_difference[3];
+          pack.gather(x, d);
+          DihedralAngle<Pack<W>>(d).gradient(moments(pack, numbers), by_difference);
+          pack.scatter(by_difference, g);
+        });
+  });
+  return std::isnan(sum) ? std::numeric_limits<double>::infinity() : sum;
+}
+
+Pack<BoundMidedgeBending::W> BoundMidedgeBending::moments(const Angles& pack, const Numbers& numbers) const {
+  Pack<W> result = 0.0;
+  for (int lane = 0; lane < pack.active; ++lane) {
+    double sum = 0;
+    const int a = pack.first + lane;
+    for (int i = of_angle_.start[a]; i < of_angle_.start[a + 1]; ++i)
+      sum += of_angle_.all[i].weight.dot(numbers[of_angle_.all[i].item]);
+    result.v[lane] = 2 * sum;
+  }
+  return result;
+}
+
+void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection, BlockSink& sink) const {
+  std::vector<AngleGradient> gradients;
+  const std::vector<double> bend = bends(x, &gradients);
+  Numbers numbers(triangle_order_.elements.size());
+  parallel_for(static_cast<int>(numbers.size()), triangles_at_once, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) numbers[t] = numbers_of(t, bend);
+  });
+  angle_order_.for_each_chunk([&](int c) {
+    for_each_angle_pack(
+        c, [&](const Angles& pack) __attribute__((flatten)) {
+          Angles::Vector d[3];
+          SymmetricMatrix<9, Pack<W>> h;
+          pack.gather(x, d);
+          const Pack<W> moment = moments(pack, numbers);
+          projected_hessian<MomentKernel>(d, &moment, projection, h);
+          pack.scatter(h, sink);
+        });
+  });
+  BlockSink own = sink.from(angle_count_);
+  triangle_order_.for_each_chunk([&](int c) {
+    for (int t = triangle_order_.chunk_start[c]; t < triangle_order_.chunk_start[c + 1]; ++t)
+      add_triangle(t, gradients, own);
+  });
+}
+
+void BoundMidedgeBending::add_triangle(int t, const std::vector<AngleGradient>& gradients,
+                                       BlockSink& sink) const {
+  using Jacobian = Eigen::Matrix3d;  // row i: ∂s_i/∂x of one vertex
+  Jacobian jacobians[most_vertices];
+  const auto row = stencils_.row(angle_count_ + t);
+  int count = 0;
+  while (count < row.size() && row[count] != -1) jacobians[count++].setZero();
+  for (int i = of_triangle_.start[t]; i < of_triangle_.start[t + 1]; ++i) {
+    const Term& term = of_triangle_.all[i];
+    const AngleGradient& g = gradients[term.item];
+    for (int k = 0; k < 4; ++k) jacobians[local_[i][k]] += term.weight * g[k].transpose();
+  }
+  for (int b = 0; b < count; ++b)
+    for (int a = 0; a <= b; ++a) {
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> block = 2 * jacobians[a].transpose() * jacobians[b];
+      sink.add(t, a, b, block.data());
+    }
+}
+
+}  // namespace drape

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/model/energy.h"
+#include "core/numerics/element_pack.h"
+#include "plugins/energy/midedge_bending/shape_operators.h"
+
+namespace drape {
+
+/// Σ_t ‖s_t‖², s_t = Σ weight (θ - θ̄) over the triangle's terms (see ShapeOperators).
+///
+/// Dihedral angles are computed once each, several at a time, and triangles then sum them: an angle belongs
+/// to up to six triangles. The Hessian, by moments m = 2 Σ_t weight·s_t of the angles, is
+///
+///     Σ_t 2 Σ_i ∇s_t,i ∇s_t,iᵀ + Σ m ∇²θ,
+///
+/// whose first part is positive semidefinite; the second is projected angle by angle.
+class BoundMidedgeBending final : public BoundEnergy {
+ public:
+  BoundMidedgeBending(const Level& level, const ShapeOperators& operators);
+
+  double value(const Positions& x) const override;
+  double add_gradient(const Positions& x, Positions& g) const override;
+  /// Rows of the angles, then of the triangles; -1 where one has fewer vertices than the widest.
+  Stencils stencils() const override { return stencils_; }
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override;
+
+ private:
+  static constexpr int W = native_pack_width, most_vertices = 12;
+  using Angles = ElementPack<4, W>;
+  using Numbers = std::vector<Eigen::Vector3d>;
+
+  struct Term {
+    int item;  ///< the angle of a triangle's term, or the triangle of an angle's
+    Eigen::Vector3d weight;
+  };
+  struct Terms {
+    std::vector<int> start;
+    std::vector<Term> all;
+  };
+  /// An angle's derivatives by its four vertices.
+  using AngleGradient = std::array<Eigen::Vector3d, 4>;
+
+  void make_angles(const Level& level);
+  void make_terms(const ShapeOperators& operators, const std::vector<int>& place_of_angle);
+  Stencils triangle_vertices(const Level& level, const ShapeOperators& operators) const;
+
+  template <class Body>
+  void for_each_angle_pack(int chunk, const Body& body) const;
+  /// θ - θ̄ of every angle; also their gradients where these are asked for.
+  std::vector<double> bends(const Positions& x, std::vector<AngleGradient>* gradients = nullptr) const;
+  Eigen::Vector3d numbers_of(int triangle, const std::vector<double>& bends) const;
+  /// ∂E/∂θ of a pack's angles.
+  Pack<W> moments(const Angles& pack, const Numbers& numbers) const;
+  void add_triangle(int t, const std::vector<AngleGradient>& gradients, BlockSink& sink) const;
+
+  // Angles and triangles are numbered by their places in these.
+  ElementOrder angle_order_, triangle_order_;
+  std::vector<Angles> packs_;
+  std::vector<int> first_pack_;  // of each chunk of angles, and one more
+  std::vector<double> rest_angles_;
+  Terms of_triangle_, of_angle_;
+  // Of each term of of_triangle_: where its angle's vertices stand in the triangle's row of stencils_.
+  std::vector<std::array<signed char, 4>> local_;
+  Stencils stencils_;
+  int angle_count_ = 0;
+};
+
+}  // namespace drape

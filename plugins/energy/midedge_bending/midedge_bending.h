@@ -1,0 +1,34 @@
+#pragma once
+
+#include "core/model/energy.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// Bending of a Kirchhoff–Love plate from normals at the middles of edges, on any triangulation and of any
+/// rest shape: Σ_t Ā k ((1 - ν) tr S² + ν (tr S)²), k = E_bend d³ / (24 (1 - ν²)).
+class MidedgeBending final : public Energy {
+ public:
+  struct Parameters {
+    double correction_tolerance = 0.02;
+
+    static void declare(Declaration<Parameters>& d) {
+      d.add("correction_tolerance", &Parameters::correction_tolerance)
+          .at_least(0)
+          .at_most(1)
+          .meaning(
+              "smallest weight of a neighbouring dihedral angle that still corrects an edge's normal, where "
+              "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
+          .source("this project");
+    }
+  };
+
+  explicit MidedgeBending(const Parameters& parameters) : parameters_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::bending; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+
+ private:
+  Parameters parameters_;
+};
+
+}  // namespace drape

@@ -1,0 +1,225 @@
+#include "plugins/energy/midedge_bending/shape_operators.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+namespace drape {
+namespace {
+
+using Point = Eigen::Vector2d;
+
+/// Inner edges' rows in Level::hinges; -1 on the border.
+std::vector<int> hinge_of_edge(const Topology& topology) {
+  std::vector<int> hinges(topology.edges.rows());
+  for (int e = 0, h = 0; e < topology.edges.rows(); ++e)
+    hinges[e] = topology.edge_triangles(e, 1) == -1 ? -1 : h++;
+  return hinges;
+}
+
+int corner_opposite(const Level& level, int triangle, int edge) {
+  for (int corner = 0; corner < 2; ++corner)
+    if (level.topology.triangle_edges(triangle, corner) == edge) return corner;
+  return 2;
+}
+
+/// Where a point stands beside an edge: how far along (0 … 1 on the edge) and its distance from the edge.
+struct Foot {
+  double along, distance;
+
+  Foot(const Eigen::Vector3d& from, const Eigen::Vector3d& to, const Eigen::Vector3d& p) {
+    const Eigen::Vector3d edge = to - from;
+    along = edge.dot(p - from) / edge.squaredNorm();
+    distance = edge.cross(p - from).norm() / edge.norm();
+  }
+};
+
+/// Two triangles on both sides of an edge, unfolded into the plane.
+struct Unfolded {
+  Point from, to;     // the edge
+  Point left, right;  // the triangles' other corners, seen along the edge
+  double left_distance, right_distance;
+
+  /// How much the slope across the edge changes at it, where the function is linear on either triangle, for
+  /// x²/2, xy and y²/2.
+  Eigen::Vector3d slope_changes() const {
+    const Point edge = to - from;
+    const double left_along = edge.dot(left - from) / edge.squaredNorm(),
+                 right_along = edge.dot(right - from) / edge.squaredNorm();
+    return quadratics(left) / left_distance + quadratics(right) / right_distance -
+           quadratics(from) * ((1 - left_along) / left_distance + (1 - right_along) / right_distance) -
+           quadratics(to) * (left_along / left_distance + right_along / right_distance);
+  }
+
+  static Eigen::Vector3d quadratics(const Point& p) {
+    return {p.x() * p.x() / 2, p.x() * p.y(), p.y() * p.y() / 2};
+  }
+};
+
+/// The third corner of a triangle on the right of an edge in the plane.
+Point right_corner(const Point& from, const Point& to, double along, double distance) {
+  const Point edge = to - from;
+  return from + along * edge + distance / edge.norm() * Point(edge.y(), -edge.x());
+}
+
+/// The slope at an edge's middle, less half the slope's change there, from the triangle on its left to that
+/// on its right, is this sum over dihedral angles for every quadratic function.
+struct Correction {
+  int hinges[5];
+  double weights[5];
+  int size = 0;
+};
+
+class EdgeNormals {
+ public:
+  EdgeNormals(const Level& level, double tolerance)
+      : level_(level), tolerance_(tolerance), hinges_(hinge_of_edge(level.topology)) {}
+
+  int hinge(int edge) const { return hinges_[edge]; }
+
+  Correction correction(int edge) const {
+    const Triangles& triangles = level_.rest.triangles;
+    const int t[2] = {level_.topology.edge_triangles(edge, 0), level_.topology.edge_triangles(edge, 1)};
+    const int c[2] = {corner_opposite(level_, t[0], edge), corner_opposite(level_, t[1], edge)};
+    const int from = triangles(t[0], (c[0] + 1) % 3), to = triangles(t[0], (c[0] + 2) % 3);
+
+    // The edge lies on the x-axis about the origin and has length 1; triangle 0 is on its left.
+    const double length = (vertex(to) - vertex(from)).norm();
+    Unfolded own{Point(-0.5, 0), Point(0.5, 0), {}, {}, 0, 0};
+    const Foot left(vertex(from), vertex(to), vertex(triangles(t[0], c[0]))),
+        right(vertex(from), vertex(to), vertex(triangles(t[1], c[1])));
+    own.left_distance = left.distance / length, own.right_distance = right.distance / length;
+    own.left = {left.along - 0.5, own.left_distance};
+    own.right = {right.along - 0.5, -own.right_distance};
+
+    Correction result;
+    Eigen::Matrix<double, 3, 5> changes;
+    const auto add = [&](int inner_edge, const Unfolded& pair) {
+      changes.col(result.size) = pair.slope_changes();
+      result.hinges[result.size++] = hinges_[inner_edge];
+    };
+    add(edge, own);
+    for (int side = 0; side < 2; ++side)
+      for (int k = 1; k < 3; ++k) {  // the triangle's other edges
+        const int corner = (c[side] + k) % 3, other = level_.topology.triangle_edges(t[side], corner);
+        if (hinges_[other] == -1) continue;
+        const auto place = [&](int which) {
+          const int v = triangles(t[side], which % 3);
+          return v == from ? own.from : v == to ? own.to : side == 0 ? own.left : own.right;
+        };
+        const int beyond = level_.topology.edge_triangles(other, 0) == t[side]
+                               ? level_.topology.edge_triangles(other, 1)
+                               : level_.topology.edge_triangles(other, 0);
+        const int a = triangles(t[side], (corner + 1) % 3), b = triangles(t[side], (corner + 2) % 3);
+        const Foot foot(vertex(a), vertex(b),
+                        vertex(triangles(beyond, corner_opposite(level_, beyond, other))));
+        Unfolded pair{place(corner + 1), place(corner + 2), place(corner), {}, 0, foot.distance / length};
+        pair.left_distance = 2 * triangle_area(t[side]) / ((vertex(b) - vertex(a)).norm() * length);
+        pair.right = right_corner(pair.from, pair.to, foot.along, pair.right_distance);
+        add(other, pair);
+      }
+    least_weights(own, changes.leftCols(result.size), result);
+    return result;
+  }
+
+  double triangle_area(int t) const {
+    const auto v = level_.rest.triangles.row(t);
+    return (vertex(v[1]) - vertex(v[0])).cross(vertex(v[2]) - vertex(v[0])).norm() / 2;
+  }
+
+ private:
+  Eigen::Vector3d vertex(int v) const { return level_.rest.vertices.row(v).transpose(); }
+
+  /// The weights of least square sum with changes · weights = what is missing; none if all are small.
+  template <class Changes>
+  void least_weights(const Unfolded& own, const Changes& changes, Correction& result) const {
+    // Slopes across the edge at its middle are 0 for all three functions; on triangle 0 they are these.
+    const Eigen::Vector3d left_slope =
+        (Unfolded::quadratics(own.left) - Unfolded::quadratics(own.from) * (0.5 - own.left.x()) -
+         Unfolded::quadratics(own.to) * (0.5 + own.left.x())) /
+        own.left_distance;
+    const Eigen::Vector3d missing = left_slope - own.slope_changes() / 2;
+    // Directions in which these angles hardly see a curvature would ask for large weights.
+    constexpr double smallest = 0.05 * 0.05;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(changes * changes.transpose());
+    Eigen::Vector3d solution = Eigen::Vector3d::Zero();
+    for (int i = 0; i < 3; ++i)
+      if (eigen.eigenvalues()[i] > smallest * eigen.eigenvalues()[2])
+        solution +=
+            eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(missing) / eigen.eigenvalues()[i]);
+    const Eigen::VectorXd weights = changes.transpose() * solution;
+    if (tolerance_ == 1 || weights.cwiseAbs().maxCoeff() <= tolerance_)
+      result.size = 0;
+    else
+      for (int i = 0; i < result.size; ++i) result.weights[i] = weights[i];
+  }
+
+  const Level& level_;
+  double tolerance_;
+  std::vector<int> hinges_;
+};
+
+/// Edge k's l n nᵀ / Ā of a triangle, in coordinates in which (1 - ν) tr S² + ν (tr S)² is the square of the
+/// norm.
+std::array<Eigen::Vector3d, 3> edge_directions(const Eigen::Vector3d* x, double poisson_ratio) {
+  const double nu = poisson_ratio;
+  const Eigen::Vector3d normal = (x[1] - x[0]).cross(x[2] - x[0]);
+  const Eigen::Vector3d e1 = (x[1] - x[0]).normalized(), e2 = normal.cross(e1).normalized();
+  std::array<Eigen::Vector3d, 3> directions;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d edge = x[(k + 2) % 3] - x[(k + 1) % 3];
+    const Point n(edge.dot(e2), -edge.dot(e1));  // of the edge's length
+    const Eigen::Vector3d s(n.x() * n.x(), n.x() * n.y(), n.y() * n.y());
+    directions[k] =
+        Eigen::Vector3d(s[0] + nu * s[2], std::sqrt(1 - nu * nu) * s[2], std::sqrt(2 * (1 - nu)) * s[1]) /
+        (edge.norm() * normal.norm() / 2);
+  }
+  return directions;
+}
+
+}  // namespace
+
+ShapeOperators ShapeOperators::of(const Level& level, double k, double poisson_ratio, double tolerance) {
+  const EdgeNormals normals(level, tolerance);
+  std::vector<Correction> corrections(level.topology.edges.rows());
+  for (int e = 0; e < level.topology.edges.rows(); ++e)
+    if (normals.hinge(e) != -1) corrections[e] = normals.correction(e);
+
+  ShapeOperators result;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    result.start.push_back(static_cast<int>(result.terms.size()));
+    Eigen::Vector3d x[3];
+    for (int i = 0; i < 3; ++i) x[i] = level.rest.vertices.row(level.rest.triangles(t, i)).transpose();
+    const std::array<Eigen::Vector3d, 3> directions = edge_directions(x, poisson_ratio);
+
+    // A free normal takes away what its direction has of the others.
+    Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(k * normals.triangle_area(t));
+    for (int i = 0; i < 3; ++i) {
+      if (normals.hinge(level.topology.triangle_edges(t, i)) != -1) continue;
+      const Eigen::Vector3d free = (projection * directions[i]).stableNormalized();
+      projection -= free * (free.transpose() * projection).eval();
+    }
+    const auto add = [&](int hinge, const Eigen::Vector3d& weight) {
+      for (std::size_t i = result.start.back(); i < result.terms.size(); ++i)
+        if (result.terms[i].hinge == hinge) {
+          result.terms[i].weight += weight;
+          return;
+        }
+      result.terms.push_back({hinge, weight});
+    };
+    for (int i = 0; i < 3; ++i) {
+      const int e = level.topology.triangle_edges(t, i);
+      if (normals.hinge(e) == -1) continue;
+      const Eigen::Vector3d direction = projection * directions[i];
+      add(normals.hinge(e), direction / 2);
+      const double sign = level.topology.edge_triangles(e, 0) == t ? 1 : -1;
+      const Correction& c = corrections[e];
+      for (int j = 0; j < c.size; ++j) add(c.hinges[j], direction * (sign * c.weights[j]));
+    }
+  }
+  result.start.push_back(static_cast<int>(result.terms.size()));
+  return result;
+}
+
+}  // namespace drape

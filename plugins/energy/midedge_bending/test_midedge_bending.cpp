@@ -1,0 +1,227 @@
+#include <Eigen/Eigenvalues>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/mesh/generate.h"
+#include "core/numerics/dihedral_angle.h"
+#include "plugins/energy/midedge_bending/midedge_bending.h"
+#include "plugins/energy/midedge_bending/shape_operators.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double k = 0.7, nu = 0.3, default_tolerance = MidedgeBending::Parameters().correction_tolerance;
+
+/// Material with this k and ν.
+const Material material = [] {
+  Material m;
+  m.thickness = 0.01;
+  m.poisson_ratio = nu;
+  m.bending_modulus = k * 24 * (1 - nu * nu) / 1e-6;
+  return m;
+}();
+
+std::unique_ptr<BoundEnergy> bind(const Level& level) { return MidedgeBending({}).bind(level, material); }
+
+struct NamedMesh {
+  std::string name;
+  TriangleMesh mesh;
+};
+
+/// Of about n × n vertices on 0.6 × 0.5 m.
+std::vector<NamedMesh> triangulations(int n) {
+  const Eigen::Vector2d size(0.6, 0.5);
+  const Eigen::Vector2i counts = equilateral_counts(size, n * n);
+  return {{"one_way", grid(size, n, n, Diagonals::one_way)},
+          {"criss_cross", grid(size, n, n, Diagonals::criss_cross)},
+          {"equilateral", equilateral(size, counts.x(), counts.y())},
+          {"random", random_triangulation(size, n * n, 7)}};
+}
+
+double angle_at(const Level& level, const Positions& x, int hinge) {
+  Eigen::Vector3d d[3];
+  for (int i = 0; i < 3; ++i)
+    d[i] = (x.row(level.hinges(hinge, i + 1)) - x.row(level.hinges(hinge, 0))).transpose();
+  return DihedralAngle<double>(d).angle();
+}
+
+/// Energies per rest area [J/m²] of triangles without a border vertex.
+std::vector<double> inner_densities(const Level& level, const Positions& x, double tolerance) {
+  const ShapeOperators operators = ShapeOperators::of(level, k, nu, tolerance);
+  std::vector<double> densities;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const auto v = level.rest.triangles.row(t);
+    bool inner = true;
+    for (int i = 0; i < 3; ++i) inner &= !level.topology.on_border[v[i]];
+    if (!inner) continue;
+    const Eigen::Vector3d a = level.rest.vertices.row(v[1]) - level.rest.vertices.row(v[0]),
+                          b = level.rest.vertices.row(v[2]) - level.rest.vertices.row(v[0]);
+    Eigen::Vector3d s = Eigen::Vector3d::Zero();
+    for (int i = operators.start[t]; i < operators.start[t + 1]; ++i) {
+      const auto& term = operators.terms[i];
+      s += term.weight * (angle_at(level, x, term.hinge) - angle_at(level, level.rest.vertices, term.hinge));
+    }
+    densities.push_back(s.squaredNorm() / (a.cross(b).norm() / 2));
+  }
+  REQUIRE(densities.size() > 10);
+  return densities;
+}
+
+/// Of a plate with the curvatures of shape.
+double plate_density(const Eigen::Matrix2d& shape) {
+  return k * ((1 - nu) * (shape * shape).trace() + nu * shape.trace() * shape.trace());
+}
+
+/// Largest relative deviation of `values` from `expected`.
+double largest_miss(const std::vector<double>& values, double expected) {
+  double largest = 0;
+  for (const double v : values) largest = std::max(largest, std::abs(v / expected - 1));
+  return largest;
+}
+
+std::vector<Eigen::Matrix2d> shapes() {
+  std::vector<Eigen::Matrix2d> all(6);
+  all[0] << 1, 0, 0, 0;  // cylinders
+  all[1] << .5, .5, .5, .5;
+  all[2] << .5, -.5, -.5, .5;
+  all[3] << 1, 0, 0, 1;   // a sphere
+  all[4] << 1, 0, 0, -1;  // saddles
+  all[5] << 0, 1, 1, 0;
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "midedge_bending: every inner triangle of every triangulation has the plate's energy on quadratics") {
+  for (const auto& [name, mesh] : triangulations(12)) {
+    const Level level = Level::of(0, mesh);
+    for (const Eigen::Matrix2d& shape : shapes()) {
+      const double curvature = 1e-4;
+      Positions x = mesh.vertices;
+      for (int i = 0; i < level.vertex_count(); ++i) {
+        const Eigen::Vector2d p = x.row(i).head<2>().transpose();
+        x(i, 2) = curvature / 2 * p.dot(shape * p);
+      }
+      INFO(name << ", shape\n" << shape);
+      const double expected = curvature * curvature * plate_density(shape);
+      CHECK(largest_miss(inner_densities(level, x, 0), expected) < 1e-6);
+      const std::vector<double> as_made = inner_densities(level, x, default_tolerance);
+      double mean = 0;
+      for (const double d : as_made) mean += d / as_made.size();
+      CHECK(mean == Approx(expected).epsilon(0.005));
+    }
+  }
+}
+
+TEST_CASE("midedge_bending: the average of the triangles' normals alone is not the plate's") {
+  const Level level = Level::of(0, grid({0.6, 0.6}, 12, 12, Diagonals::criss_cross));
+  Positions x = level.rest.vertices;
+  for (int i = 0; i < level.vertex_count(); ++i) x(i, 2) = 1e-4 * x(i, 0) * x(i, 1);
+  const double expected = 1e-8 * plate_density(shapes()[5]);
+  for (const double d : inner_densities(level, x, 1))
+    CHECK(d / expected == Approx(2 / (1 - nu)).epsilon(1e-4));
+}
+
+TEST_CASE(
+    "midedge_bending: sheets rolled up have the plate's energy, to second order where it is not exact") {
+  const double radius = 0.4;
+  for (const bool along_x : {true, false}) {
+    std::vector<std::vector<double>> errors(4);
+    for (const int n : {11, 21, 41}) {
+      const auto meshes = triangulations(n);
+      for (std::size_t m = 0; m < meshes.size(); ++m) {
+        const Level level = Level::of(0, meshes[m].mesh);
+        Positions x = level.rest.vertices;
+        for (int i = 0; i < level.vertex_count(); ++i) {
+          const double s = x(i, along_x ? 0 : 1) / radius, other = x(i, along_x ? 1 : 0);
+          x.row(i) << radius * std::sin(s), other, radius * std::cos(s);
+        }
+        const std::vector<double> densities = inner_densities(level, x, default_tolerance);
+        double mean = 0;
+        for (const double d : densities) mean += d / densities.size();
+        errors[m].push_back(std::abs(mean / (k / (radius * radius)) - 1));
+      }
+    }
+    for (std::size_t m = 0; m < errors.size(); ++m) {
+      INFO(triangulations(5)[m].name << ": " << errors[m][0] << ", " << errors[m][1] << ", " << errors[m][2]);
+      CHECK(errors[m][2] < 0.003);
+      // With edges along the axis all angles are alike.
+      if (m < 3 && errors[m][2] > 1e-12) CHECK(errors[m][1] / errors[m][2] == Approx(4).epsilon(0.2));
+    }
+  }
+}
+
+TEST_CASE("midedge_bending: a curved rest shape is free of stress, and costs what bends it further") {
+  // A rest cylinder of radius 1 that is rolled to radius 1/2, and one that is unrolled.
+  for (const auto& [name, flat_mesh] : triangulations(21)) {
+    const auto rolled = [&](double curvature) {
+      Positions x = flat_mesh.vertices;
+      for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const double s = x(i, 0) * curvature;
+        if (curvature != 0) x.row(i) << std::sin(s) / curvature, x(i, 1), (std::cos(s) - 1) / curvature;
+      }
+      return x;
+    };
+    const Level level = Level::of(0, {rolled(1), flat_mesh.triangles});
+    INFO(name);
+    CHECK(bind(level)->value(level.rest.vertices) <= 1e-28 * k);
+    for (const double curvature : {0.0, 2.0, 3.0}) {
+      const std::vector<double> densities = inner_densities(level, rolled(curvature), default_tolerance);
+      double mean = 0;
+      for (const double d : densities) mean += d / densities.size();
+      CHECK(mean == Approx(k * std::pow(curvature - 1, 2)).epsilon(0.01));
+    }
+  }
+}
+
+TEST_CASE("midedge_bending: it has no modes without energy but the rigid ones, nor nearly so") {
+  for (const auto& [name, mesh] : triangulations(9)) {
+    const Level level = Level::of(0, mesh);
+    const auto eigenvalues = [&](const BoundEnergy& energy) {
+      const Eigen::MatrixXd h = dense(hessian_of(energy, mesh.vertices, Projection::none));
+      const int n = level.vertex_count();
+      Eigen::MatrixXd across(n, n);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) across(i, j) = h(3 * i + 2, 3 * j + 2);
+      return Eigen::VectorXd(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(across).eigenvalues());
+    };
+    const Eigen::VectorXd own = eigenvalues(*bind(level));
+    INFO(name << ": smallest " << own.head<5>().transpose() << ", largest " << own[own.size() - 1]);
+    for (int i = 0; i < 3; ++i) CHECK(std::abs(own[i]) < 1e-12 * own[own.size() - 1]);
+    CHECK(own[3] > 1e-5 * own[own.size() - 1]);
+  }
+}
+
+TEST_CASE("midedge_bending: lattices have narrow stencils") {
+  const auto width = [](const TriangleMesh& mesh) { return bind(Level::of(0, mesh))->stencils().cols(); };
+  CHECK(width(grid({1, 0.7}, 9, 9, Diagonals::one_way)) == 6);
+  CHECK(width(random_triangulation({1, 1}, 100, 3)) == 12);
+}
+
+TEST_CASE("midedge_bending: same bits with any number of threads") {
+  const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
+  const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
+  check_threads(*bind(level), level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3));
+}
+
+TEST_CASE("midedge_bending: a single triangle does not bend") {
+  TriangleMesh mesh;
+  mesh.vertices = Eigen::Matrix3d::Identity();
+  mesh.triangles.resize(1, 3);
+  mesh.triangles << 0, 1, 2;
+  const auto bound = bind(Level::of(0, mesh));
+  Positions g = Positions::Zero(3, 3);
+  CHECK(bound->value(mesh.vertices) == 0);
+  CHECK(bound->add_gradient(mesh.vertices, g) == 0);
+  CHECK(g.isZero(0));
+  CHECK(hessian_of(*bound, mesh.vertices, Projection::clamp).values == std::vector<double>(9 * 6, 0.0));
+}
+
+TEST_CASE("midedge_bending: a triangle without area is refused") {
+  Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
+  level.rest.vertices.row(4) = level.rest.vertices.row(0);
+  CHECK_THROWS_WITH(bind(level), Catch::Contains("midedge_bending: ") && Catch::Contains("no area"));
+}

@@ -1,0 +1,216 @@
+// Plates under small loads, by every bending model on every triangulation. In the plane state bending sees
+// deflections alone, so that its exact Hessian there gives a linear problem for them.
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/mesh/generate.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/strip.h"
+
+using namespace drape;
+
+namespace {
+
+/// D = E d³ / 12 (1 − ν²) = 1 N m.
+Material plate_material(double nu) {
+  Material m;
+  m.thickness = 0.01;
+  m.poisson_ratio = nu;
+  m.bending_modulus = 12 * (1 - nu * nu) / 1e-6;
+  return m;
+}
+
+struct Model {
+  std::string name, yaml;
+};
+
+const Model models[] = {{"hinge", "hinge"},
+                        {"quadratic", "quadratic_bending"},
+                        {"average", "{type: midedge_bending, correction_tolerance: 1}"},
+                        {"midedge", "midedge_bending"}};
+
+const std::string triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
+
+/// With edges of about a.
+TriangleMesh mesh_of(const std::string& triangulation, const Eigen::Vector2d& size, double a) {
+  const Eigen::Vector2i cells = (size / a).array().round().cast<int>();
+  const int vertices = (cells.x() + 1) * (cells.y() + 1);
+  if (triangulation == "random") return random_triangulation(size, vertices, 5);
+  if (triangulation == "equilateral") {
+    const Eigen::Vector2i counts = equilateral_counts(size, vertices);
+    return equilateral(size, counts.x(), counts.y());
+  }
+  return grid(size, cells.x() + 1, cells.y() + 1,
+              triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
+}
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+/// Stiffness [N/m] by deflections.
+Matrix stiffness_of(const Level& level, const Model& model, double nu) {
+  const auto energy = make_plugin_from<Energy>(model.yaml)->bind(level, plate_material(nu));
+  const BlockMatrix h = hessian_of(*energy, level.rest.vertices, Projection::none);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int i = 0; i < h.pattern->rows(); ++i)
+    for (int b = h.pattern->row_start[i]; b < h.pattern->row_start[i + 1]; ++b) {
+      const int j = h.pattern->columns[b];
+      const double value = h.block(b)[8];
+      entries.emplace_back(i, j, value);
+      if (i != j) entries.emplace_back(j, i, value);
+    }
+  Matrix k(level.vertex_count(), level.vertex_count());
+  k.setFromTriplets(entries.begin(), entries.end());
+  return k;
+}
+
+/// The rows and columns of free vertices.
+Matrix of_free(const Matrix& k, const std::vector<int>& number, int free) {
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int c = 0; c < k.outerSize(); ++c)
+    for (Matrix::InnerIterator it(k, c); it; ++it)
+      if (number[it.row()] >= 0 && number[it.col()] >= 0)
+        entries.emplace_back(number[it.row()], number[it.col()], it.value());
+  Matrix part(free, free);
+  part.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
+/// Numbers of the vertices that `held` leaves free, -1 for the others.
+template <class Held>
+std::vector<int> free_numbers(const Level& level, const Held& held, int& free) {
+  std::vector<int> number(level.vertex_count(), -1);
+  free = 0;
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (!held(Eigen::Vector2d(level.rest.vertices.row(v).head<2>().transpose()))) number[v] = free++;
+  return number;
+}
+
+/// Deflections under forces, where no vertex for whose place held(p) holds moves.
+template <class Held>
+Eigen::VectorXd deflections(const Level& level, const Matrix& k, const Eigen::VectorXd& forces,
+                            const Held& held) {
+  int free = 0;
+  const std::vector<int> number = free_numbers(level, held, free);
+  Eigen::VectorXd f(free);
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (number[v] >= 0) f[number[v]] = forces[v];
+  const Eigen::SimplicialLDLT<Matrix> factor(of_free(k, number, free));
+  REQUIRE(factor.info() == Eigen::Success);
+  REQUIRE(factor.vectorD().minCoeff() > 0);
+  const Eigen::VectorXd solved = factor.solve(f);
+  Eigen::VectorXd w = Eigen::VectorXd::Zero(level.vertex_count());
+  for (int v = 0; v < level.vertex_count(); ++v)
+    if (number[v] >= 0) w[v] = solved[number[v]];
+  return w;
+}
+
+int vertex_at(const Level& level, const Eigen::Vector2d& p) {
+  Eigen::Index nearest = 0;
+  (level.rest.vertices.leftCols<2>().rowwise() - p.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+  return static_cast<int>(nearest);
+}
+
+/// A strip on two supports under its weight, ν = 0: stiffness over the beam's, from 5 q L⁴ / 384 D in the
+/// middle.
+double beam(const std::string& triangulation, const Model& model, double a) {
+  const Level level = Level::of(0, mesh_of(triangulation, {1, 0.2}, a));
+  const Matrix k = stiffness_of(level, model, 0);
+  const Eigen::VectorXd w = deflections(level, k, level.vertex_area,
+                                        [](const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1; });
+  return 5. / 384 / w.maxCoeff();
+}
+
+/// A square plate on its four sides under its weight: stiffness over the plate's, 0.00406235 q L⁴ / D.
+double supported_plate(const std::string& triangulation, const Model& model, double a) {
+  const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, a));
+  const Matrix k = stiffness_of(level, model, 0.3);
+  const Eigen::VectorXd w = deflections(level, k, level.vertex_area, [](const Eigen::Vector2d& p) {
+    return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1;
+  });
+  return 0.00406235 / w.maxCoeff();
+}
+
+/// A square plate on three corners with a force P on the fourth, w = P x y / 2 D (1 − ν): stiffness over the
+/// plate's.
+double twisted_plate(const std::string& triangulation, const Model& model, double a) {
+  const double nu = 0.3;
+  const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, a));
+  const Matrix k = stiffness_of(level, model, nu);
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(level.vertex_count());
+  const int corner = vertex_at(level, {1, 1});
+  force[corner] = 1;
+  const Eigen::VectorXd w = deflections(level, k, force, [](const Eigen::Vector2d& p) {
+    return (p.x() == 0 && p.y() == 0) || (p.x() == 1 && p.y() == 0) || (p.x() == 0 && p.y() == 1);
+  });
+  return 1 / (2 * (1 - nu)) / w[corner];
+}
+
+struct LoadCase {
+  std::string name;
+  double (*stiffness)(const std::string& triangulation, const Model& model, double a);
+  double bound;  ///< of midedge_bending's error on the finest mesh
+};
+
+const LoadCase load_cases[] = {{"beam", beam, 0.002},
+                               {"plate on its sides", supported_plate, 0.002},
+                               {"plate twisted by its corners", twisted_plate, 0.001}};
+
+}  // namespace
+
+TEST_CASE("Only midedge_bending is a plate, and on every triangulation", "[physics]") {
+  for (const LoadCase& load : load_cases) {
+    row("\nStiffness of a %s over that of the plate", load.name.c_str());
+    row("%14s %8s %10s %10s %10s %10s", "triangles", "a", "hinge", "quadratic", "average", "midedge");
+    for (const std::string& triangulation : triangulations) {
+      double last = 0;
+      for (const double a : {0.1, 0.05, 0.025}) {
+        double s[4];
+        for (int m = 0; m < 4; ++m) s[m] = load.stiffness(triangulation, models[m], a);
+        row("%14s %8g %10.4f %10.4f %10.4f %10.4f", triangulation.c_str(), a, s[0], s[1], s[2], s[3]);
+        INFO(load.name << ", " << triangulation << ", a = " << a);
+        CHECK(s[1] == Approx(s[0]).epsilon(1e-9));
+        const double error = std::abs(s[3] - 1);
+        if (last > 1e-3) CHECK(error < last);
+        if (a == 0.025) CHECK(error < load.bound);
+        last = error;
+      }
+    }
+  }
+}
+
+TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and no others below them",
+          "[physics]") {
+  row("\nEigenvalues of a square plate on its sides over those of the plate, pi^4 (m² + n²)²; a = 1/20");
+  std::vector<double> expected;
+  for (int m = 1; m < 8; ++m)
+    for (int n = 1; n < 8; ++n) expected.push_back(std::pow(M_PI, 4) * std::pow(m * m + n * n, 2));
+  std::sort(expected.begin(), expected.end());
+  for (const std::string& triangulation : triangulations)
+    for (const Model& model : models) {
+      if (model.name == "quadratic") continue;
+      const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, 0.05));
+      int free = 0;
+      const std::vector<int> number = free_numbers(
+          level,
+          [](const Eigen::Vector2d& p) { return p.x() == 0 || p.x() == 1 || p.y() == 0 || p.y() == 1; },
+          free);
+      Eigen::MatrixXd k = of_free(stiffness_of(level, model, 0.3), number, free);
+      for (int v = 0; v < level.vertex_count(); ++v)
+        if (number[v] >= 0) {
+          const double scale = 1 / std::sqrt(level.vertex_area[v]);
+          k.row(number[v]) *= scale;
+          k.col(number[v]) *= scale;
+        }
+      const Eigen::VectorXd found =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+      row("%14s %10s  1st %.4f  2nd %.4f  5th %.4f  10th %.4f  20th %.4f", triangulation.c_str(),
+          model.name.c_str(), found[0] / expected[0], found[1] / expected[1], found[4] / expected[4],
+          found[9] / expected[9], found[19] / expected[19]);
+      INFO(triangulation);
+      if (model.name == "midedge")
+        for (int i = 0; i < 20; ++i) CHECK(found[i] / expected[i] == Approx(1).epsilon(0.15));
+    }
+}

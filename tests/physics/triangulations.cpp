@@ -1,0 +1,147 @@
+// Strips that bend far, by hinge and by midedge_bending, on every triangulation.
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/elastica.h"
+#include "tests/support/strip.h"
+
+using namespace drape;
+
+namespace {
+
+const std::string triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
+constexpr double density = 1000, thickness = 0.01, gravity = 9.81;
+
+/// A strip of cells × across square cells' size along x, clamped where x is up to one cell. On grids the
+/// clamp is in the middle of that cell (see BeamStrip), on others somewhere in it: L = (cells - 1/2) cells is
+/// taken to be 1 m.
+struct Strip {
+  std::string triangulation;
+  int cells, across;
+
+  double cell() const { return 1 / (cells - 0.5); }
+  double length() const { return cells * cell(); }
+  double width() const { return across * cell(); }
+
+  /// `stiffness` is EI per width [N m]: D for midedge_bending, 3 D for hinge along a grid's edges (ν = 0).
+  Solved solved(const std::string& bending, double stiffness, const std::string& load) const {
+    const double modulus = (bending == "hinge" ? 4 : 12) * stiffness / std::pow(thickness, 3);
+    const bool grid = triangulation == "one_way" || triangulation == "criss_cross";
+    const std::string counts =
+        grid ? ", columns: " + std::to_string(cells + 1) + ", rows: " + std::to_string(across + 1)
+             : ", vertices: " + std::to_string((cells + 1) * (across + 1));
+    Solved s =
+        solve_yaml("name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
+                   text(length()) + ", " + text(width()) + "]" + counts +
+                   "}\nlevels: 1\nmaterial: {density: " + text(density) + ", thickness: " + text(thickness) +
+                   ", membrane_modulus: 1e8, bending_modulus: " + text(modulus) +
+                   ", poisson_ratio: 0}\npins: [{region: box, lower: [-1, -1, -1], upper: [" +
+                   text(1.01 * cell()) + ", 1, 1]}]\nenergies: [neo_hookean, " + bending + ", " + load +
+                   "]\nmethods: {newton: {}}\n"
+                   "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n");
+    INFO(triangulation << ", " << cells << " cells, " << bending << ": " << s.levels.back().message);
+    REQUIRE(s.levels.back().outcome == Outcome::converged);
+    return s;
+  }
+
+  /// Mean place of the vertices between two distances [cells] from the free end.
+  Eigen::Vector3d mean(const Solved& s, double from, double to) const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (Eigen::Index v = 0; v < s.rest().rows(); ++v) {
+      const double distance = (length() - s.rest()(v, 0)) / cell();
+      if (distance < from || distance > to) continue;
+      sum += s.x().row(v).transpose();
+      ++count;
+    }
+    REQUIRE(count > 0);
+    return sum / count;
+  }
+
+  double tip_angle(const Solved& s) const {
+    const Eigen::Vector3d d = mean(s, -0.01, 0.01) - mean(s, 0.3, 1.7);
+    return std::atan2(-d.z(), d.x()) * 180 / M_PI;
+  }
+
+  /// How much higher the end's corner at y = width is than the one at y = 0 [m].
+  double twist(const Solved& s) const {
+    double z[2] = {0, 0};
+    for (Eigen::Index v = 0; v < s.rest().rows(); ++v)
+      if (s.rest()(v, 0) > length() - 0.01 * cell()) {
+        if (s.rest()(v, 1) == 0) z[0] = s.x()(v, 2);
+        if (s.rest()(v, 1) > width() - 0.01 * cell()) z[1] = s.x()(v, 2);
+      }
+    return z[1] - z[0];
+  }
+
+  std::string end_load(double force) const {
+    std::string points;
+    for (int j = 0; j < 3; ++j)
+      points += (j ? ", " : "") + std::string("{point: ") + text({length(), j * width() / 2, 0}) +
+                ", force: " + text(Eigen::Vector3d(0, 0, -force * (j == 1 ? 0.5 : 0.25))) + "}";
+    return "{type: constant_load, points: [" + points + "]}";
+  }
+};
+
+bool is_grid(const std::string& triangulation) {
+  return triangulation == "one_way" || triangulation == "criss_cross";
+}
+
+}  // namespace
+
+TEST_CASE(
+    "A strip under its weight bends alike on every triangulation with midedge_bending, and does not twist",
+    "[physics]") {
+  const double gamma = 5, exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
+  row("\nTip angle [degrees], exactly %.4f, and twist [mm] of a strip of 1 × 0.2 m under its weight", exact);
+  row("%14s %8s %12s %10s %12s %10s", "triangles", "cells", "hinge", "twist", "midedge", "twist");
+  for (const std::string& triangulation : triangulations) {
+    std::vector<double> errors;
+    for (const int cells : {10, 20, 40}) {
+      const Strip strip{triangulation, cells, cells / 5};
+      const double stiffness = density * gravity * thickness / gamma;
+      const Solved by_hinge = strip.solved("hinge", stiffness, "gravity"),
+                   by_midedge = strip.solved("midedge_bending", stiffness, "gravity");
+      const double twist = strip.twist(by_midedge);
+      errors.push_back(std::abs(strip.tip_angle(by_midedge) - exact));
+      row("%14s %8d %12.4f %10.3f %12.4f %10.3f", triangulation.c_str(), cells, strip.tip_angle(by_hinge),
+          1e3 * strip.twist(by_hinge), strip.tip_angle(by_midedge), 1e3 * twist);
+      INFO(triangulation << ", " << cells << " cells");
+      if (triangulation == "one_way") {
+        CHECK(strip.twist(by_hinge) > 0.02);  // at every resolution
+        CHECK(std::abs(twist) < 0.05 / (cells * cells));
+      }
+      if (cells == 40) CHECK(std::abs(twist) < 5e-4);
+    }
+    INFO(triangulation);
+    if (is_grid(triangulation)) check_order(errors, 2);
+    // Within the clamp's uncertainty of half a cell, which is 3 Γ ∂θ/∂Γ a/2.
+    CHECK(errors[2] < (is_grid(triangulation) ? 0.01 : 0.9));
+  }
+}
+
+TEST_CASE("A strip with a load at its end bends alike on every triangulation with midedge_bending",
+          "[physics]") {
+  row("\nDeflection over the length of strips with a load at the end, P L²/EI = 1 and 4");
+  row("%14s %8s %12s %12s", "triangles", "cells", "1", "4");
+  for (const std::string& triangulation : triangulations) {
+    std::vector<double> errors[2];
+    for (const int cells : {10, 20, 40}) {
+      const Strip strip{triangulation, cells, 2};
+      double deflection[2];
+      for (int i = 0; i < 2; ++i) {
+        const double alpha = i == 0 ? 1 : 4, stiffness = 20;
+        const Solved s =
+            strip.solved("midedge_bending", stiffness, strip.end_load(alpha * stiffness * strip.width()));
+        deflection[i] = -strip.mean(s, -0.01, 0.01).z();
+        errors[i].push_back(std::abs(deflection[i] - cantilever_under_end_load(alpha).deflection));
+      }
+      row("%14s %8d %12.6f %12.6f", triangulation.c_str(), cells, deflection[0], deflection[1]);
+    }
+    INFO(triangulation);
+    for (int i = 0; i < 2; ++i) {
+      if (is_grid(triangulation)) check_order(errors[i], 2);
+      CHECK(errors[i][2] < (is_grid(triangulation) ? 1e-3 : 0.03));
+    }
+  }
+}
