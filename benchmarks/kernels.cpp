@@ -7,6 +7,7 @@
 #include "core/mesh/generate.h"
 #include "core/numerics/element_energy.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
+#include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 #include "plugins/energy/stvk/stvk_law.h"
@@ -22,17 +23,56 @@ struct Cloth {
   Level level;
   Positions x;
 
-  explicit Cloth(int n)
-      : level(Level::of(0, grid({1, 1}, n, n, Diagonals::one_way))), x(level.rest.vertices) {
+  /// The rest shape's inner vertices are moved by up to `jitter` cells.
+  explicit Cloth(int n, double jitter = 0)
+      : level(Level::of(0, jittered(n, jitter))), x(level.rest.vertices) {
     std::mt19937 random(1);
     std::normal_distribution<double> noise(0, 0.15 / (n - 1));
     for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += noise(random);
     for (int i = 0; i < x.rows(); ++i) x(i, 2) += 0.05 * std::sin(8 * x(i, 0)) * std::cos(9 * x(i, 1));
   }
+
+  static TriangleMesh jittered(int n, double jitter) {
+    TriangleMesh mesh = grid({1, 1}, n, n, Diagonals::one_way);
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> offset(-jitter / (n - 1), jitter / (n - 1));
+    for (int j = 1; j + 1 < n && jitter > 0; ++j)
+      for (int i = 1; i + 1 < n; ++i)
+        for (int c = 0; c < 2; ++c) mesh.vertices(i + n * j, c) += offset(random);
+    return mesh;
+  }
 };
 
 const Cloth& cloth() {
   static const Cloth made(313);
+  return made;
+}
+
+/// Stands for midedge_bending in place of a kernel: on the cloth, where all triangles are alike, and on one
+/// whose triangles all differ.
+struct MidedgeAlike {
+  static const Cloth& cloth() { return ::cloth(); }
+};
+struct MidedgeIrregular {
+  static const Cloth& cloth() {
+    static const Cloth made(313, 0.2);
+    return made;
+  }
+};
+
+template <class Kernel>
+const Cloth& cloth_of() {
+  if constexpr (requires { Kernel::cloth(); })
+    return Kernel::cloth();
+  else
+    return cloth();
+}
+
+template <class Kernel>
+requires requires { Kernel::cloth(); }
+const BoundEnergy& energy() {
+  static const BoundMidedgeBending made(Kernel::cloth().level,
+                                        ShapeOperators::of(Kernel::cloth().level, 1e-7, 0.243, 0.02));
   return made;
 }
 
@@ -68,28 +108,28 @@ template <class Kernel>
 void value(benchmark::State& state) {
   const BoundEnergy& e = energy<Kernel>();
   set_thread_count(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(e.value(cloth().x));
+  for (auto _ : state) benchmark::DoNotOptimize(e.value(cloth_of<Kernel>().x));
   finish(state, e.stencils().rows());
 }
 
 template <class Kernel>
 void gradient(benchmark::State& state) {
   const BoundEnergy& e = energy<Kernel>();
-  Positions g = Positions::Zero(cloth().x.rows(), 3);
+  Positions g = Positions::Zero(cloth_of<Kernel>().x.rows(), 3);
   set_thread_count(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(e.add_gradient(cloth().x, g));
+  for (auto _ : state) benchmark::DoNotOptimize(e.add_gradient(cloth_of<Kernel>().x, g));
   finish(state, e.stencils().rows());
 }
 
 template <class Kernel, Projection projection>
 void hessian(benchmark::State& state) {
   const BoundEnergy& e = energy<Kernel>();
-  BlockMatrix matrix(BlockPattern::of(cloth().level.vertex_count(), {e.stencils()}));
+  BlockMatrix matrix(BlockPattern::of(cloth_of<Kernel>().level.vertex_count(), {e.stencils()}));
   const BlockSlots slots(*matrix.pattern, e.stencils());
   BlockSink sink(slots, matrix);
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    e.add_hessian(cloth().x, projection, sink);
+    e.add_hessian(cloth_of<Kernel>().x, projection, sink);
     benchmark::ClobberMemory();
   }
   finish(state, e.stencils().rows());
@@ -163,6 +203,8 @@ DRAPE_KERNEL(NeoHookeanKernel);
 DRAPE_KERNEL(StvkKernel);
 DRAPE_KERNEL(HingeKernel);
 DRAPE_KERNEL(QuadraticBendingKernel);
+DRAPE_KERNEL(MidedgeAlike);
+DRAPE_KERNEL(MidedgeIrregular);
 BENCHMARK(block_pattern)->DRAPE_THREADS;
 BENCHMARK(block_slots)->DRAPE_THREADS;
 BENCHMARK(parallel_launch)->Unit(benchmark::kMicrosecond)->Arg(1)->Arg(2)->UseRealTime();
