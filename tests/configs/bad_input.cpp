@@ -226,12 +226,13 @@ TEST_CASE("values out of range or of the wrong type") {
 
 TEST_CASE("a plugin that is unknown, of every kind") {
   CHECK(said_of_edit("hinge,", "springs,") ==
-        "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, neo_hookean, "
-        "pressure, quadratic_bending, strain_limit, stvk\n");
+        "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, "
+        "midedge_bending, "
+        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n");
   CHECK(
       said_of_edit("hinge,", "hinje,") ==
       "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, gravity, "
-      "hinge, neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n");
+      "hinge, midedge_bending, neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n");
   CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
         "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint\n");
   CHECK(said_of_edit("levels: 2", "contact: glue") ==
@@ -317,7 +318,7 @@ TEST_CASE("every fault of a config is named at once, in the order of the file, t
         "not "
         "\"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
-        "gravity, hinge, "
+        "gravity, hinge, midedge_bending, "
         "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
