@@ -104,6 +104,20 @@ TEST_CASE("a reentrant corner is a corner", "[refiner][loop]") {
   }
 }
 
+TEST_CASE("an equilateral rectangle has four corners, on every level", "[refiner][loop]") {
+  const int rows = GENERATE(8, 9);  // the last row is one with half triangles, or not
+  const Hierarchy hierarchy = Hierarchy::of(equilateral({0.7, 0.6}, 8, rows), loop, 3);
+  for (const Level& level : hierarchy.levels) {
+    const std::vector<char> corner = loop.corners(level);
+    CHECK(std::count(corner.begin(), corner.end(), 1) == 4);
+    for (int v = 0; v < level.vertex_count(); ++v) {
+      const auto p = level.rest.vertices.row(v);
+      if (corner[v]) CHECK(((p.x() == 0 || p.x() == 0.7) && (p.y() == 0 || p.y() == 0.6)));
+    }
+    CHECK(level.vertex_area.sum() == Approx(0.42).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("Loop rows sum to one on any mesh", "[refiner][loop]") {
   const int which = GENERATE(0, 1, 2, 3);
   const TriangleMesh mesh = which == 0   ? grid({1, 2}, 7, 6, Diagonals::criss_cross)
