@@ -201,6 +201,26 @@ TEST_CASE("midedge_bending: lattices have narrow stencils") {
   CHECK(width(random_triangulation({1, 1}, 100, 3)) == 12);
 }
 
+TEST_CASE("midedge_bending: derivatives where neighbours across different edges are the same vertex") {
+  // A tetrahedron: every triangle has the same neighbour across all three edges.
+  TriangleMesh mesh;
+  mesh.vertices.resize(4, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  mesh.triangles.resize(4, 3);
+  mesh.triangles << 0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3;
+  const auto bound = bind(Level::of(0, mesh));
+  CHECK(bound->stencils().maxCoeff() == 3);
+  const Eigen::VectorXd noise = 0.1 * normal_numbers(12, 3);
+  const Positions x = mesh.vertices + Eigen::Map<const Positions>(noise.data(), 4, 3);
+  const Positions g = gradient_of(*bound, x);
+  REQUIRE(g.norm() > 0);
+  const auto value = [&](const Positions& y) { return bound->value(y); };
+  CHECK((differences(value, x, 1e-4).transpose() - flat(g)).norm() <= 1e-7 * g.norm());
+  const Eigen::MatrixXd h = dense(hessian_of(*bound, x, Projection::none));
+  const auto gradient = [&](const Positions& y) { return gradient_of(*bound, y); };
+  CHECK((differences(gradient, x, 1e-4) - h).norm() <= 1e-7 * h.norm());
+}
+
 TEST_CASE("midedge_bending: same bits with any number of threads") {
   const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
   const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
