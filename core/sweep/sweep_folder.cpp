@@ -91,13 +91,15 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
       json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     fs::create_directories(files.folder.parent_path());
-    if (text_of_file(files.config()) == run.config) continue;
     RunStatus status = read_status(files);
-    if (status.state == RunState::failed) {  // at what was another experiment
-      status.state = RunState::waiting;
-      write_status(files, status);
+    if (text_of_file(files.config()) != run.config) {
+      if (status.state == RunState::failed) {  // at what was another experiment
+        status.state = RunState::waiting;
+        write_status(files, status);
+      }
+      write_atomically(files.config(), run.config);
     }
-    write_atomically(files.config(), run.config);
+    json["runs"].back().update(status.json());  // others read sweep.json from the moment it is written
   }
   write_atomically(path_ / "sweep.json", json.dump(1) + "\n");
   settle();

@@ -1,6 +1,7 @@
 // Sweeps on this machine: same results however many workers, continued where cut, nothing run twice.
 
 #include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -36,7 +37,7 @@ std::map<std::string, std::string> outcome_of(const fs::path& sweep) {
 
 int count_of(const Json& runs, const std::string& status) {
   return int(
-      std::count_if(runs.begin(), runs.end(), [&](const Json& run) { return run["status"] == status; }));
+      std::count_if(runs.begin(), runs.end(), [&](const Json& run) { return run.at("status") == status; }));
 }
 
 /// Waits until so many runs of a sweep that is at work have that status.
@@ -99,6 +100,28 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   const std::string run = "one/" + runs[23]["folder"].get<std::string>();
   CHECK(drape_with("run " + run + ".yaml --out by_hand --quiet --no-report", folder.path).exit_code == 0);
   CHECK(text_of(folder / "by_hand/levels/pcs_l1.ply") == text_of(folder / (run + "/levels/pcs_l1.ply")));
+}
+
+TEST_CASE("whoever reads sweep.json while a sweep begins finds the status of every run") {
+  const Scratch folder;
+  REQUIRE(drape_with(small_sweep + "--out out", folder.path).exit_code == 0);
+  std::atomic<bool> ended = false;
+  std::atomic<int> read = 0, without = 0;
+  std::thread reader([&] {
+    while (!ended) {
+      std::stringstream text;
+      text << std::ifstream(folder / "out/sweep.json").rdbuf();
+      const Json runs = Json::parse(text.str(), nullptr, false).value("runs", Json::array());
+      read += runs.size() == 24;
+      without +=
+          std::any_of(runs.begin(), runs.end(), [](const Json& run) { return !run.contains("status"); });
+    }
+  });
+  for (int k = 0; k < 10; ++k) drape_with(small_sweep + "--out out", folder.path);  // nothing is left to run
+  ended = true;
+  reader.join();
+  CHECK(read > 10);
+  CHECK(without == 0);
 }
 
 TEST_CASE("kill -9 in the middle loses nothing but what was running") {
