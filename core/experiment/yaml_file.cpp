@@ -1,5 +1,6 @@
 #include "core/experiment/yaml_file.h"
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -104,14 +105,53 @@ bool is_text(const std::string& text, const std::string& name, ConfigErrors& err
   return false;
 }
 
+/// Where the root nodes of a text's documents are.
+class DocumentRoots : public YAML::EventHandler {
+ public:
+  std::vector<YAML::Mark> marks;
+  void OnDocumentStart(const YAML::Mark&) override { in_document_ = false; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { node(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { node(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
+    node(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    node(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    node(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void node(const YAML::Mark& mark) {
+    if (!in_document_) marks.push_back(mark);
+    in_document_ = true;
+  }
+  bool in_document_ = false;
+};
+
+/// An error if there is more than one document. YAML::LoadAll would tell too, but does not end where a
+/// document begins with a sign such as "," or "]", which the parser leaves for the next one.
+bool is_one_document(const std::string& text, const std::string& name, ConfigErrors& errors) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentRoots documents;
+  while (documents.marks.size() < 2 && parser.HandleNextDocument(documents)) {
+  }
+  if (documents.marks.size() < 2) return true;
+  errors.push_back({place(name, documents.marks[1]), "a second document begins here; a config is one"});
+  return false;
+}
+
 ConfigNode parse_value(const std::string& text, const std::string& name, ConfigErrors& errors) {
   if (!is_text(text, name, errors)) return {};
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      errors.push_back({place(name, documents[1].Mark()), "a second document begins here; a config is one"});
-    else if (!documents.empty())
-      return Converter(name, errors).convert(documents[0]);
+    if (is_one_document(text, name, errors)) return Converter(name, errors).convert(YAML::Load(text));
   } catch (const YAML::Exception& error) {
     errors.push_back({place(name, error.mark), "not valid YAML: " + error.msg});
   }

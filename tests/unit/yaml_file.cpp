@@ -77,6 +77,10 @@ TEST_CASE("what is not a config is told with its place") {
   CHECK(fault("- a\n- b\n") == "f:1:1: a config must begin with a map of keys and values");
   CHECK(fault("word") == "f:1:1: a config must begin with a map of keys and values");
   CHECK(fault("a: 1\n---\nb: 2\n") == "f:3:1: a second document begins here; a config is one");
+  // YAML::LoadAll makes documents of these for ever.
+  CHECK(fault("!:,") == "f:1:3: a second document begins here; a config is one");
+  CHECK(fault(",") == "f:1:1: a second document begins here; a config is one");
+  CHECK(fault(",0],[a") == "f:1:1: a second document begins here; a config is one");
   CHECK(fault("[1, 2]: 3\n") == "f:1:1: a key must be a word");
   CHECK(fault("a: !color 5\n") == "f:1:4: tag \"!color\" is not supported; take it out");
 }
