@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -80,7 +82,9 @@ class ArchiveWriter {
   }
 };
 
-/// Reads what ArchiveWriter wrote. Throws std::runtime_error where the bytes end too early.
+/// Reads what ArchiveWriter wrote, from bytes that may be anything: memory grows only as fast as bytes are
+/// read, and every value is one of its type. An enum T needs a function `bool is_value(T)`, found by its
+/// type. Throws std::runtime_error where the bytes end too early or hold what no writer writes.
 class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view bytes) : bytes_(bytes) {}
@@ -110,10 +114,24 @@ class ArchiveReader {
 
   template <class T>
   void get(T& value) {
-    if constexpr (is_plain<T>)
+    if constexpr (std::is_enum_v<T>) {
+      std::underlying_type_t<T> number{};
+      get(number);
+      if (!is_value(static_cast<T>(number)))
+        throw std::runtime_error("it has " + std::to_string(number) + " for one of a list of words");
+      value = static_cast<T>(number);
+    } else if constexpr (is_plain<T>) {
       raw(&value, sizeof value);
-    else
+    } else {
       fields(*this, value);
+    }
+  }
+  /// A bool that is neither 0 nor 1 in memory is undefined behaviour as soon as it is looked at.
+  void get(bool& value) {
+    std::uint8_t byte = 0;
+    raw(&byte, sizeof byte);
+    if (byte > 1) throw std::runtime_error("it has " + std::to_string(byte) + " for yes or no");
+    value = byte == 1;
   }
   void get(std::string& text) {
     text.resize(count(1));
@@ -121,11 +139,14 @@ class ArchiveReader {
   }
   template <class T>
   void get(std::vector<T>& values) {
-    values.resize(count(is_plain<T> ? sizeof(T) : 1));
-    if constexpr (is_plain<T>)
+    static_assert(!std::is_same_v<T, bool> && !std::is_enum_v<T>, "would be read unchecked");
+    if constexpr (std::is_arithmetic_v<T>) {
+      values.resize(count(sizeof(T)));
       raw(values.data(), sizeof(T) * values.size());
-    else
-      for (T& value : values) get(value);
+    } else {
+      values.clear();
+      for (std::size_t n = count(1); n > 0; --n) get(values.emplace_back());
+    }
   }
   template <class T, std::size_t n>
   void get(std::array<T, n>& values) {
@@ -149,7 +170,9 @@ class ArchiveReader {
     for (std::size_t n = count(1); n > 0; --n) {
       std::pair<std::string, T> entry;
       get(entry);
-      map.insert(std::move(entry));
+      if (!map.empty() && entry.first <= map.rbegin()->first)
+        throw std::runtime_error("it has keys out of order");
+      map.insert(map.end(), std::move(entry));
     }
   }
   template <int columns>

@@ -7,6 +7,9 @@
 
 namespace drape {
 
+/// An outcome that has no word is none.
+bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
+
 // What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
 
 template <class A>
@@ -118,7 +121,6 @@ struct Header {
   std::uint32_t format = drape::format, checksum = 0;
   std::uint64_t size = 0;
 };
-constexpr std::size_t header_size = magic.size() + 16;
 
 template <class A>
 void fields(A& a, Header& h) {
@@ -140,6 +142,8 @@ Checkpoint read(const std::filesystem::path& file) {
 
 }  // namespace
 
+const std::size_t checkpoint_header_size = magic.size() + 16;
+
 std::uint32_t checksum_of(std::string_view bytes) {
   return static_cast<std::uint32_t>(
       crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
@@ -159,20 +163,28 @@ std::string encode(const Checkpoint& checkpoint) {
 Checkpoint decode(std::string_view bytes) {
   if (!bytes.starts_with(magic.substr(0, std::min(bytes.size(), magic.size()))))
     throw std::runtime_error("is no checkpoint of drape");
-  if (bytes.size() < header_size) throw std::runtime_error("is cut short");
+  if (bytes.size() < checkpoint_header_size) throw std::runtime_error("is cut short");
   Header header;
   ArchiveReader(bytes.substr(magic.size()))(header);
   if (header.format != format)
     throw std::runtime_error("is a checkpoint of format " + std::to_string(header.format) +
                              ", but this drape reads format " + std::to_string(format) +
                              "; resume it with the drape that wrote it");
-  bytes.remove_prefix(header_size);
+  bytes.remove_prefix(checkpoint_header_size);
   if (bytes.size() < header.size) throw std::runtime_error("is cut short");
   if (bytes.size() > header.size || checksum_of(bytes) != header.checksum)
     throw std::runtime_error("is damaged: its checksum does not fit");
+  return decode_body(bytes);
+}
+
+Checkpoint decode_body(std::string_view bytes) {
   ArchiveReader reader(bytes);
   Checkpoint checkpoint;
-  reader(checkpoint);
+  try {
+    reader(checkpoint);
+  } catch (const std::runtime_error& fault) {
+    throw std::runtime_error(std::string("is damaged: ") + fault.what());
+  }
   if (!reader.at_end()) throw std::runtime_error("is damaged: it goes on after its end");
   return checkpoint;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/experiment/recorder.h"
@@ -37,6 +38,11 @@ std::uint32_t checksum_of(std::string_view bytes);
 std::string encode(const Checkpoint& checkpoint);
 /// Throws std::runtime_error that says what is wrong with the bytes.
 Checkpoint decode(std::string_view bytes);
+/// What `decode` does once the checksum fits: the bytes after the header, from whoever wrote them. Every value
+/// is one of its type afterwards.
+Checkpoint decode_body(std::string_view bytes);
+/// How many bytes `encode` puts before those.
+extern const std::size_t checkpoint_header_size;
 
 /// Saves the state of the run in `folder`, on the disk before it returns. The last one saved is kept as well,
 /// and at any moment one of the two is whole.

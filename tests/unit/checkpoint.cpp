@@ -71,6 +71,29 @@ std::string error_of(const std::string& bytes) {
   return "";
 }
 
+/// What `encode` writes after the header.
+std::string body_of(const Checkpoint& checkpoint) {
+  return encode(checkpoint).substr(checkpoint_header_size);
+}
+
+std::string error_of_body(const std::string& bytes) {
+  try {
+    decode_body(bytes);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The place of the one byte in which two bodies differ.
+std::size_t difference(const std::string& a, const std::string& b) {
+  REQUIRE(a.size() == b.size());
+  const auto at = static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin()).first - a.begin());
+  REQUIRE(at < a.size());
+  REQUIRE(a.substr(at + 1) == b.substr(at + 1));
+  return at;
+}
+
 std::string error_in(const std::filesystem::path& folder) {
   try {
     std::string warning;
@@ -125,6 +148,53 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   CHECK(
       error_of(other) ==
       "is a checkpoint of format 77, but this drape reads format 8; resume it with the drape that wrote it");
+}
+
+TEST_CASE("A value that its type does not have is refused") {
+  const Checkpoint whole = full();
+  std::string bytes = body_of(whole);
+  Checkpoint other = whole;
+  other.all_converged = !whole.all_converged;
+  const std::size_t flag = difference(bytes, body_of(other));
+  other = whole;
+  other.state.finished[0].outcome = Outcome::infeasible;
+  const std::size_t outcome = difference(bytes, body_of(other));
+  for (const int wrong : {2, 3, 128, 255}) {
+    std::string damaged = bytes;
+    damaged[flag] = static_cast<char>(wrong);
+    CHECK(error_of_body(damaged) == "is damaged: it has " + std::to_string(wrong) + " for yes or no");
+  }
+  bytes[outcome + 2] = 1;
+  CHECK_THAT(error_of_body(bytes), Contains("for one of a list of words"));
+}
+
+TEST_CASE("A count of more than there are bytes is refused before memory is taken for it") {
+  Checkpoint c;
+  const std::string bytes = body_of(c);
+  c.methods = {""};
+  const std::string with_one = body_of(c);
+  const auto at = static_cast<std::size_t>(std::mismatch(bytes.begin(), bytes.end(), with_one.begin()).first -
+                                           bytes.begin());
+  for (const std::size_t byte : {1u, 3u, 7u}) {
+    std::string damaged = bytes;
+    damaged[at + byte] = 0x7f;
+    CHECK(error_of_body(damaged) == "is damaged: it ends too early");
+  }
+}
+
+TEST_CASE("Whatever bytes a body has, it is refused or read as what would be written so") {
+  const std::string bytes = body_of(full());
+  int read = 0;
+  for (std::size_t k = 0; k < bytes.size(); ++k)
+    for (const int value : {0, 1, 2, 127, 255}) {
+      std::string other = bytes;
+      other[k] = static_cast<char>(value);
+      CAPTURE(k, value);
+      if (error_of_body(other) != "") continue;
+      ++read;
+      REQUIRE(body_of(decode_body(other)) == other);
+    }
+  CHECK(read > 1000);
 }
 
 TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
