@@ -1,7 +1,5 @@
 #include "core/plugin/abi.h"
 
-#include <cstring>
-
 namespace drape {
 namespace {
 
@@ -13,6 +11,9 @@ void compare(std::string& faults, const std::string& what, const std::string& th
   faults += (faults.empty() ? "" : "; ") + what + " is " + theirs + " in the plugin and " + own + " in drape";
 }
 
+/// A text of the plugin, which may have left it out.
+std::string text_of(const char* theirs) { return theirs ? theirs : "not given"; }
+
 }  // namespace
 
 std::string mismatch(const DrapePluginDescriptor& theirs) {
@@ -20,12 +21,12 @@ std::string mismatch(const DrapePluginDescriptor& theirs) {
   std::string faults;
   compare(faults, "the ABI number", std::to_string(theirs.abi_number), std::to_string(ours.abi_number));
   if (!faults.empty()) return faults;
-  compare(faults, "the compiler", theirs.compiler, ours.compiler);
-  compare(faults, "the standard library", theirs.standard_library, ours.standard_library);
-  compare(faults, "the Eigen version", theirs.eigen_version, ours.eigen_version);
+  compare(faults, "the compiler", text_of(theirs.compiler), ours.compiler);
+  compare(faults, "the standard library", text_of(theirs.standard_library), ours.standard_library);
+  compare(faults, "the Eigen version", text_of(theirs.eigen_version), ours.eigen_version);
   compare(faults, "Eigen's alignment (-march)", std::to_string(theirs.eigen_max_align_bytes) + " bytes",
           std::to_string(ours.eigen_max_align_bytes) + " bytes");
-  compare(faults, "the scalar type", theirs.scalar, ours.scalar);
+  compare(faults, "the scalar type", text_of(theirs.scalar), ours.scalar);
   return faults;
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "core/plugin/abi.h"
+#include "core/plugin/shared_library.h"
 
 namespace drape {
 namespace {
@@ -16,14 +17,34 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> libraries_of(const fs::path& directory) {
   std::vector<fs::path> libraries;
-  for (const auto& file : fs::directory_iterator(directory))
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(directory, error))
     if (file.path().extension() == ".so") libraries.push_back(file.path());
+  if (error)
+    throw std::runtime_error(directory.string() +
+                             ": the folder of plugins cannot be read: " + error.message());
   std::sort(libraries.begin(), libraries.end());
   return libraries;
 }
 
+/// Calls what a plugin gave, so that whatever it throws names the library.
+template <class Call>
+auto call(const std::string& path, const char* what, const Call& function) {
+  try {
+    return function();
+  } catch (const std::exception& error) {
+    const std::string message = error.what();
+    if (message.find(path) != std::string::npos) throw;  // as a name that is taken does
+    throw std::runtime_error(path + ": its " + what + " throws: " + message);
+  } catch (...) {
+    throw std::runtime_error(path + ": its " + what + " throws what is no std::exception");
+  }
+}
+
 void load(Registry& registry, const fs::path& library) {
   const std::string path = library.string();
+  const std::string unfit = fault_of_library(library);
+  if (!unfit.empty()) throw std::runtime_error(path + ": cannot be loaded: " + unfit);
   // A name without a slash would be looked for in the system's folders.
   void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) throw std::runtime_error(path + ": cannot be loaded: " + dlerror());
@@ -33,11 +54,22 @@ void load(Registry& registry, const fs::path& library) {
     throw std::runtime_error(path +
                              ": is not a drape plugin: it exports no function drape_plugin"
                              " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
-  const DrapePluginDescriptor& descriptor = *entry_point();
-  const std::string fault = mismatch(descriptor);
+  const DrapePluginDescriptor* descriptor = call(path, "function drape_plugin", entry_point);
+  if (!descriptor)
+    throw std::runtime_error(path +
+                             ": is not a drape plugin: its function drape_plugin returns null"
+                             " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+  const std::string fault = mismatch(*descriptor);
   if (!fault.empty()) throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
+  if (!descriptor->register_entries)
+    throw std::runtime_error(path +
+                             ": is not a drape plugin: its descriptor has no function that names its entries"
+                             " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
   registry.current_library = path;
-  descriptor.register_entries(registry);
+  const std::size_t before = registry.entries().size();
+  call(path, "DRAPE_PLUGIN", [&] { descriptor->register_entries(registry); });
+  if (registry.entries().size() == before)
+    throw std::runtime_error(path + ": names no entries; add some in its DRAPE_PLUGIN");
 }
 
 }  // namespace

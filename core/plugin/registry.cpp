@@ -38,6 +38,9 @@ std::vector<const RegistryEntry*> Registry::of_kind(const std::string& kind) con
 }
 
 void Registry::add_entry(std::unique_ptr<RegistryEntry> entry) {
+  if (entry->name.empty())
+    throw std::runtime_error(entry->library + ": registers a " + entry->kind +
+                             " without a name; give it one");
   if (const RegistryEntry* other = find(entry->kind, entry->name))
     throw std::runtime_error(entry->kind + " \"" + entry->name + "\" of " + entry->library +
                              " is already registered by " + other->library +

@@ -1,8 +1,14 @@
 #include "core/plugin/loader.h"
 
+#include <elf.h>
+#include <link.h>
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "core/model/refiner.h"
 #include "core/plugin/abi.h"
@@ -117,6 +123,115 @@ TEST_CASE("a library that is no plugin, or no library, is refused with its path"
   REQUIRE(std::fclose(std::fopen(file.c_str(), "w")) == 0);
   CHECK_THROWS_WITH(load_plugins(registry, {folder.path}), Contains(file.string() + ": cannot be loaded: "));
   CHECK(registry.entries().empty());
+}
+
+TEST_CASE("a plugin that gives nothing where something is needed is refused with its path") {
+  const auto error_of = [](const std::string& name) -> std::string {
+    Registry registry;
+    try {
+      load_plugins(registry, {plugins / name});
+    } catch (const std::runtime_error& error) {
+      REQUIRE(registry.entries().empty());
+      return error.what();
+    }
+    return "";
+  };
+  CHECK(error_of("null_descriptor") == library("null_descriptor").string() +
+                                           ": is not a drape plugin: its function drape_plugin returns null"
+                                           " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+  CHECK(error_of("null_names") ==
+        library("null_names").string() +
+            ": does not fit this drape, rebuild it: the compiler is not given in the plugin and " +
+            ours.compiler + " in drape; the standard library is not given in the plugin and " +
+            ours.standard_library + " in drape; the Eigen version is not given in the plugin and " +
+            ours.eigen_version + " in drape; the scalar type is not given in the plugin and double in drape");
+  CHECK(error_of("null_entries") ==
+        library("null_entries").string() +
+            ": is not a drape plugin: its descriptor has no function that names its entries"
+            " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+  CHECK(error_of("no_entries") ==
+        library("no_entries").string() + ": names no entries; add some in its DRAPE_PLUGIN");
+  CHECK(error_of("no_name") ==
+        library("no_name").string() + ": registers a refiner without a name; give it one");
+  CHECK(error_of("throwing") == library("throwing").string() + ": its DRAPE_PLUGIN throws: out of luck");
+}
+
+namespace {
+
+/// What loading a folder says whose one plugin is this file.
+std::string error_of_bytes(const std::string& bytes) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path / "some.so";
+  std::ofstream(file, std::ios::binary) << bytes;
+  Registry registry;
+  try {
+    load_plugins(registry, {folder.path});
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what(), begin = file.string() + ": cannot be loaded: ";
+    REQUIRE(message.substr(0, begin.size()) == begin);
+    return message.substr(begin.size());
+  }
+  return "";
+}
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a plugin cut short at any length is refused, and ends no process") {
+  const std::string whole = bytes_of(library("good"));
+  REQUIRE(whole.size() > 4096);
+  CHECK(error_of_bytes(whole) == "");
+  CHECK(error_of_bytes(whole.substr(0, whole.size() - 1)) ==
+        "the file is cut short at " + std::to_string(whole.size() - 1) +
+            " bytes, its headers tell of more; build or copy it again");
+  std::vector<std::size_t> lengths;
+  for (std::size_t k = 0; k < 1024; k += 61) lengths.push_back(k);
+  for (std::size_t k = 1024; k < whole.size(); k += whole.size() / 150) lengths.push_back(k);
+  for (const std::size_t length : lengths) {
+    CAPTURE(length);
+    REQUIRE_THAT(error_of_bytes(whole.substr(0, length)), Contains("cut short"));
+  }
+}
+
+TEST_CASE("a library of another machine or kind, with damaged headers, or none is refused") {
+  const std::string whole = bytes_of(library("good"));
+  const auto with = [&](std::size_t at, int value) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ value);
+    return error_of_bytes(bytes);
+  };
+  const std::string machine = "it is made for another kind of machine; build it on this one";
+  const std::string damaged = "its headers are damaged; build or copy it again";
+  CHECK(with(EI_CLASS, 3) == machine);
+  CHECK(with(EI_DATA, 3) == machine);
+  CHECK(with(offsetof(ElfW(Ehdr), e_machine), 0x55) == machine);
+  CHECK_THAT(with(offsetof(ElfW(Ehdr), e_type), ET_DYN ^ ET_EXEC), Contains("link it with -shared"));
+  CHECK(with(offsetof(ElfW(Ehdr), e_phentsize), 1) == damaged);
+  CHECK(with(offsetof(ElfW(Ehdr), e_shentsize), 1) == damaged);
+  CHECK_THAT(with(offsetof(ElfW(Ehdr), e_phoff) + 7, 0x7f), Contains("cut short"));
+  CHECK_THAT(with(offsetof(ElfW(Ehdr), e_shoff) + 3, 0x7f), Contains("cut short"));
+  // Of the first part that is loaded: how much of it is in the file.
+  const std::size_t size = sizeof(ElfW(Ehdr)) + offsetof(ElfW(Phdr), p_filesz);
+  CHECK_THAT(with(size + 7, 0x7f), Contains("cut short"));
+  CHECK_THAT(error_of_bytes("#!/bin/sh\n" + std::string(100, ' ')), Contains("it is no shared library"));
+
+  const TemporaryFolder folder;
+  Registry registry;
+  const fs::path odd = folder.path / "odd.so";
+  const auto refused = [&](const std::string& why) {
+    CHECK_THROWS_WITH(load_plugins(registry, {folder.path}), odd.string() + ": cannot be loaded: " + why);
+    fs::remove(odd);
+  };
+  fs::create_directory(odd);
+  refused("it is not a regular file; take it out of the folder");
+  fs::create_symlink("nowhere", odd);
+  refused("there is no such file; does the link lead nowhere?");
+  REQUIRE(mkfifo(odd.c_str(), 0600) == 0);
+  refused("it is not a regular file; take it out of the folder");
 }
 
 TEST_CASE("only *.so files are loaded, and a missing folder is refused") {

@@ -1,0 +1,5 @@
+// A plugin that names nothing.
+
+#include "core/plugin/plugin.h"
+
+DRAPE_PLUGIN(registry) { (void)registry; }

@@ -1,0 +1,19 @@
+// A plugin with a refiner that has no name.
+
+#include "core/model/refiner.h"
+#include "core/plugin/plugin.h"
+
+namespace {
+
+class Nameless final : public drape::Refiner {
+ public:
+  struct Parameters {
+    static void declare(drape::Declaration<Parameters>&) {}
+  };
+  explicit Nameless(const Parameters&) {}
+  drape::Refinement refine(const drape::Level&) const override { return {}; }
+};
+
+}  // namespace
+
+DRAPE_PLUGIN(registry) { registry.add<drape::Refiner, Nameless>("", "A refiner without a name."); }

@@ -1,0 +1,10 @@
+// A plugin that throws while it is registered.
+
+#include <stdexcept>
+
+#include "core/plugin/plugin.h"
+
+DRAPE_PLUGIN(registry) {
+  (void)registry;
+  throw std::logic_error("out of luck");
+}
