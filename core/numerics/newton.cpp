@@ -59,6 +59,7 @@ constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size)
 constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
+static_assert(std::size(shares) == projection_share_count);
 
 std::string brief(double value) {
   char text[32];
@@ -217,6 +218,8 @@ class Newton {
     cholesky_.restore(pattern, s.analysis);
     if (s.factor_values.empty()) return;
     BlockMatrix matrix(pattern);
+    if (s.factor_values.size() != matrix.values.size())
+      throw std::runtime_error("the checkpoint's factor is that of another matrix; run the experiment anew");
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
     kept_ = std::move(matrix);

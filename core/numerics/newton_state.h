@@ -27,6 +27,9 @@ struct ChangeResponse {
   double part = 0;  ///< of what was left of the change; 0 where there was no answer, or no more to be made
 };
 
+/// How many shares of the projection there are to choose from.
+constexpr int projection_share_count = 7;
+
 /// A level under way, at the beginning of an implicit step: all that the steps to come depend on, bit for
 /// bit. What follows from the rest (energy, gradient, contacts, the layout of the factor) is not in it.
 struct NewtonState {
