@@ -2,6 +2,33 @@
 
 namespace drape {
 
-constexpr int exit_not_converged = 1, exit_bound_broken = 1, exit_bad_input = 2;
+// Every code that `drape` ends with. `drape --help` prints the list below, and docs/exit-codes.md says more.
+
+constexpr int exit_done = 0;
+constexpr int exit_not_converged = 1, exit_bound_broken = 1;
+constexpr int exit_bad_input = 2;
+constexpr int exit_broken_off = 3;
+/// Of a run that its sweep ended, in the sweep's list; as `timeout` has it.
+constexpr int exit_too_slow = 124;
+/// And the signal's number, as a shell has it.
+constexpr int exit_by_signal = 128;
+
+struct ExitCode {
+  int code;
+  const char* meaning;
+};
+
+constexpr ExitCode exit_codes[] = {
+    {exit_done, "done; of a run: every level of every method converged, or ended as its experiment asks"},
+    {exit_not_converged,
+     "it ran to its end, but a method failed or did not converge, a row of a table does not pass, or a "
+     "--bound is broken"},
+    {exit_bad_input, "refused: nothing was run and nothing was written"},
+    {exit_broken_off,
+     "broken off after it had begun, as where the disk is full or the folder was deleted; once that is put "
+     "right, `drape run --resume` goes on with a run"},
+    {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; everything up to then is saved"},
+    {exit_by_signal + 15, "stopped by SIGTERM; everything up to then is saved"},
+};
 
 }  // namespace drape

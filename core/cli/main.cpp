@@ -1,6 +1,7 @@
-// The `drape` command. Exit codes: 0 done and converged, 1 a run that ended otherwise, 2 bad input.
+// The `drape` command. Its exit codes are in exit_codes.h.
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -10,7 +11,7 @@
 #include "core/cli/sweep_command.h"
 #include "core/experiment/experiment.h"
 #include "core/experiment/machine.h"
-#include "core/experiment/run_folder.h"
+#include "core/experiment/runner.h"
 #include "core/experiment/size_estimate.h"
 #include "core/mesh/file.h"
 #include "core/mesh/message_text.h"
@@ -42,7 +43,7 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
   std::cout << "; this machine has " << memory_text(machine_memory()) << "\n";
-  return 0;
+  return exit_done;
 }
 
 int list(const std::string& kind, const Registry& registry) {
@@ -53,19 +54,20 @@ int list(const std::string& kind, const Registry& registry) {
     if (!kind.empty() && kind != k) continue;
     std::cout << k << "\n";
     for (const RegistryEntry* entry : registry.of_kind(k))
-      std::printf("  %-24s %s\n", entry->name.c_str(), entry->summary.c_str()), std::fflush(stdout);
+      std::cout << "  " << entry->name << std::string(std::max<int>(25 - int(entry->name.size()), 1), ' ')
+                << entry->summary << "\n";
   }
-  return 0;
+  return exit_done;
 }
 
 int describe_plugin(const std::string& name, const Registry& registry) {
   if (name == "experiment") {
     std::cout << describe(schema_of<ExperimentParameters>("experiment"));
-    return 0;
+    return exit_done;
   }
   if (name == "sweep") {
     std::cout << describe_sweep();
-    return 0;
+    return exit_done;
   }
   std::vector<std::string> names = {"experiment", "sweep"};
   bool found = false;
@@ -75,7 +77,7 @@ int describe_plugin(const std::string& name, const Registry& registry) {
     std::cout << (found ? "\n" : "") << describe(*entry);
     found = true;
   }
-  if (found) return 0;
+  if (found) return exit_done;
   const std::string near = nearest_word(name, names);
   std::cerr << "error: no plugin is called \"" << excerpt(name) << "\"; "
             << (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?") << "\n";
@@ -88,14 +90,14 @@ int reference_into(const std::filesystem::path& folder, const Registry& registry
   for (const auto& entry : registry.entries()) {
     const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
     if (!std::filesystem::exists(file)) continue;
-    write_atomically(file, with_parameters(read_file(file), *entry));
+    write_file(file, with_parameters(read_file(file), *entry));
     ++pages;
   }
   if (pages == 0)
     throw std::runtime_error("--readmes " + folder.string() +
                              ": no KIND/NAME/README.md of a plugin there; give the folder `plugins`");
   std::cout << pages << " pages written\n";
-  return 0;
+  return exit_done;
 }
 
 int reference(const Registry& registry) {
@@ -106,7 +108,7 @@ int reference(const Registry& registry) {
     for (const RegistryEntry* entry : registry.of_kind(kind)) std::cout << "\n" << describe_markdown(*entry);
   }
   std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
-  return 0;
+  return exit_done;
 }
 
 int report(const std::vector<std::filesystem::path>& folders, std::filesystem::path page) {
@@ -122,7 +124,7 @@ int report(const std::vector<std::filesystem::path>& folders, std::filesystem::p
   else
     write_report(folders.front());
   std::cout << "report: " << page.string() << "\n";
-  return 0;
+  return exit_done;
 }
 
 nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
@@ -143,8 +145,19 @@ void require_command(const CLI::App& app, const std::string& word) {
       (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
 }
 
+/// What stands below every help.
+std::string exit_codes_help() {
+  std::string text = "Exit codes:\n";
+  for (const ExitCode& code : exit_codes) {
+    const std::string number = std::to_string(code.code);
+    text += "  " + number + std::string(6 - number.size(), ' ') + code.meaning + "\n";
+  }
+  return text;
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app("drape: progressive cloth quasistatics", "drape");
+  app.footer(exit_codes_help());
   app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
   app.require_subcommand(1);
   app.failure_message([](const CLI::App* app, const CLI::Error& error) {
@@ -212,7 +225,7 @@ int main_checked(int argc, char** argv) {
     app.parse(argc, argv);
     run.check();
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : exit_bad_input;
+    return app.exit(error) == 0 ? exit_done : exit_bad_input;
   }
 
   if (*report_command) {
@@ -221,17 +234,17 @@ int main_checked(int argc, char** argv) {
   if (*compare_command) {
     const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
     std::cout << printable_lines(comparison.text());
-    return comparison.broken() ? exit_bound_broken : 0;
+    return comparison.broken() ? exit_bound_broken : exit_done;
   }
   if (*table_command) {
     const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
     const std::string table = table_text(rows, columns, format);
     std::cout << (format == TableFormat::json ? table : printable_lines(table));
-    return all_pass(rows) ? 0 : exit_not_converged;
+    return all_pass(rows) ? exit_done : exit_not_converged;
   }
   if (*table1_command) {
     std::cout << printable_lines(table1_text(read_run(run_folder)));
-    return 0;
+    return exit_done;
   }
   if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
@@ -246,7 +259,7 @@ int main_checked(int argc, char** argv) {
       std::cout << sweep_json_schema().dump(2) << "\n";
     else
       std::cout << experiment_json_schema(registry).dump(2) << "\n";
-    return 0;
+    return exit_done;
   }
   if (*reference_command)
     return run_folder.empty() ? reference(registry) : reference_into(run_folder, registry);
@@ -256,14 +269,25 @@ int main_checked(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // A file that may not grow any more is an error to be told, and not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const auto end = [](const std::string& message, int exit_code) {
+    std::cerr << "error: " << printable(message) << "\n";
+    return exit_code;
+  };
   try {
-    return main_checked(argc, argv);
+    const int exit_code = main_checked(argc, argv);
+    if (!std::cout.flush()) return end("standard output cannot be written to", exit_broken_off);
+    return exit_code;
+  } catch (const RunBrokenOff& error) {
+    return end(error.what(), exit_broken_off);
+  } catch (const WriteError& error) {
+    return end(error.what(), exit_broken_off);
   } catch (const nlohmann::json::exception& error) {
-    std::cerr << "error: a results file is not as drape writes it (" << printable(error.what())
-              << "); run the experiment anew\n";
-    return exit_bad_input;
+    return end(std::string("a results file is not as drape writes it (") + error.what() +
+                   "); run the experiment anew",
+               exit_bad_input);
   } catch (const std::exception& error) {
-    std::cerr << "error: " << printable(reason_of(error)) << "\n";
-    return exit_bad_input;
+    return end(reason_of(error), exit_bad_input);
   }
 }

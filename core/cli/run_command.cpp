@@ -7,9 +7,11 @@
 
 #include "core/cli/exit_codes.h"
 #include "core/cli/stop_signals.h"
+#include "core/experiment/recorder_files.h"
 #include "core/experiment/run_folder.h"
 #include "core/mesh/message_text.h"
 #include "core/numerics/parallel.h"
+#include "core/plugin/words.h"
 #include "core/view/live_view.h"
 
 namespace drape {
@@ -95,13 +97,24 @@ int RunCommand::run_config(const Registry& registry) const {
   return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt);
 }
 
+/// Of a complete run: its own exit code, once its files are whole.
+int RunCommand::look_after(const std::filesystem::path& folder, const Registry& registry) const {
+  refuse_damaged_results(folder);
+  ConfigErrors errors;
+  const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
+  const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  if (!errors.empty()) return report_errors(errors);
+  const std::vector<std::string> again = write_rest(RunFolder::of_run(folder), *scene);
+  if (!again.empty())
+    std::cerr << "warning: damaged or gone since, and written again: " << joined(again) << "\n";
+  std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
+  return methods_ended_as_asked(folder) ? exit_done : exit_not_converged;
+}
+
 /// Goes on with an interrupted run, in its folder.
 int RunCommand::resume(const Registry& registry) const {
   const std::filesystem::path folder = resumed_;
-  if (is_complete(folder)) {
-    std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
-    return 0;
-  }
+  if (is_complete(folder)) return look_after(folder, registry);
   std::string warning;
   Checkpoint checkpoint = checkpoint_to_resume(folder, warning);
   std::istringstream warnings(warning);
@@ -167,9 +180,9 @@ int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions
   }
   if (stopped) {
     std::cerr << "stopped on request; everything up to then is in " << options.out.string() << "\n";
-    return 128 + as_signal;
+    return exit_by_signal + as_signal;
   }
-  return converged ? 0 : exit_not_converged;
+  return converged ? exit_done : exit_not_converged;
 }
 
 }  // namespace drape

@@ -24,6 +24,7 @@ class RunCommand {
 
  private:
   int run_config(const Registry& registry) const;
+  int look_after(const std::filesystem::path& folder, const Registry& registry) const;
   int resume(const Registry& registry) const;
   int flow_on(const Registry& registry) const;
   int run(const Experiment& experiment, const Scene& scene, RunOptions options,

@@ -3,6 +3,8 @@
 #include <csignal>
 #include <cstdlib>
 
+#include "core/cli/exit_codes.h"
+
 namespace drape {
 
 namespace {
@@ -10,7 +12,7 @@ namespace {
 volatile std::sig_atomic_t received = 0;
 
 void on_signal(int number) {
-  if (received) std::_Exit(128 + number);
+  if (received) std::_Exit(exit_by_signal + number);
   received = number;
 }
 

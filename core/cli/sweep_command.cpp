@@ -18,9 +18,9 @@ namespace drape {
 
 namespace {
 
-/// 0 if every run ended as it is expected to, else 1.
+/// Whether every run ended as it is expected to.
 int exit_code_of(const SweepFolder& folder) {
-  return all_pass(table_rows(read_runs({folder.path()}))) ? 0 : exit_not_converged;
+  return all_pass(table_rows(read_runs({folder.path()}))) ? exit_done : exit_not_converged;
 }
 
 /// What would be run, without a trace of it on disk.
@@ -32,6 +32,21 @@ void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
     std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n",
                 to_string(read_status(folder.files(run.folder)).state), run.folder.c_str(), run.levels,
                 run.vertices, memory.bytes(run) / 1e9, run.settings.dump().c_str());
+}
+
+/// What goes wrong once a sweep's runs have begun, or may have, is no refusal any more.
+template <class Work>
+int begun(const SweepFolder& folder, const Work& work) {
+  const auto end = [&](const std::string& cause) {
+    std::cerr << "error: " << printable(cause) << "; the sweep in " << folder.path().string()
+              << " is broken off; the same command goes on with what is missing\n";
+    return exit_broken_off;
+  };
+  try {
+    return work();
+  } catch (const std::exception& error) {
+    return end(reason_of(error));
+  }
 }
 
 }  // namespace
@@ -91,7 +106,7 @@ int SweepCommand::run(const Registry& registry) const {
                                         : std::filesystem::path(out_));
   if (dry_run_) {
     show_plan(*sweep, folder, threads);
-    return 0;
+    return exit_done;
   }
   stop_on_signals();  // until here there is nothing to be stopped in good order
   return engine_ == "slurm" ? run_slurm(*sweep, folder) : run_local(*sweep, folder);
@@ -109,14 +124,16 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder) const
   options.time_limit = sweep.parameters.time_limit.value_or(0);
   options.stop = [&] { return stop_signal() != 0; };
   folder.prepare(sweep, options.threads);
-  run_locally(sweep, folder, folder.missing(sweep, retry_failed_), options);
-  const auto json = folder.refresh();
-  std::cout << printable_lines(list_of_runs(json));
-  if (stop_signal()) {
-    std::cerr << "stopped on request; the same command goes on with what is missing\n";
-    return 128 + stop_signal();
-  }
-  return exit_code_of(folder);
+  return begun(folder, [&] {
+    run_locally(sweep, folder, folder.missing(sweep, retry_failed_), options);
+    const auto json = folder.refresh();
+    std::cout << printable_lines(list_of_runs(json));
+    if (stop_signal()) {
+      std::cerr << "stopped on request; the same command goes on with what is missing\n";
+      return exit_by_signal + stop_signal();
+    }
+    return exit_code_of(folder);
+  });
 }
 
 int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const {
@@ -124,7 +141,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const
   if (cancel_) {
     cancel_jobs(folder, stop);
     std::cout << printable_lines(list_of_runs(folder.refresh()));
-    return 0;
+    return exit_done;
   }
   std::optional<SlurmJobs> jobs;
   {
@@ -137,22 +154,27 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const
     options.report = report_;
     options.sbatch = sbatch_;
     folder.prepare(sweep, options.threads);
-    const std::vector<std::size_t> missing = folder.missing(sweep, retry_failed_);
-    if (!missing.empty()) {
+    const int submitted = begun(folder, [&] {
+      const std::vector<std::size_t> missing = folder.missing(sweep, retry_failed_);
+      if (missing.empty()) return exit_done;
       jobs = submit(sweep, folder, missing, options);
       std::cout << "submitted: " << missing.size() << " runs as job array " << jobs->array
                 << ", collected by job " << jobs->collector << "; their output is in "
                 << (folder.slurm() / "logs").string() << std::endl;
+      return exit_done;
+    });
+    if (submitted != exit_done) return submitted;
+  }
+  if (jobs && !wait_) return exit_done;
+  return begun(folder, [&] {
+    if (jobs && !wait_for(folder, *jobs, stop)) {
+      std::cerr << "no longer waiting; the jobs go on\n";
+      return exit_by_signal + stop_signal();
     }
-  }
-  if (jobs && !wait_) return 0;
-  if (jobs && !wait_for(folder, *jobs, stop)) {
-    std::cerr << "no longer waiting; the jobs go on\n";
-    return 128 + stop_signal();
-  }
-  const auto json = folder.settle();
-  std::cout << printable_lines(list_of_runs(json));
-  return exit_code_of(folder);
+    const auto json = folder.settle();
+    std::cout << printable_lines(list_of_runs(json));
+    return exit_code_of(folder);
+  });
 }
 
 int SweepCommand::run_job() const {
@@ -160,7 +182,7 @@ int SweepCommand::run_job() const {
   const SweepFolder folder(out_);
   if (task_ < 0) {
     collect_tasks(folder);
-    return 0;
+    return exit_done;
   }
   return run_task(folder, task_, std::max(1, threads_), report_, [&] { return stop_signal() != 0; });
 }

@@ -1,7 +1,5 @@
 #include "core/experiment/checkpoint.h"
 
-#include <zlib.h>
-
 #include "core/experiment/archive.h"
 #include "core/mesh/file.h"
 
@@ -92,12 +90,17 @@ void fields(A& a, Frames::Memory& m) {
 
 template <class A>
 void fields(A& a, LevelFrames& f) {
-  a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged);
+  a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged, f.checksum);
+}
+
+template <class A>
+void fields(A& a, RecordedState& s) {
+  a(s.method, s.level, s.x);
 }
 
 template <class A>
 void fields(A& a, RecorderState& s) {
-  a(s.results, s.method, s.sound, s.sound_of_method, s.finest, s.frames, s.measured, s.spent, s.last,
+  a(s.results, s.method, s.sound, s.sound_of_method, s.states, s.frames, s.measured, s.spent, s.last,
     s.overhead, s.steps_bytes, s.log_bytes);
 }
 
@@ -144,11 +147,6 @@ Checkpoint read(const std::filesystem::path& file) {
 
 const std::size_t checkpoint_header_size = magic.size() + 16;
 
-std::uint32_t checksum_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
-}
-
 std::string encode(const Checkpoint& checkpoint) {
   ArchiveWriter body, whole;
   body(checkpoint);
@@ -191,11 +189,12 @@ Checkpoint decode_body(std::string_view bytes) {
 
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
   const std::filesystem::path file = newest(folder), next = file.parent_path() / "next.bin";
-  std::filesystem::create_directories(file.parent_path());
+  make_folder(file.parent_path());
   write_file(next, encode(checkpoint));
   sync_to_disk(next);
-  if (std::filesystem::exists(file)) std::filesystem::rename(file, previous(folder));
-  std::filesystem::rename(next, file);
+  std::error_code none;
+  if (std::filesystem::exists(file, none)) rename_file(file, previous(folder));
+  rename_file(next, file);
   sync_to_disk(file.parent_path());
 }
 

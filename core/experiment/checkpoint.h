@@ -32,20 +32,23 @@ struct Checkpoint {
   RecorderState recorder;
 };
 
-std::uint32_t checksum_of(std::string_view bytes);
-
 /// As bytes, with a checksum; nothing of it depends on what the file is called.
 std::string encode(const Checkpoint& checkpoint);
 /// Throws std::runtime_error that says what is wrong with the bytes.
 Checkpoint decode(std::string_view bytes);
-/// What `decode` does once the checksum fits: the bytes after the header, from whoever wrote them. Every value
-/// is one of its type afterwards.
+/// What `decode` does once the checksum fits: the bytes after the header, from whoever wrote them. Every
+/// value is one of its type afterwards; whether it makes sense for an experiment is another question
+/// (require_fitting).
 Checkpoint decode_body(std::string_view bytes);
 /// How many bytes `encode` puts before those.
 extern const std::size_t checkpoint_header_size;
 
+/// Throws std::runtime_error unless every index and size in it is one of the experiment's scene, and every
+/// position is finite.
+void require_fitting(const Checkpoint& checkpoint, const Experiment& experiment, const Scene& scene);
+
 /// Saves the state of the run in `folder`, on the disk before it returns. The last one saved is kept as well,
-/// and at any moment one of the two is whole.
+/// and at any moment one of the two is whole. Throws WriteError.
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
 /// The newest whole checkpoint of the run in `folder`; `warning` says why an older one, if it is that. Throws

@@ -67,8 +67,8 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
     entry["iterations"].push_back(frame.work.iterations);
     entry["seconds"].push_back(spent.seconds + frame.work.seconds);
   }
-  std::filesystem::create_directories(folder_.file("frames"));
-  write_frames(folder_.file(level.file), frames);
+  make_folder(folder_.file("frames"));
+  level.checksum = write_frames(folder_.file(level.file), frames);
   sync_to_disk(folder_.file(level.file));
   levels_.push_back(std::move(level));
   return entry;
@@ -90,7 +90,14 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
         own = {other.last, other.energies.back()};
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
-    std::vector<Positions> states = read_frames(folder_.file(level.file), vertices);
+    std::vector<Positions> states;
+    try {
+      states = read_frames(folder_.file(level.file), vertices, level.checksum);
+    } catch (const std::exception& error) {
+      fault(error.what());  // they are nowhere else
+      continue;
+    }
+    if (states.size() != level.work.size()) continue;
     states.back() = level.last;
     for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
       const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest);

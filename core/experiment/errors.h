@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -40,6 +41,7 @@ struct LevelFrames {
   std::vector<double> energies;  ///< on the finest level [J]
   Positions last;                ///< in full precision
   bool converged = false;
+  std::uint32_t checksum = 0;  ///< of the file
 };
 
 /// Collects the frames of a run and measures them all once the methods have ended, so that no method's time
@@ -56,7 +58,8 @@ class ErrorTable {
                              const std::vector<Frame>& frames, const Work& before, const Work& spent);
 
   /// Measures every frame against the finest state of its method, where that converged, and against the
-  /// reference, and writes errors.csv. Ends early, without the rest, when `stop` says so.
+  /// reference, and writes errors.csv, without those whose file is damaged or gone; `fault` is told. Ends
+  /// early, without the rest, when `stop` says so.
   void write(const Positions* reference, const std::function<bool()>& stop,
              const std::function<void(const std::string&)>& fault);
 

@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/experiment/file_name.h"
 #include "core/experiment/schedule.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/message_text.h"
@@ -238,6 +239,8 @@ void check_name(const std::string& what, const std::string& name, const Location
     errors.push_back({where, what + " \"" + excerpt(name) +
                                  "\" names files: write it with letters, digits, \"_\", \"-\" and \".\", "
                                  "not beginning with \".\""});
+  else if (const std::string fault = fault_of_file_name(name); !fault.empty())
+    errors.push_back({where, what + " \"" + excerpt(name) + "\" names files: it " + fault});
 }
 
 namespace {

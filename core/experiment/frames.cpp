@@ -31,21 +31,25 @@ std::vector<Frame> Frames::end_level(const Work& work, const Positions& last) {
   return std::move(m_.kept);
 }
 
-void write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames) {
+std::uint32_t write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames) {
   std::string bytes;
   for (const Frame& frame : frames) {
     const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x = frame.x.cast<float>();
     bytes.append(reinterpret_cast<const char*>(x.data()), sizeof(float) * x.size());
   }
   write_file(file, bytes);
+  return checksum_of(bytes);
 }
 
-std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices) {
+std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices,
+                                   std::optional<std::uint32_t> checksum) {
   const std::string bytes = read_file(file);
   const std::size_t size = sizeof(float) * 3 * vertices;
   if (size == 0 || bytes.size() % size != 0)
     throw std::runtime_error(file.string() + ": not made of frames of " + std::to_string(vertices) +
                              " vertices; is it cut short?");
+  if (checksum && checksum_of(bytes) != *checksum)
+    throw std::runtime_error(file.string() + ": is damaged: its checksum does not fit");
   std::vector<Positions> frames;
   for (std::size_t at = 0; at < bytes.size(); at += size) {
     Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x(vertices, 3);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "core/model/solver.h"
@@ -52,11 +54,13 @@ class Frames {
   Memory m_;
 };
 
-/// float32, little-endian, frame after frame, row by row. Written as a whole, then renamed.
-void write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames);
+/// float32, little-endian, frame after frame, row by row. Written as a whole, then renamed. The checksum of
+/// the file.
+std::uint32_t write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames);
 
 /// The positions of such a file, `vertices` rows each. Throws std::runtime_error when the file is not made of
-/// them.
-std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices);
+/// them, or has another checksum than this.
+std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices,
+                                   std::optional<std::uint32_t> checksum = std::nullopt);
 
 }  // namespace drape

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/mesh/message_text.h"
+
 namespace drape {
 
 namespace {
@@ -98,6 +100,13 @@ void Progress::level_finished(const LevelResult& r) {
   std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s  residual %.2e%s%s\n", method_.c_str(),
                r.level, levels_ - 1, to_string(r.outcome), r.steps, r.seconds, r.force_residual,
                r.message.empty() ? "" : "  ", r.message.c_str());
+}
+
+void Progress::method_failed(int level, const std::string& cause) {
+  if (quiet_) return;
+  clear_line();
+  std::fprintf(stderr, "%-9s level %d/%d %-12s %s\n", method_.c_str(), level, levels_ - 1, "failed",
+               printable(cause).c_str());
 }
 
 }  // namespace drape

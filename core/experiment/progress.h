@@ -22,6 +22,7 @@ class Progress : public Observer {
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
+  void method_failed(int level, const std::string& cause);
 
   /// What is shown after an iteration.
   std::string line(const IterationRow& row) const;

@@ -6,9 +6,11 @@
 #include <fstream>
 
 #include "core/experiment/machine.h"
+#include "core/experiment/recorder_files.h"
 #include "core/experiment/reference.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
+#include "core/mesh/io_formats.h"
 #include "core/numerics/parallel.h"
 #include "core/numerics/stopwatch.h"
 #include "core/version.h"
@@ -16,6 +18,9 @@
 namespace drape {
 
 namespace {
+
+/// The status of a method that threw, and of the level that it was at; no solver gives it.
+constexpr const char* failed = "failed";
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
@@ -26,15 +31,6 @@ nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::str
   const std::size_t dot = name.find('.');
   return dot == std::string::npos ? object[name]
                                   : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
-}
-
-/// Takes off what was written to a file after it had so many bytes.
-void cut(const std::filesystem::path& file, std::uint64_t bytes) {
-  if (std::filesystem::file_size(file) < bytes)
-    throw std::runtime_error(file.string() +
-                             ": is shorter than when the checkpoint was made; it was changed since, so that "
-                             "the run cannot go on: run the experiment anew");
-  std::filesystem::resize_file(file, bytes);
 }
 
 }  // namespace
@@ -52,7 +48,9 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
     : Recorder(folder, experiment, scene, std::ios::out) {
   steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-            "step_size,contacts,smallest_gap,intersections,flops\n";
+            "step_size,contacts,smallest_gap,intersections,flops"
+         << std::endl;
+  require_written(steps_, "steps.csv");
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
   results_["description"] = p.description;
@@ -64,17 +62,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["table1_scene"] = p.table1_scene;
   results_["methods"] = Json::object();
   save();
-  for (const Level& level : scene.hierarchy.levels)
-    write_ply(folder.file("rest/l" + std::to_string(level.index) + ".ply"), level.rest);
-  if (scene.reference)
-    write_ply(folder.file("reference.ply"), {*scene.reference, scene.hierarchy.levels.back().rest.triangles});
-  results_["obstacles"] = Json::array();
-  for (const auto& contact : scene.models.back()->contacts())
-    for (const TriangleMesh& obstacle : contact->obstacles()) {
-      const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
-      write_ply(folder.file(name), obstacle);
-      results_["obstacles"].push_back(name);
-    }
+  write_scene();
   save();
   log({{"event", "run_started"}, {"experiment", p.name}});
 }
@@ -82,36 +70,28 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    const RecorderState& state)
     : Recorder(folder, experiment, scene, std::ios::app) {
-  cut(folder.file("steps.csv"), state.steps_bytes);
-  cut(folder.file("log.jsonl"), state.log_bytes);
+  cut_files(folder, state);
   results_ = Json::parse(state.results);
   method_ = state.method;
   sound_ = state.sound;
   sound_of_method_ = state.sound_of_method;
-  finest_ = state.finest;
+  states_ = state.states;
   frames_.restore(state.frames);
   errors_.restore(state.measured);
   spent_ = state.spent;
   last_ = state.last;
   overhead_ = state.overhead;
   reset_peak_memory();
+  restored_ = write_again();
   save();
   log({{"event", "run_resumed"}, {"method", method_}});
+  for (const std::string& file : restored_) log({{"event", "file_restored"}, {"file", file}});
 }
 
 RecorderState Recorder::state() const {
-  RecorderState s{results_.dump(),
-                  method_,
-                  sound_,
-                  sound_of_method_,
-                  finest_,
-                  frames_.memory(),
-                  errors_.levels(),
-                  spent_,
-                  last_,
-                  overhead_,
-                  std::filesystem::file_size(folder_.file("steps.csv")),
-                  std::filesystem::file_size(folder_.file("log.jsonl"))};
+  const auto [steps_bytes, log_bytes] = file_sizes(folder_);
+  RecorderState s{json_text(results_), method_, sound_, sound_of_method_, states_,     frames_.memory(),
+                  errors_.levels(),    spent_,  last_,  overhead_,        steps_bytes, log_bytes};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
@@ -122,14 +102,24 @@ void Recorder::begun_from(const std::string& where) {
   save();
 }
 
-void Recorder::log(Json entry) {
-  const double now =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-  entry["time"] = now;
-  log_ << entry.dump() << std::endl;
+void Recorder::require_written(const std::ofstream& stream, const char* name) const {
+  if (!stream) throw WriteError("cannot write " + folder_.file(name).string() + ": is the disk full?");
 }
 
-void Recorder::save() const { folder_.write_text("results.json", results_.dump(1) + "\n"); }
+void Recorder::log(Json entry) {
+  entry["time"] = wall_clock();
+  log_ << json_text(entry) << std::endl;
+  require_written(log_, "log.jsonl");
+}
+
+void Recorder::save() const { folder_.write_text("results.json", json_text(results_, 1) + "\n"); }
+
+std::vector<const RecordedState*> Recorder::finest_states() const {
+  std::vector<const RecordedState*> finest;
+  for (const RecordedState& state : states_)
+    if (state.level == static_cast<int>(scene_.models.size()) - 1) finest.push_back(&state);
+  return finest;
+}
 
 std::string Recorder::file_of(const std::string& method, int level, const char* extension) const {
   return "levels/" + method + "_l" + std::to_string(level) + extension;
@@ -193,6 +183,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
     if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
   std::snprintf(line, sizeof line, ",%.9g", spent_.flops + r.flops), steps_ << line;
   steps_ << std::endl;
+  require_written(steps_, "steps.csv");
 }
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
@@ -238,19 +229,18 @@ void Recorder::change_finished(const ChangeRow& r, const Positions&) {
 
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
-  const TriangleMesh mesh{r.x, scene_.hierarchy.levels[r.level].rest.triangles};
-  write_ply(folder_.file(file_of(method_, r.level, ".ply")), mesh);
-  write_vtp(folder_.file(file_of(method_, r.level, ".vtp")), mesh);
-  // Checkpoints to come take them for granted.
-  for (const char* extension : {".ply", ".vtp"})
-    sync_to_disk(folder_.file(file_of(method_, r.level, extension)));
+  const RecordedState state{method_, r.level, r.x};
+  write_state(state);
   Json& entry = method_entry();
   entry["levels"].push_back(state_entry(r));
+  entry["levels"].back()["mesh_checksum"] =
+      checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
   // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
   const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
   if (frames_.any())
     entry["levels"].back()["frames"] =
         errors_.add(method_, r, frames_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
+  states_.push_back(state);
   spent_ = spent_ + work;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
@@ -293,11 +283,13 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   return row;
 }
 
-void Recorder::method_finished(const std::vector<LevelResult>& results) {
+void Recorder::method_finished(const std::vector<LevelResult>& results,
+                               const std::optional<MethodFailure>& failure) {
   Json& entry = method_entry();
+  // Of a level that fails while it is recorded there may be an entry.
+  while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
   Outcome worst = Outcome::converged;
   const int finest = static_cast<int>(scene_.models.size()) - 1;
-  std::vector<std::pair<double, std::string>> frames;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
     const bool to_rounding = r.outcome == Outcome::converged_to_rounding && worst == Outcome::converged;
@@ -309,9 +301,8 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
              measure(name, *metric, {scene_.hierarchy.levels[r.level], *scene_.models[r.level], r.x}, state)
                  .values)
           at_dotted(state, v.name) = finite_or_null(v.value);
-    frames.emplace_back(r.level, file_of(method_, r.level, ".vtp").substr(7));
   }
-  write_pvd(folder_.file("levels/" + method_ + ".pvd"), frames);
+  write_collection(method_);
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
       const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
@@ -322,10 +313,21 @@ void Recorder::method_finished(const std::vector<LevelResult>& results) {
       entry["consistency"].push_back(row);
     }
   if (!sound_of_method_) worst = Outcome::infeasible;
-  entry["status"] = to_string(worst);
-  if (!results.empty() && results.back().level == finest) finest_.emplace_back(method_, results.back().x);
+  entry["status"] = failure ? failed : to_string(worst);
+  if (failure) {
+    const Level& level = scene_.hierarchy.levels[failure->level];
+    entry["levels"].push_back({{"level", failure->level},
+                               {"vertices", level.vertex_count()},
+                               {"triangles", level.triangle_count()},
+                               {"status", failed},
+                               {"message", failure->cause}});
+    log({{"event", "method_failed"},
+         {"method", method_},
+         {"level", failure->level},
+         {"message", failure->cause}});
+  }
   save();
-  log({{"event", "method_finished"}, {"method", method_}, {"status", to_string(worst)}});
+  log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
 }
 
 const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
@@ -334,14 +336,20 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
     results_["reference"] = {{"file", p.file}, {"mesh", "reference.ply"}};
     return &*scene_.reference;
   }
-  for (const auto& [method, x] : finest_) {
-    if (method != p.method) continue;
+  for (const RecordedState* state : finest_states()) {
+    if (state->method != p.method) continue;
     Json& entry = results_["reference"];
-    entry = {{"method", method}, {"mesh", "reference.ply"}};
-    if (p.force_tolerance == 0 || cancelled) return &x;
-    tightened_ = tighten(experiment_, scene_, x, observer);
-    entry.update({{"force_tolerance", p.force_tolerance},
-                  {"status", to_string(tightened_->outcome)},
+    entry = {{"method", p.method}, {"mesh", "reference.ply"}};
+    if (p.force_tolerance == 0 || cancelled) return &state->x;
+    entry["force_tolerance"] = p.force_tolerance;
+    try {
+      tightened_ = tighten(experiment_, scene_, state->x, observer);
+    } catch (const std::exception& error) {
+      entry.update({{"status", failed}, {"message", error.what()}});
+      log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
+      return &state->x;
+    }
+    entry.update({{"status", to_string(tightened_->outcome)},
                   {"message", tightened_->message},
                   {"force_residual", finite_or_null(tightened_->force_residual)},
                   {"newton_iterations", tightened_->iterations},
@@ -358,20 +366,27 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   const Positions* reference = find_reference(observer, cancelled);
   if (reference) {
     write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
-    for (const auto& [method, x] : finest_)
-      if (&x != reference) {
-        method_ = method;
-        Json row = compare(finest, x, *reference, "");
+    for (const RecordedState* state : finest_states())
+      if (&state->x != reference) {
+        method_ = state->method;
+        Json row = compare(finest, state->x, *reference, "");
         row["against"] = p.method.empty() ? p.file : p.method;
-        results_["methods"][method]["reference"] = row;
+        method_entry()["reference"] = row;
       }
   }
   save();
   if (errors_.empty()) return !observer.stop_requested() || cancelled;
   const auto stop = [&] { return !cancelled && observer.stop_requested(); };
-  errors_.write(reference, stop, [&](const std::string& fault) {
-    log({{"event", "not_measured"}, {"message", fault}});
-  });
+  const auto fault = [&](const std::string& message) {
+    log({{"event", "not_measured"}, {"message", message}});
+  };
+  try {
+    errors_.write(reference, stop, fault);
+  } catch (const WriteError&) {
+    throw;
+  } catch (const std::exception& error) {
+    fault(std::string("errors.csv: ") + error.what());
+  }
   return !stop();
 }
 

@@ -11,12 +11,19 @@
 
 namespace drape {
 
+/// A level's result, as its mesh in levels/ has it.
+struct RecordedState {
+  std::string method;
+  int level = 0;
+  Positions x;
+};
+
 /// What a recorder knows in the middle of a run, and how long its files are.
 struct RecorderState {
   std::string results;  ///< of results.json
   std::string method;
   bool sound = true, sound_of_method = true;
-  std::vector<std::pair<std::string, Positions>> finest;
+  std::vector<RecordedState> states;  ///< of all levels so far, in order
   Frames::Memory frames;
   std::vector<LevelFrames> measured;
   Work spent, last;
@@ -24,23 +31,34 @@ struct RecorderState {
   std::uint64_t steps_bytes = 0, log_bytes = 0;
 };
 
-/// Writes a run down while it goes: steps.csv, log.jsonl, levels/*.ply and results.json.
+/// What a method ended with that threw.
+struct MethodFailure {
+  int level = 0;  ///< it was at
+  std::string cause;
+};
+
+/// Writes a run down while it goes: steps.csv, log.jsonl, levels/*.ply and results.json. Every function
+/// throws WriteError where that cannot be.
 class Recorder : public Observer {
  public:
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
 
-  /// Goes on where another one of the same run was, whose files are cut to what they were then. Throws
-  /// std::runtime_error where one is shorter than that.
+  /// Goes on where another one of the same run was, whose files are cut to what they were then, and written
+  /// again where they are damaged or gone.
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            const RecorderState& state);
   /// The files are on the disk as far as the state knows them.
   RecorderState state() const;
+  /// The files that were written again.
+  const std::vector<std::string>& restored() const { return restored_; }
   /// Says in results.json where the methods begin, if that is not the scene's start.
   void begun_from(const std::string& where);
 
   void method_started(const std::string& method);
-  /// Measures the levels reached and every pair of them, and writes results.json.
-  void method_finished(const std::vector<LevelResult>& results);
+  /// Measures the levels reached and every pair of them, and writes results.json. A method that failed has
+  /// the results before that.
+  void method_finished(const std::vector<LevelResult>& results,
+                       const std::optional<MethodFailure>& failure = std::nullopt);
   /// Finds the reference, where need be by solving on under `observer`, and measures every method's finest
   /// state and every frame's error. False when it was stopped.
   bool measure_errors(Observer& observer, bool cancelled);
@@ -59,6 +77,15 @@ class Recorder : public Observer {
 
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            std::ios::openmode mode);
+  using Names = std::vector<std::string>;  // of files
+  // These give the files that were not there, or had other bytes.
+  Names write_scene();
+  Names write_state(const RecordedState& state) const;
+  /// The states of a method as a ParaView collection.
+  Names write_collection(const std::string& method) const;
+  Names write_again();
+  /// Of a file that steps or the log was just written to.
+  void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][method_]; }
   std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);
@@ -67,6 +94,8 @@ class Recorder : public Observer {
   /// A metric's result; one that cannot measure the state leaves a note in `entry` and the run goes on.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
+  /// The finest states that methods have reached.
+  std::vector<const RecordedState*> finest_states() const;
   /// The state that errors are measured against, also as reference.ply; null where there is none.
   const Positions* find_reference(Observer& observer, bool cancelled);
   void log(Json entry);
@@ -79,7 +108,8 @@ class Recorder : public Observer {
   Json results_;
   std::string method_;
   bool sound_ = true, sound_of_method_ = true;
-  std::vector<std::pair<std::string, Positions>> finest_;  // of each method that reached it
+  std::vector<RecordedState> states_;  // of all levels so far
+  std::vector<std::string> restored_;
   Frames frames_;
   ErrorTable errors_;
   Work spent_;           // by the method, in the levels before this one

@@ -1,8 +1,13 @@
 #include "core/experiment/run_folder.h"
 
+#include <unistd.h>
+
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
+
+#include "core/mesh/file.h"
 
 namespace drape {
 
@@ -16,6 +21,8 @@ constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html
                                      "pictures",    "obstacles",    "frames",       "errors.csv",
                                      "start.ply",   "checkpoint",   "reference.ply"};
 constexpr const char* lock_name = "checkpoint/lock";
+/// Of the names of a method's files, which begin with the method's.
+constexpr const char* longest_ending = "_l10_l11_H_difference.png.part";
 
 /// Whether it is a run's: its lock is the first thing that one makes, and nothing takes it away.
 bool is_of_a_run(const RunFolder& folder) {
@@ -50,16 +57,27 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
                              "replace them with --overwrite");
 }
 
-void check_writable(const RunFolder& folder) {
-  const fs::path probe = folder.file("writable.part");
-  {
-    std::ofstream out(probe);
-    if (!out.put('\n'))
-      throw std::runtime_error(folder.path().string() +
-                               ": cannot write to the results folder; name another with --out");
-  }
+/// The folders on the way that are not there, the innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+  std::vector<fs::path> missing;
   std::error_code error;
+  for (fs::path p = fs::absolute(folder); !fs::exists(p, error) && p.has_relative_path(); p = p.parent_path())
+    missing.push_back(p);
+  return missing;
+}
+
+void make_writable(const RunFolder& folder) {
+  const std::string name = folder.path().string();
+  std::error_code error;
+  fs::create_directories(folder.path(), error);
+  if (error || !fs::is_directory(folder.path()))
+    throw std::runtime_error(name + ": cannot make the results folder" +
+                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+  const fs::path probe = folder.file("writable.part");
+  const bool writable = bool(std::ofstream(probe).put('\n').flush());
   fs::remove(probe, error);
+  if (!writable)
+    throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
 }
 
 void clear(const RunFolder& folder) {
@@ -72,19 +90,49 @@ void clear(const RunFolder& folder) {
 
 }  // namespace
 
-RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+void refuse_long_names(const fs::path& folder, const std::vector<std::string>& methods) {
   std::error_code error;
-  fs::create_directories(path_, error);
-  const std::string name = path_.string();
-  if (error || !fs::is_directory(path_))
-    throw std::runtime_error(name + ": cannot make the results folder" +
-                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  refuse_what_is_there(*this, overwrite);
-  check_writable(*this);
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  const auto limit = [&](int which, std::size_t usual) {
+    const long most = pathconf(there.c_str(), which);
+    return most > 0 ? static_cast<std::size_t>(most) : usual;
+  };
+  const std::size_t most_in_name = limit(_PC_NAME_MAX, 255), most_in_path = limit(_PC_PATH_MAX, 4096);
+  for (const fs::path& part : folder)
+    if (part.string().size() > most_in_name)
+      throw std::runtime_error("the results folder's name \"" + part.string() + "\" has " +
+                               std::to_string(part.string().size()) + " bytes, and the file system takes " +
+                               std::to_string(most_in_name) + "; name another with --out");
+  for (const std::string& method : methods) {
+    const std::size_t name = method.size() + std::strlen(longest_ending);
+    if (name > most_in_name)
+      throw std::runtime_error("method \"" + method + "\" would have files with names of " +
+                               std::to_string(name) + " bytes, and the file system takes " +
+                               std::to_string(most_in_name) + "; give it a shorter name");
+    const std::size_t path = fs::absolute(folder).string().size() + std::strlen("/pictures/") + name;
+    if (path >= most_in_path)
+      throw std::runtime_error("method \"" + method + "\" would have files with paths of " +
+                               std::to_string(path) + " bytes, and the system takes " +
+                               std::to_string(most_in_path - 1) +
+                               "; name a results folder less deep with --out");
+  }
+}
+
+RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+  const std::vector<fs::path> made = missing_folders(path_);
+  try {
+    make_writable(*this);
+    refuse_what_is_there(*this, overwrite);
+  } catch (...) {
+    std::error_code error;
+    for (const fs::path& folder : made) fs::remove(folder, error);  // nothing but what is empty
+    throw;
+  }
   lock();
   refuse_what_is_there(*this, overwrite);  // by another run, that has ended just now
   clear(*this);
-  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) fs::create_directories(file(folder));
+  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) make_folder(file(folder));
 }
 
 RunFolder RunFolder::of_run(std::filesystem::path path) {
@@ -107,18 +155,8 @@ void RunFolder::lock() {
                              " is at this run; wait for it, or stop it");
 }
 
-void write_atomically(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path part = file.string() + ".part";
-  {
-    std::ofstream out(part, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error(part.string() + ": cannot write (is the disk full?)");
-  }
-  std::filesystem::rename(part, file);
-}
-
 void RunFolder::write_text(const std::string& name, const std::string& text) const {
-  write_atomically(file(name), text);
+  write_file(file(name), text);
 }
 
 }  // namespace drape

@@ -3,21 +3,24 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/experiment/file_lock.h"
 
 namespace drape {
 
-/// Writes a whole file under another name and renames it. Throws std::runtime_error where that cannot be.
-void write_atomically(const std::filesystem::path& file, const std::string& text);
+/// Throws std::runtime_error where a run of these methods would have files there whose names or paths are
+/// longer than the file system takes.
+void refuse_long_names(const std::filesystem::path& folder, const std::vector<std::string>& methods);
 
 /// A run's results folder. Whole files are written under another name and renamed, so that nothing
 /// half-written stands under a final name.
 class RunFolder {
  public:
-  /// Makes the folder, and takes away what an earlier run has left in it. Throws std::runtime_error when it
-  /// cannot be written to, when there is something left and `overwrite` is false, or when it holds files of
-  /// others under the names that a run uses.
+  /// Makes the folder, and takes away what an earlier run has left in it. Throws std::runtime_error, with
+  /// everything as it was, when it cannot be written to, when there is something left and `overwrite` is
+  /// false, or when it holds files of others under the names that a run uses. Throws WriteError when it can
+  /// no longer be written to after that.
   RunFolder(std::filesystem::path path, bool overwrite);
   /// The folder of a run that is to go on. Throws std::runtime_error when it holds none, or one that a
   /// process is still at.

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 
 #include "core/experiment/progress.h"
-#include "core/experiment/recorder.h"
+#include "core/experiment/recorder_files.h"
 #include "core/experiment/session.h"
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/file.h"
 #include "core/mesh/io.h"
+#include "core/mesh/message_text.h"
+#include "core/plugin/words.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 
@@ -22,8 +26,10 @@ class RunObserver : public Observer {
               const std::function<bool()>& stop)
       : recorder_(recorder), session_(session), progress_(progress), view_(view), stop_(stop) {}
 
-  void method_started(const std::string& name, bool resumable) {
+  void method_started(const std::string& name, bool resumable, const MethodState& state) {
     resumable_ = resumable;
+    level_ = state.level;
+    finished_ = state.finished;
     progress_.method_started(name);
     if (view_) view_->method_started(name);
   }
@@ -35,7 +41,12 @@ class RunObserver : public Observer {
     progress_.level_started(state.level);
     if (view_) view_->level_started(state.level);
   }
+  /// What the method under way has come to.
+  const std::vector<LevelResult>& finished() const { return finished_; }
+  int level() const { return level_; }
+
   void level_started(int level) override {
+    level_ = level;
     recorder_.level_started(level);
     progress_.level_started(level);
     if (view_) view_->level_started(level);
@@ -50,6 +61,7 @@ class RunObserver : public Observer {
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
+    finished_.push_back(result);
     if (resumable_) session_.level_finished(result);
     progress_.level_finished(result);
     if (view_) view_->level_finished(result);
@@ -65,6 +77,8 @@ class RunObserver : public Observer {
   Progress& progress_;
   LiveView* view_;
   bool resumable_ = false;
+  int level_ = 0;
+  std::vector<LevelResult> finished_;
   const std::function<bool()>& stop_;
 };
 
@@ -123,6 +137,53 @@ const Solver& solver_of(const Experiment& experiment, const std::string& method)
   throw std::logic_error("no method " + method);
 }
 
+/// What the exception that is being handled says. A file that cannot be written is of the whole run: that is
+/// thrown on.
+std::string cause_in_method() {
+  try {
+    throw;
+  } catch (const WriteError&) {
+    throw;
+  } catch (const std::exception& error) {
+    return *error.what() ? reason_of(error) : "an exception without a message";
+  } catch (...) {
+    return "an exception that is no std::exception";
+  }
+}
+
+/// Does what belongs to a run that has begun.
+template <class Work>
+bool with_folder(const RunFolder& folder, const RunOptions& options, const Work& work) {
+  std::string cause;
+  try {
+    return work();
+  } catch (const RunBrokenOff&) {
+    throw;
+  } catch (const std::exception& error) {
+    cause = reason_of(error);
+  } catch (...) {
+    cause = "an exception that is no std::exception";
+  }
+  record_broken_off(folder, cause);
+  if (options.view) options.view->run_finished("the run was broken off: " + cause);
+  std::error_code none;
+  throw RunBrokenOff(cause + "; the run is broken off. Once that is put right, " +
+                     (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
+                          ? "go on with drape run --resume " + folder.path().string()
+                          : "run the experiment anew: there is no checkpoint of it"));
+}
+
+/// The results are there whatever becomes of their report.
+void report_on(const RunFolder& folder) {
+  const std::string name = folder.path().string();
+  try {
+    write_report(folder.path());
+  } catch (const std::exception& error) {
+    throw RunBrokenOff(reason_of(error) + "; the results in " + name +
+                       " are there without their report; write it with drape report " + name);
+  }
+}
+
 /// Runs what is left: the method under way if `resumed`, those after it, what is measured of them all.
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
@@ -141,18 +202,26 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver);
     MethodState state;
     state.level = begun.first_level;
-    observer.method_started(name, resumable != nullptr);
-    if (resumed && m == begun.method) {
-      state = begun.state;
+    const bool under_way = resumed && m == begun.method;
+    if (under_way) state = begun.state;
+    observer.method_started(name, resumable != nullptr, state);
+    if (under_way) {
       observer.catch_up(state);
     } else {
       recorder.method_started(name);
       session.method_started(m);
     }
-    const std::vector<LevelResult> results =
-        resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
-    recorder.method_finished(results);
-    bool converged = true;
+    std::vector<LevelResult> results;
+    std::optional<MethodFailure> failure;
+    try {
+      results = resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
+    } catch (...) {
+      failure = {std::min(observer.level(), problem.finest()), cause_in_method()};
+      results = observer.finished();
+      progress.method_failed(failure->level, failure->cause);
+    }
+    recorder.method_finished(results, failure);
+    bool converged = !failure;
     for (const LevelResult& r : results) {
       converged = converged && ended_as_asked(r.outcome);
       cancelled = cancelled || r.outcome == Outcome::cancelled;
@@ -165,7 +234,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   const bool complete = !cancelled && measured;
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
-  if (options.report) write_report(folder.path());
+  if (options.report) report_on(folder);
   const bool good = all_converged && recorder.sound();
   if (options.view)
     options.view->run_finished((cancelled ? "stopped on request"
@@ -182,26 +251,37 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   const std::string& start_file = experiment.parameters.start.file;
   TriangleMesh start;
   if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
+  const std::vector<std::string> methods = methods_of(experiment, options);
+  refuse_long_names(options.out, methods);
   const RunFolder folder(options.out, options.overwrite);
-  const ConfigNode config = saved_config(experiment);
-  Checkpoint begun;
-  begun.config = to_yaml(config);
-  begun.methods = methods_of(experiment, options);
-  begun.first_level = options.first_level;
-  if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
-  folder.write_text("config.yaml", begun.config);
-  if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
-  Recorder recorder(folder, experiment, scene);
-  if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
-  begun.files = marks_of_files(config, folder.path());
-  return run(experiment, scene, options, folder, recorder, begun, false);
+  return with_folder(folder, options, [&] {
+    const ConfigNode config = saved_config(experiment);
+    Checkpoint begun;
+    begun.config = to_yaml(config);
+    begun.methods = methods;
+    begun.first_level = options.first_level;
+    if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
+    folder.write_text("config.yaml", begun.config);
+    if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
+    Recorder recorder(folder, experiment, scene);
+    if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
+    begun.files = marks_of_files(config, folder.path());
+    return run(experiment, scene, options, folder, recorder, begun, false);
+  });
 }
 
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
                        Checkpoint checkpoint) {
+  require_fitting(checkpoint, experiment, scene);
   const RunFolder folder = RunFolder::of_run(options.out);
-  Recorder recorder(folder, experiment, scene, checkpoint.recorder);
-  return run(experiment, scene, options, folder, recorder, checkpoint, true);
+  refuse_short_files(folder, checkpoint.recorder);
+  return with_folder(folder, options, [&] {
+    Recorder recorder(folder, experiment, scene, checkpoint.recorder);
+    if (!recorder.restored().empty())
+      std::fprintf(stderr, "warning: damaged or gone since, and written again: %s\n",
+                   joined(recorder.restored()).c_str());
+    return run(experiment, scene, options, folder, recorder, checkpoint, true);
+  });
 }
 
 }  // namespace drape

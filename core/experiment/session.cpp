@@ -5,6 +5,8 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
+#include "core/plugin/words.h"
+#include "core/report/run_data.h"
 #include "core/version.h"
 
 namespace drape {
@@ -112,6 +114,29 @@ std::vector<FileMark> marks_of_files(const ConfigNode& saved, const fs::path& fo
 }
 
 bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }
+
+bool methods_ended_as_asked(const fs::path& folder) {
+  const RunData run = read_run(folder);
+  return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
+                                     [](const MethodRecord& m) { return ended_as_asked(m.status); });
+}
+
+void refuse_damaged_results(const fs::path& folder) {
+  std::vector<std::string> damaged;
+  const auto results = results_of(folder);
+  for (const auto& [name, method] : results["methods"].items())
+    for (const auto& level : method.value("levels", nlohmann::ordered_json::array())) {
+      if (!level.contains("mesh_checksum")) continue;  // of a level that failed
+      const std::string mesh = level.value("mesh", "");
+      if (!fs::is_regular_file(folder / mesh) ||
+          checksum_of(read_file(folder / mesh)) != level["mesh_checksum"])
+        damaged.push_back(mesh);
+    }
+  if (!damaged.empty())
+    throw std::runtime_error(
+        folder.string() + ": the run is complete, but damaged or gone since: " + joined(damaged) +
+        "; run the experiment anew, as in drape run " + (folder / "config.yaml").string() + " --out ANOTHER");
+}
 
 Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
   results_of(folder);

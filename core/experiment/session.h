@@ -40,6 +40,13 @@ std::vector<FileMark> marks_of_files(const ConfigNode& saved, const std::filesys
 /// Whether the run in the folder has ended by itself, so that nothing is left to go on with.
 bool is_complete(const std::filesystem::path& folder);
 
+/// Whether every method of the run in the folder ended as asked.
+bool methods_ended_as_asked(const std::filesystem::path& folder);
+
+/// Of a complete run, which has no checkpoint any more: throws std::runtime_error naming every mesh of a
+/// level that is no longer what results.json says of it.
+void refuse_damaged_results(const std::filesystem::path& folder);
+
 /// The checkpoint that the run in the folder goes on from. `warning` says what is not as it was but no
 /// obstacle. Throws std::runtime_error where it cannot go on, with the reason.
 Checkpoint checkpoint_to_resume(const std::filesystem::path& folder, std::string& warning);

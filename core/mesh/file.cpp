@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -30,6 +31,10 @@ struct Descriptor {
 std::runtime_error failure(const char* what, const std::filesystem::path& path, int error) {
   return std::runtime_error(std::string(what) + path.string() + ": " +
                             std::generic_category().message(error));
+}
+
+WriteError unwritten(const std::filesystem::path& path, int error) {
+  return WriteError(failure("cannot write ", path, error).what());
 }
 
 }  // namespace
@@ -72,13 +77,37 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
   std::filesystem::path part = path;
   part += ".part";
   File file(std::fopen(part.c_str(), "wb"));
-  if (!file) throw failure("cannot write ", path, errno);
+  if (!file) throw unwritten(path, errno);
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
   const bool closed = std::fclose(file.release()) == 0;  // the last bytes may fail only here
   if (written && closed && std::rename(part.c_str(), path.c_str()) == 0) return;
   const int error = errno;
   std::remove(part.c_str());
-  throw failure("cannot write ", path, error);
+  throw unwritten(path, error);
+}
+
+bool write_where_other(const std::filesystem::path& path, std::string_view bytes) {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(path, none) &&
+      std::filesystem::file_size(path, none) == bytes.size() && read_file(path) == bytes)
+    return false;
+  write_file(path, bytes);
+  return true;
+}
+
+void make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw unwritten(path, error.value());
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw unwritten(to, errno);
+}
+
+std::uint32_t checksum_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
 }
 
 void sync_to_disk(const std::filesystem::path& path) {

@@ -21,8 +21,7 @@ void append(std::string& bytes, Number number) {
 
 }  // namespace
 
-void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
-  require_fields(path, mesh, fields);
+std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                       std::to_string(mesh.vertices.rows()) +
                       "\nproperty double x\nproperty double y\nproperty double z\n";
@@ -37,7 +36,12 @@ void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, cons
     append(bytes, std::uint8_t{3});
     for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
   }
-  write_file(path, bytes);
+  return bytes;
+}
+
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
+  require_fields(path, mesh, fields);
+  write_file(path, ply_bytes(mesh, fields));
 }
 
 }  // namespace drape

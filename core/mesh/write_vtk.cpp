@@ -58,8 +58,7 @@ std::string file_head(const std::string& type) {
 
 }  // namespace
 
-void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
-  require_fields(path, mesh, fields);
+std::string vtp_text(const TriangleMesh& mesh, const VertexFields& fields) {
   const Eigen::Index n = mesh.vertices.rows(), m = mesh.triangles.rows();
   std::string text = file_head("PolyData") + "<PolyData>\n<Piece NumberOfPoints=\"" + std::to_string(n) +
                      "\" NumberOfPolys=\"" + std::to_string(m) + "\">\n<PointData>\n";
@@ -73,14 +72,23 @@ void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, cons
   text += "</Points>\n<Polys>\n" + data_array("type=\"Int64\" Name=\"connectivity\"", corners.data(), 3 * m) +
           data_array("type=\"Int64\" Name=\"offsets\"", ends.data(), m) +
           "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
-  write_file(path, text);
+  return text;
 }
 
-void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames) {
+void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
+  require_fields(path, mesh, fields);
+  write_file(path, vtp_text(mesh, fields));
+}
+
+std::string pvd_text(const std::vector<std::pair<double, std::string>>& frames) {
   std::string text = file_head("Collection") + "<Collection>\n";
   for (const auto& [time, file] : frames)
     text += "<DataSet timestep=\"" + exact_text(time) + "\" part=\"0\" file=\"" + escaped(file) + "\"/>\n";
-  write_file(path, text + "</Collection>\n</VTKFile>\n");
+  return text + "</Collection>\n</VTKFile>\n";
+}
+
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames) {
+  write_file(path, pvd_text(frames));
 }
 
 }  // namespace drape

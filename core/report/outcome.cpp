@@ -108,7 +108,9 @@ std::string troubles(const RunData& run) {
       const std::string where =
           "<li><b>" + escape(method.name) + "</b>, level " + std::to_string(level.level);
       const std::string message = level.message.empty() ? "" : ": " + escape(level.message);
-      if (!ended_as_asked(level.status) && !level.status.empty())
+      if (level.status == "failed")
+        items += where + ": failed" + message + "</li>\n";
+      else if (!ended_as_asked(level.status) && !level.status.empty())
         items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
                  " iterations at force residual " + figure(level.force_residual) + message + "</li>\n";
       else if (!message.empty())
@@ -140,6 +142,7 @@ std::string energy_words(double energy, double lowest) {
 }  // namespace
 
 std::string method_verdict(const RunData& run, const MethodRecord& method) {
+  if (method.status == "failed") return "failed; below is why, and its figures are of the levels before that";
   if (!has_converged(method.status)) return "did not converge; its figures are of where it stopped";
   Figure fastest, lowest, best_preview;
   int compared = 0;
@@ -175,7 +178,11 @@ std::string outcome_sentence(const RunData& run) {
     to_rounding = to_rounding || m.status == to_string(Outcome::converged_to_rounding);
   }
   const int total = static_cast<int>(run.methods.size());
-  std::string text = run.complete ? "" : "The run is not complete; these are the figures it had written. ";
+  std::string text =
+      run.complete ? ""
+      : run.broken_off.empty()
+          ? "The run is not complete; these are the figures it had written. "
+          : "The run was broken off (" + escape(run.broken_off) + "); these are the figures it had written. ";
   text += std::to_string(converged) + " of " + std::to_string(total) + (total == 1 ? " method" : " methods") +
           " converged";
   if (run.force_tolerance)

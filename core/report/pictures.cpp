@@ -63,7 +63,7 @@ class PictureMaker {
   explicit PictureMaker(const RunData& run) : run_(run) {}
 
   PictureSet make() {
-    std::filesystem::create_directories(run_.folder / "pictures");
+    make_folder(run_.folder / "pictures");
     read_states();
     draw_states();
     read_fields();

@@ -249,6 +249,7 @@ RunData read_run(const std::filesystem::path& folder) {
   if (const Json& obstacles = at(json, "obstacles"); obstacles.is_array())
     for (const Json& name : obstacles) run.obstacles.push_back(text(name));
   run.complete = at(json, "complete").is_boolean() && at(json, "complete").get<bool>();
+  run.broken_off = text(at(json, "broken_off"));
   const Json& machine = at(json, "machine");
   run.cpu = text(at(machine, "cpu"));
   run.cores = figure(at(machine, "cores"));

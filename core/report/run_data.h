@@ -96,6 +96,7 @@ struct RunData {
   std::filesystem::path folder;
   std::string experiment, description, version, cpu, table1_scene, configuration;
   bool complete = false;
+  std::string broken_off;  ///< why it was; empty if it was not
   Figure cores, threads, force_tolerance;
   std::vector<std::string> obstacles;  ///< meshes, relative to the folder
   std::vector<MethodRecord> methods;

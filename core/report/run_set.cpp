@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/cli/exit_codes.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/report/csv.h"
@@ -127,7 +128,7 @@ std::vector<const SetRun*> RunSet::of(const std::string& variation) const {
 }
 
 bool SetRun::refused() const {
-  return status == "failed" && exit_code == 2 && !fs::exists(folder / "results.json");
+  return status == "failed" && exit_code == exit_bad_input && !fs::exists(folder / "results.json");
 }
 
 bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/cli/exit_codes.h"
 #include "core/plugin/words.h"
 #include "core/report/html.h"
 #include "core/report/tables.h"
@@ -84,7 +85,10 @@ Json row_of(const RunData& run, const MethodRecord& method) {
 
 std::string outcome_without_results(const SetRun& run) {
   if (run.status != "failed") return run.status;
-  return run.refused() ? "refused" : run.exit_code == 124 ? "hang" : run.exit_code > 128 ? "crash" : "failed";
+  return run.refused()                    ? "refused"
+         : run.exit_code == exit_too_slow ? "hang"
+         : run.exit_code > exit_by_signal ? "crash"
+                                          : "failed";
 }
 
 bool passes(const SetRun& run, const std::string& outcome, const TableRow& row) {

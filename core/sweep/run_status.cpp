@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "core/experiment/run_folder.h"
+#include "core/mesh/file.h"
 #include "core/model/solver.h"
 
 namespace drape {
@@ -81,8 +81,8 @@ RunStatus read_status(const RunFiles& files) {
 }
 
 void write_status(const RunFiles& files, const RunStatus& status) {
-  std::filesystem::create_directories(files.folder.parent_path());
-  write_atomically(files.status(), status.json().dump(1) + "\n");
+  make_folder(files.folder.parent_path());
+  write_file(files.status(), status.json().dump(1) + "\n");
 }
 
 RunStatus settled(const RunFiles& files, RunStatus status) {
@@ -96,7 +96,7 @@ RunStatus settled(const RunFiles& files, RunStatus status) {
     if (!has_converged(method.value("status", ""))) status.state = RunState::ended;
     status.seconds += method.value("seconds", 0.0);
   }
-  status.exit_code = status.state == RunState::converged ? 0 : 1;
+  status.exit_code = status.state == RunState::converged ? exit_done : exit_not_converged;
   return status;
 }
 
@@ -121,7 +121,8 @@ bool RunProcess::ended() {
   status_ = settled(files_, status_);
   status_.seconds = seconds;
   status_.exit_code = exit->code;
-  const bool stopped = stopped_ || exit->code == 128 + SIGINT || exit->code == 128 + SIGTERM;
+  const bool stopped =
+      stopped_ || exit->code == exit_by_signal + SIGINT || exit->code == exit_by_signal + SIGTERM;
   if (status_.state == RunState::cancelled && !stopped) {
     status_.state = RunState::failed;
     const std::string said = last_lines(files_.log());

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/cli/exit_codes.h"
 #include "core/sweep/process.h"
 
 namespace drape {
@@ -13,9 +14,6 @@ namespace drape {
 /// its machine was.
 enum class RunState { waiting, running, converged, ended, failed, cancelled };
 const char* to_string(RunState state);
-
-/// Exit codes of runs that say more than that they failed.
-constexpr int exit_refused = 2, exit_too_slow = 124;
 
 /// What is known of one run. Each has a file of its own, so that no two machines write one.
 struct RunStatus {
@@ -27,7 +25,7 @@ struct RunStatus {
   int threads = 0;
 
   /// Neither computed nor crashed: what was asked for could not be, as it said.
-  bool refused() const { return state == RunState::failed && exit_code == exit_refused; }
+  bool refused() const { return state == RunState::failed && exit_code == exit_bad_input; }
   bool has_results() const { return state == RunState::converged || state == RunState::ended; }
   nlohmann::ordered_json json() const;
 };

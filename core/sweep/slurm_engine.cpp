@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-#include "core/experiment/run_folder.h"
+#include "core/mesh/file.h"
 #include "core/mesh/message_text.h"
 #include "core/sweep/memory.h"
 
@@ -91,7 +91,7 @@ void refuse_while_queued(const SweepFolder& folder) {
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
                  const SlurmOptions& options) {
   const fs::path slurm = fs::absolute(folder.slurm()).lexically_normal(), logs = slurm / "logs";
-  fs::create_directories(logs);
+  make_folder(logs);
   const MemoryEstimate memory(sweep, folder);
   double bytes = 0;
   for (const std::size_t k : missing) bytes = std::max(bytes, 1.2 * memory.bytes(sweep.runs[k]));
@@ -100,27 +100,24 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
   const std::string name = "drape-" + sweep.parameters.name;
   const std::string job =
       quoted(own_program()) + " sweep-job " + quoted(fs::absolute(folder.path()).string());
-  write_atomically(
-      slurm / "job.sh",
-      directives(
-          {"--job-name=" + name,
-           "--array=" + ranges(missing) + (options.workers ? "%" + std::to_string(options.workers) : ""),
-           "--cpus-per-task=" + std::to_string(options.threads),
-           "--mem=" + std::to_string(std::llround(std::ceil(bytes / 1048576))) + "M", "--requeue",
-           "--open-mode=append", "--output=\"" + (logs / "%a.out").string() + "\"",
-           "--error=\"" + (logs / "%a.err").string() + "\""}) +
-          "exec " + job + " --threads " + std::to_string(options.threads) +
-          (options.report ? " --report" : "") + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
-  write_atomically(slurm / "collect.sh",
-                   directives({"--job-name=" + name + "-collect", "--requeue", "--mem=100M",
-                               "--output=\"" + (logs / "collect.out").string() + "\"",
-                               "--error=\"" + (logs / "collect.err").string() + "\""}) +
-                       "exec " + job + "\n");
+  write_file(slurm / "job.sh",
+             directives({"--job-name=" + name,
+                         "--array=" + ranges(missing) +
+                             (options.workers ? "%" + std::to_string(options.workers) : ""),
+                         "--cpus-per-task=" + std::to_string(options.threads),
+                         "--mem=" + std::to_string(std::llround(std::ceil(bytes / 1048576))) + "M",
+                         "--requeue", "--open-mode=append", "--output=\"" + (logs / "%a.out").string() + "\"",
+                         "--error=\"" + (logs / "%a.err").string() + "\""}) +
+                 "exec " + job + " --threads " + std::to_string(options.threads) +
+                 (options.report ? " --report" : "") + " --task \"$SLURM_ARRAY_TASK_ID\"\n");
+  write_file(slurm / "collect.sh", directives({"--job-name=" + name + "-collect", "--requeue", "--mem=100M",
+                                               "--output=\"" + (logs / "collect.out").string() + "\"",
+                                               "--error=\"" + (logs / "collect.err").string() + "\""}) +
+                                       "exec " + job + "\n");
 
   SlurmJobs jobs;
   const auto remember = [&] {
-    write_atomically(folder.jobs(),
-                     Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
+    write_file(folder.jobs(), Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
   };
   jobs.array = submit_script(slurm / "job.sh", options.sbatch);
   remember();  // before anything else can fail, so that they can be cancelled

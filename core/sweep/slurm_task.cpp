@@ -7,12 +7,6 @@
 
 namespace drape {
 
-namespace {
-
-constexpr int exit_cancelled = 130;
-
-}  // namespace
-
 int run_task(const SweepFolder& folder, int index, int threads, bool report,
              const std::function<bool()>& stop) {
   const nlohmann::ordered_json sweep = folder.read();
@@ -22,7 +16,7 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
   // A node that Slurm takes for dead may still be at it while the task is begun again elsewhere.
   FileLock lock(files.lock());
   while (!lock.acquire(1))
-    if (stop()) return exit_cancelled;
+    if (stop()) return exit_by_signal + SIGINT;
   if (const RunStatus before = settled(files, read_status(files)); before.has_results()) {
     write_status(files, before);
     return before.exit_code;

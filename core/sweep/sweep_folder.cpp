@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "core/experiment/run_folder.h"
+#include "core/mesh/file.h"
 
 namespace drape {
 
@@ -90,18 +90,18 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     if (run.expect.outcome != "converged")
       json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
-    fs::create_directories(files.folder.parent_path());
+    make_folder(files.folder.parent_path());
     RunStatus status = read_status(files);
     if (text_of_file(files.config()) != run.config) {
       if (status.state == RunState::failed) {  // at what was another experiment
         status.state = RunState::waiting;
         write_status(files, status);
       }
-      write_atomically(files.config(), run.config);
+      write_file(files.config(), run.config);
     }
     json["runs"].back().update(status.json());  // others read sweep.json from the moment it is written
   }
-  write_atomically(path_ / "sweep.json", json.dump(1) + "\n");
+  write_file(path_ / "sweep.json", json.dump(1) + "\n");
   settle();
 }
 
@@ -125,7 +125,7 @@ Json SweepFolder::refresh() const {
         complete && (status.has_results() || (status.refused() && expect.value("outcome", "") == "refused"));
   }
   json["complete"] = complete;
-  write_atomically(path_ / "sweep.json", json.dump(1) + "\n");
+  write_file(path_ / "sweep.json", json.dump(1) + "\n");
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <map>
 
+#include "core/experiment/file_name.h"
 #include "core/model/solver.h"
 
 namespace drape {
@@ -110,6 +111,8 @@ void check_names(std::vector<Variation>& all, ConfigErrors& errors) {
   std::map<std::string, const Variation*> folders;
   for (Variation& v : all) {
     v.folder = folder_name(v.name);
+    if (const std::string fault = fault_of_file_name(v.folder); !fault.empty())
+      errors.push_back({v.where, "variation \"" + v.name + "\" names a folder: it " + fault});
     const auto [other, first] = folders.emplace(v.folder, &v);
     if (first || v.name.empty()) continue;
     const std::string& name = other->second->name;

@@ -327,7 +327,7 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
   CHECK(ended.exit_code == 1);  // as the run that was not killed: out of steps
   check_equal(folder / "out", folder / "whole");
   const Ended again = drape_with("run --resume out", folder.path);
-  CHECK(again.exit_code == 0);
+  CHECK(again.exit_code == 1);  // the run's own
   CHECK(again.out == "out: the run is complete; there is nothing to go on with\n");
   CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
 }
@@ -377,6 +377,152 @@ TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a 
   CHECK_THAT(ended.err, Contains("state.bin: is cut short; going on from the checkpoint before it"));
   CHECK(ended.exit_code == 1);
   check_equal(folder / "out", folder / "whole");
+}
+
+TEST_CASE("What is damaged or gone of an interrupted run's files is written again, to the same bits") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Experiment experiment =
+      experiment_in(folder / "e.yaml", {{"newton.max_steps", "6"}, {"levels", "3"}});
+  run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
+  RunOptions options = silent(folder / "out");
+  // In the third method, so that the first two are known by the checkpoint alone.
+  options.stop = [&] { return fs::exists(folder / "out/levels/newton_l0.ply"); };
+  run_experiment(experiment, *scene_of(experiment), options);
+  REQUIRE_FALSE(is_complete(folder / "out"));
+  std::map<std::string, std::string> before;
+  for (const char* part : {"levels", "rest"})
+    for (const auto& entry : fs::directory_iterator(folder / "out" / part))
+      before[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
+  // The level that was stopped is no result yet.
+  for (const char* stopped : {"newton_l1.ply", "newton_l1.vtp", "newton.pvd"})
+    REQUIRE(before.erase(std::string("levels/") + stopped) == 1);
+  REQUIRE(before.size() == 3 + 2 * 7 + 2);
+
+  const auto write = [&](const std::string& name, const std::string& bytes) {
+    folder.write("out/" + name, bytes);
+  };
+  std::string flipped = before.at("levels/pcs_l0.ply");
+  flipped[flipped.size() / 2] ^= 1;
+  write("levels/pcs_l0.ply", flipped);
+  write("levels/pcs_l2.ply", before.at("levels/pcs_l2.ply").substr(0, 100));
+  write("levels/cascadic_l1.vtp", "");
+  fs::remove(folder / "out/levels/cascadic_l1.ply");
+  fs::remove(folder / "out/levels/newton_l0.ply");
+  fs::remove(folder / "out/levels/pcs.pvd");
+  fs::remove_all(folder / "out/rest");
+
+  const Ended ended = drape_with("run --resume out --quiet --no-report", folder.path);
+  CHECK(ended.exit_code == 1);  // out of steps
+  CHECK(ended.err ==
+        "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
+        "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
+        "levels/newton_l0.ply, levels/pcs.pvd\n");
+  for (const auto& [name, bytes] : before) {
+    INFO(name);
+    CHECK((text_of(folder / ("out/" + name)) == bytes));
+  }
+  check_equal(folder / "out", folder / "whole");
+}
+
+TEST_CASE("Frames that are damaged leave their rows out of errors.csv, and cost nothing else") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Experiment experiment = experiment_in(folder / "e.yaml");
+  RunOptions options = silent(folder / "out");
+  options.stop = [&] { return fs::exists(folder / "out/levels/cascadic_l0.ply"); };
+  run_experiment(experiment, *scene_of(experiment), options);
+  std::string frames = text_of(folder / "out/frames/pcs_l0.bin");
+  frames[frames.size() / 2] ^= 1;
+  folder.write("out/frames/pcs_l0.bin", frames);
+  CHECK(drape_with("run --resume out --quiet --no-report", folder.path).exit_code == 0);
+  CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("frames/pcs_l0.bin: is damaged"));
+  const std::string errors = text_of(folder / "out/errors.csv");
+  CHECK(errors.find("\npcs,0,") == std::string::npos);
+  CHECK(errors.find("\npcs,1,") != std::string::npos);
+}
+
+TEST_CASE("A complete run has its own exit code when it is resumed, and its files are looked after") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string run = "run e.yaml --quiet --no-report --method pcs --out ",
+                    said = ": the run is complete; there is nothing to go on with\n";
+  REQUIRE(drape_with(run + "good", folder.path).exit_code == 0);
+  REQUIRE(drape_with(run + "poor --set newton.max_steps=2", folder.path).exit_code == 1);
+  const Ended good = drape_with("run --resume good", folder.path);
+  CHECK(good.exit_code == 0);
+  CHECK(good.out == "good" + said);
+  CHECK(good.err == "");
+  const Ended poor = drape_with("run --resume poor", folder.path);
+  CHECK(poor.exit_code == 1);
+  CHECK(poor.out == "poor" + said);
+
+  const std::string rest = text_of(folder / "good/rest/l1.ply");
+  fs::remove_all(folder / "good/rest");
+  const Ended restored = drape_with("run --resume good", folder.path);
+  CHECK(restored.exit_code == 0);
+  CHECK(restored.err == "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply\n");
+  CHECK((text_of(folder / "good/rest/l1.ply") == rest));
+
+  std::string mesh = text_of(folder / "good/levels/pcs_l0.ply");
+  mesh[mesh.size() / 2] ^= 1;
+  folder.write("good/levels/pcs_l0.ply", mesh);
+  fs::remove(folder / "good/levels/pcs_l1.ply");
+  CHECK(refused_by("run --resume good", folder) ==
+        "error: good: the run is complete, but damaged or gone since: levels/pcs_l0.ply, levels/pcs_l1.ply; "
+        "run the experiment anew, as in drape run good/config.yaml --out ANOTHER\n");
+}
+
+TEST_CASE("A checkpoint whose values do not fit its experiment is refused before anything is written") {
+  const Scratch folder;
+  interrupt_sheets(folder);
+  const Experiment experiment = experiment_in(folder / "out/config.yaml");
+  const auto scene = scene_of(experiment);
+  std::string warning;
+  const Checkpoint sound = checkpoint_to_resume(folder / "out", warning);
+  REQUIRE(sound.state.under_way);
+  REQUIRE_NOTHROW(require_fitting(sound, experiment, *scene));
+  const auto refused = [&](const std::string& what, const std::function<void(Checkpoint&)>& change) {
+    Checkpoint other = sound;
+    change(other);
+    INFO(what);
+    CHECK_THROWS_WITH(resume_experiment(experiment, *scene, silent(folder / "out"), other),
+                      Contains("the checkpoint does not fit its experiment: " + what));
+  };
+  const std::string before = text_of(folder / "out/log.jsonl");
+  const auto under_way = [](Checkpoint& c) -> NewtonState& { return *c.state.under_way; };
+  refused("the method under way", [](auto& c) { c.method = 3; });
+  refused("the method under way", [](auto& c) { c.method = -1; });
+  refused("the experiment has no method", [](auto& c) { c.methods[0] = "x"; });
+  refused("the level that the methods begin with", [](auto& c) { c.first_level = -1; });
+  refused("the level under way", [](auto& c) { c.state.level = 1 << 30; });
+  refused("the level under way", [&](auto& c) { under_way(c).so_far.level += 1; });
+  refused("the level before the one under way", [](auto& c) {
+    c.state.finished.pop_back();
+    c.state.finished.push_back({});
+    c.state.finished.back().level = c.state.level;
+    c.state.finished.back().x = c.state.under_way->so_far.x;
+  });
+  refused("the state of level", [&](auto& c) { under_way(c).so_far.x.conservativeResize(3, 3); });
+  refused("the state of level", [&](auto& c) { under_way(c).so_far.x(1, 1) = std::nan(""); });
+  refused("negative counts", [&](auto& c) { under_way(c).so_far.steps = -1; });
+  refused("a held vertex that there is not", [&](auto& c) { under_way(c).positions.missing = {1 << 20}; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).step_size = std::nan(""); });
+  refused("the settings of the step", [&](auto& c) { under_way(c).projection_share = -1; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).projection_share = 7; });
+  refused("the answer to a change", [&](auto& c) { under_way(c).response.to = Positions::Zero(1, 3); });
+  refused("the contacts: ", [&](auto& c) { under_way(c).contacts.from.resize(0, 3); });
+  refused("the contacts that have slipped", [&](auto& c) { under_way(c).contacts.slips.clear(); });
+  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1 << 20}}, {0}}; });
+  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1}}, {}}; });
+  refused("the order of the factor", [&](auto& c) { under_way(c).analysis.order.at(0) = -1; });
+  refused("the order of the factor", [&](auto& c) { under_way(c).analysis.fixed.pop_back(); });
+  refused("results.json as it was", [](auto& c) { c.recorder.results = "{"; });
+  refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
+  refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });
+  refused("the frames", [](auto& c) { c.recorder.frames.spacing = 0; });
+  refused("the frames", [](auto& c) { c.recorder.measured = {LevelFrames()}; });
+  CHECK(text_of(folder / "out/log.jsonl") == before);
 }
 
 TEST_CASE("An obstacle's mesh that changed since is named") {

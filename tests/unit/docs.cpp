@@ -4,6 +4,8 @@
 #include <regex>
 #include <string>
 
+#include "core/cli/exit_codes.h"
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -34,6 +36,15 @@ TEST_CASE("docs/troubleshooting.md speaks of messages that there are") {
     CHECK(code.find((*it)[1].str()) != std::string::npos);
   }
   CHECK(rows > 20);
+}
+
+TEST_CASE("docs/exit-codes.md has every code as `drape --help` does") {
+  const std::string page = text_of(fs::path(DRAPE_SOURCE_DIR) / "docs/exit-codes.md");
+  for (const drape::ExitCode& code : drape::exit_codes) {
+    INFO(code.code);
+    CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.meaning + " |\n") !=
+          std::string::npos);
+  }
 }
 
 TEST_CASE("Every link between the documents leads somewhere") {

@@ -1,0 +1,222 @@
+// Runs in which something fails: what a method throws is its outcome, what keeps a run from going on ends it
+// with an exit code of its own, and what is refused leaves no trace.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/cli/exit_codes.h"
+#include "tests/support/command.h"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string with_failing = "DRAPE_PLUGIN_PATH=" DRAPE_TEST_PLUGIN_DIR "/failing";
+
+Json results_in(const Scratch& folder) { return Json::parse(text_of(folder / "out/results.json")); }
+
+/// The small experiment with one more method before its own, and energies of its own.
+void write_experiment(const Scratch& folder, const std::string& method, const std::string& energy = "") {
+  std::string text = small_experiment();
+  if (!method.empty()) text = replaced(text, "methods:\n", "methods:\n  odd: " + method + "\n");
+  if (!energy.empty()) text = replaced(text, "[neo_hookean,", "[" + energy + ", neo_hookean,");
+  folder.write("e.yaml", text);
+}
+
+/// The events of that name in log.jsonl.
+std::vector<Json> events(const Scratch& folder, const std::string& name) {
+  std::vector<Json> found;
+  std::istringstream lines(text_of(folder / "out/log.jsonl"));
+  for (std::string line; std::getline(lines, line);)
+    if (Json event = Json::parse(line); event["event"] == name) found.push_back(event);
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("What a method throws is its outcome, with level and cause, and the others run") {
+  const std::pair<std::string, std::string> causes[] = {
+      {"error", "the test's method fails"},
+      {"memory", "memory does not suffice; take fewer vertices or levels, or a smaller file"},
+      {"other", "an exception that is no std::exception"}};
+  for (const auto& [throws, cause] : causes) {
+    INFO(throws);
+    const Scratch folder;
+    write_experiment(folder, "{type: failing, level: 1, throws: " + throws + "}");
+    const bool reported = throws == "error";
+    const Ended ended = drape_with(std::string("run e.yaml --out out") + (reported ? "" : " --no-report"),
+                                   folder.path, with_failing);
+    CHECK(ended.exit_code == drape::exit_not_converged);
+    CHECK_THAT(ended.err, Contains("odd       level 1/1 failed       " + cause + "\n"));
+
+    const Json all = results_in(folder);
+    CHECK(all["complete"] == true);
+    const Json& odd = all["methods"]["odd"];
+    CHECK(odd["status"] == "failed");
+    REQUIRE(odd["levels"].size() == 2);
+    CHECK(odd["levels"][0]["status"] == "converged");
+    CHECK(odd["levels"][1]["status"] == "failed");
+    CHECK(odd["levels"][1]["message"] == cause);
+    for (const char* other : {"pcs", "cascadic", "newton"})
+      CHECK(all["methods"][other]["status"] == "converged");
+    REQUIRE(events(folder, "method_failed").size() == 1);
+    CHECK(events(folder, "method_failed")[0]["level"] == 1);
+    CHECK(events(folder, "method_failed")[0]["message"] == cause);
+
+    if (reported) {
+      const std::string page = text_of(folder / "out/report.html");
+      CHECK_THAT(page, Contains("3 of 4 methods converged"));
+      CHECK_THAT(page, Contains("<li><b>odd</b>, level 1: failed: "));
+    }
+    const Ended table = drape_with("table out --columns method,outcome,message", folder.path);
+    CHECK(table.exit_code == drape::exit_not_converged);
+    CHECK_THAT(table.out, Contains("converged, failed") && Contains("level 1: " + cause));
+    CHECK(drape_with("run --resume out", folder.path, with_failing).exit_code == drape::exit_not_converged);
+  }
+}
+
+TEST_CASE("An energy that throws fails every method that evaluates it, where it does") {
+  const Scratch folder;
+  SECTION("while a level is solved") {
+    write_experiment(folder, "", "{type: failing, level: 1, gradients: 5}");
+    const Ended ended = drape_with("run e.yaml --out out --no-report", folder.path, with_failing);
+    CHECK(ended.exit_code == drape::exit_not_converged);
+    const Json all = results_in(folder);
+    CHECK(all["complete"] == true);
+    // The finest level's energies are made once: the first method to evaluate them is the one that fails.
+    const Json& pcs = all["methods"]["pcs"];
+    CHECK(pcs["status"] == "failed");
+    REQUIRE(pcs["levels"].size() == 1);
+    CHECK(pcs["levels"][0]["level"] == 0);
+    CHECK(pcs["levels"][0]["message"] == "the test's gradient fails");
+    CHECK(all["methods"]["cascadic"]["status"] == "converged");
+    CHECK(all["methods"]["newton"]["status"] == "converged");
+  }
+  SECTION("while a level's result is recorded") {
+    write_experiment(folder, "{type: failing, level: 9}", "{type: failing, level: 0, values: 0}");
+    const Ended ended =
+        drape_with("run e.yaml --out out --no-report --method odd,newton", folder.path, with_failing);
+    CHECK(ended.exit_code == drape::exit_not_converged);
+    const Json odd = results_in(folder)["methods"]["odd"];
+    CHECK(odd["status"] == "failed");
+    REQUIRE(odd["levels"].size() == 1);
+    CHECK(odd["levels"][0]["message"] == "the test's value fails");
+    CHECK(results_in(folder)["methods"]["newton"]["status"] == "converged");
+  }
+}
+
+TEST_CASE("A folder that is deleted meanwhile ends the run with its own code, and stays deleted") {
+  for (const char* gone : {"out", "out/levels"}) {
+    INFO(gone);
+    const Scratch folder;
+    write_experiment(folder, "{type: failing, level: 1, command: rm -r " + std::string(gone) + "}");
+    const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path, with_failing);
+    CHECK(ended.exit_code == drape::exit_broken_off);
+    CHECK_THAT(ended.err, StartsWith("error: cannot write out/levels/odd_l1.ply: No such file or directory"));
+    CHECK_THAT(ended.err, Contains("; the run is broken off. "));
+    CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+    if (gone == std::string("out")) {
+      CHECK_FALSE(fs::exists(folder / "out"));
+      continue;
+    }
+    const Json all = results_in(folder);
+    CHECK(all["complete"] == false);
+    CHECK_THAT(all["broken_off"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
+    CHECK(all["methods"]["odd"]["status"] == "broken_off");
+    CHECK(events(folder, "run_broken_off").size() == 1);
+    CHECK(drape_with("report out", folder.path).exit_code == drape::exit_done);
+    CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was broken off (cannot write "));
+    const Ended on = drape_with("run --resume out --quiet --no-report", folder.path,
+                                with_failing);  // which fails at the same
+    CHECK(on.exit_code == drape::exit_broken_off);
+  }
+}
+
+TEST_CASE("A disk that is full ends the run with its own code; once there is room it goes on") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string arguments =
+      " run e.yaml --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
+      "--set newton.max_steps=3 --set frames=0 --out ";
+  REQUIRE(drape_with(arguments + "whole", folder.path).exit_code == drape::exit_not_converged);
+  // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
+  // what has the whole state in it.
+  const auto largest = fs::file_size(folder / "whole/rest/l1.ply");
+  REQUIRE(fs::file_size(folder / "whole/levels/pcs_l1.vtp") > largest + 4096);
+  const auto limited = [&](std::uintmax_t bytes, const std::string& line) {
+    return Command("ulimit -f " + std::to_string(bytes / 512) + " && exec " + drape_command + line,
+                   folder.path)
+        .wait();
+  };
+  const Ended ended = limited(largest + 2048, arguments + "out");
+  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK_THAT(ended.err, StartsWith("error: cannot write out/") && Contains("File too large") &&
+                            Contains("go on with drape run --resume out"));
+  const Json all = results_in(folder);
+  CHECK(all["complete"] == false);
+  CHECK_THAT(all["broken_off"].get<std::string>(), Contains("File too large"));
+  CHECK(all["methods"]["pcs"]["status"] == "broken_off");
+  CHECK(all["methods"].size() == 1);  // the others could not be written either
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
+    CHECK(entry.path().extension() != ".part");
+
+  const Ended on = drape_with("run --resume out --quiet --no-report --threads 1", folder.path);
+  CHECK(on.err == "");
+  CHECK(on.exit_code == drape::exit_not_converged);
+  CHECK_FALSE(results_in(folder).contains("broken_off"));
+  for (const char* mesh : {"levels/pcs_l1.ply", "levels/newton_l1.ply"})
+    CHECK((text_of(folder / "out" / mesh) == text_of(folder / "whole" / mesh)));
+
+  // Before the first method, and where the rows of steps.csv no longer fit.
+  CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_broken_off);
+  const Ended rows = limited(16 * 512,
+                             " run e.yaml --quiet --no-report --method newton --levels 1 --set frames=0 "
+                             "--set newton.force_tolerance=1e-300 --checkpoint 1e6 --out rows");
+  CHECK(rows.exit_code == drape::exit_broken_off);
+  CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
+}
+
+TEST_CASE("Standard output that cannot be written to is no success") {
+  if (!fs::exists("/dev/full")) return;
+  const Scratch folder;
+  const Ended ended = Command("exec " + drape_command + " list > /dev/full", folder.path).wait();
+  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK(ended.err == "error: standard output cannot be written to\n");
+}
+
+TEST_CASE("Names that the file system does not take are refused before anything is written") {
+  const Scratch folder;
+  const std::string longest(200, 'm'), too_long(201, 'm');
+  const auto refused = [&](const std::string& line, const std::string& expected) {
+    const Ended ended = drape_with(line, folder.path);
+    CHECK(ended.exit_code == drape::exit_bad_input);
+    CHECK_THAT(ended.err, Contains(expected));
+    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
+  };
+  folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  " + too_long + ": {type: pcs}\n"));
+  refused("check e.yaml", "names files: it has 201 bytes, and may have 200");
+  refused("run e.yaml --out out", "names files: it has 201 bytes, and may have 200");
+  folder.write("e.yaml", small_experiment());
+  refused("run e.yaml --out a/b/" + std::string(300, 'x'), "has 300 bytes, and the file system takes 255");
+  std::string deep = "d";
+  for (int k = 0; k < 45; ++k) deep += "/" + std::string(90, 'd');
+  refused("run e.yaml --out " + deep, "less deep with --out");
+  refused("run e.yaml --out /proc/none/a", "cannot make the results folder");
+  folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  \"a\xff\": {type: pcs}\n"));
+  refused("run e.yaml --out out", "error: ");
+  folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  " + longest + ": {type: pcs}\n"));
+  CHECK(drape_with("run e.yaml --quiet --no-report --out out", folder.path).exit_code == drape::exit_done);
+}
+
+TEST_CASE("The exit codes are in every help") {
+  const Scratch folder;
+  for (const char* help : {"--help", "run --help", "sweep --help", "table --help"}) {
+    INFO(help);
+    const Ended ended = drape_with(help, folder.path);
+    CHECK(ended.exit_code == drape::exit_done);
+    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.meaning));
+  }
+}

@@ -1,0 +1,121 @@
+// An energy and a method that fail in the middle of a run.
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+
+#include "core/model/energy.h"
+#include "core/model/solver.h"
+#include "core/numerics/newton_parameters.h"
+#include "core/plugin/plugin.h"
+
+namespace {
+
+using drape::Positions;
+
+/// Zero, until it throws.
+class BoundFailing final : public drape::BoundEnergy {
+ public:
+  BoundFailing(int gradients, int values) : gradients_(gradients), values_(values) {}
+
+  double value(const Positions&) const override {
+    count(values_, "value");
+    return 0;
+  }
+  double add_gradient(const Positions&, Positions&) const override {
+    count(gradients_, "gradient");
+    return 0;
+  }
+  drape::Stencils stencils() const override { return drape::Stencils::Zero(1, 1); }
+  void add_hessian(const Positions&, drape::Projection, drape::BlockSink&) const override {}
+
+ private:
+  static void count(std::atomic<int>& left, const char* what) {
+    if (left >= 0 && left-- == 0) throw std::runtime_error(std::string("the test's ") + what + " fails");
+  }
+  mutable std::atomic<int> gradients_, values_;
+};
+
+class FailingEnergy final : public drape::Energy {
+ public:
+  struct Parameters {
+    int level = 0, gradients = -1, values = -1;
+    static void declare(drape::Declaration<Parameters>& d) {
+      d.add("level", &Parameters::level).at_least(0).meaning("that it fails on").source("test");
+      d.add("gradients", &Parameters::gradients)
+          .at_least(-1)
+          .meaning("before it throws; -1: never")
+          .source("test");
+      d.add("values", &Parameters::values).at_least(-1).meaning("before it throws; -1: never").source("test");
+    }
+  };
+  explicit FailingEnergy(const Parameters& p) : p_(p) {}
+  drape::EnergyRole role() const override { return drape::EnergyRole::bending; }
+  std::unique_ptr<drape::BoundEnergy> bind(const drape::Level& level, const drape::Material&) const override {
+    const bool here = level.index == p_.level;
+    return std::make_unique<BoundFailing>(here ? p_.gradients : -1, here ? p_.values : -1);
+  }
+
+ private:
+  Parameters p_;
+};
+
+enum class Throws { nothing, error, memory, other };
+
+/// Takes every level's start for its result. On one level it first has a command run, and throws.
+class FailingSolver final : public drape::Solver {
+ public:
+  struct Parameters {
+    int level = 0;
+    std::string command;
+    Throws throws = Throws::nothing;
+    drape::NewtonParameters newton;  // which every method is given
+    static void declare(drape::Declaration<Parameters>& d) {
+      d.add("level", &Parameters::level).at_least(0).meaning("that it fails on").source("test");
+      d.add("command", &Parameters::command).meaning("that the shell runs there").source("test");
+      d.add_choice("throws", &Parameters::throws,
+                   {{"nothing", Throws::nothing},
+                    {"error", Throws::error},
+                    {"memory", Throws::memory},
+                    {"other", Throws::other}})
+          .meaning("what it throws after that")
+          .source("test");
+      d.add_section("newton", &Parameters::newton).meaning("not used");
+    }
+  };
+  explicit FailingSolver(const Parameters& p) : p_(p) {}
+
+  std::vector<drape::LevelResult> solve(const drape::Problem& problem,
+                                        drape::Observer& observer) const override {
+    std::vector<drape::LevelResult> results;
+    for (int l = 0; l <= problem.finest(); ++l) {
+      observer.level_started(l);
+      if (l == p_.level) fail();
+      drape::LevelResult result;
+      result.level = l;
+      result.x = problem.starts[l];
+      results.push_back(result);
+      observer.level_finished(result);
+    }
+    return results;
+  }
+
+ private:
+  void fail() const {
+    if (!p_.command.empty() && std::system(p_.command.c_str()) != 0)
+      throw std::runtime_error("the test's command fails");
+    if (p_.throws == Throws::error) throw std::runtime_error("the test's method fails");
+    if (p_.throws == Throws::memory) throw std::bad_alloc();
+    if (p_.throws == Throws::other) throw 17;
+  }
+
+  Parameters p_;
+};
+
+}  // namespace
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Energy, FailingEnergy>("failing", "An energy that throws.");
+  registry.add<drape::Solver, FailingSolver>("failing", "A method that throws.");
+}
