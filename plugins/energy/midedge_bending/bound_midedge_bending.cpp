@@ -17,7 +17,6 @@ constexpr int triangles_at_once = 512;
 
 /// The part m ∇²θ of an angle's Hessian, for projected_hessian.
 struct MomentKernel {
-  static constexpr bool convex = false;
   template <class T, class Map>
   static void hessian(const Eigen::Matrix<T, 3, 1>* d, const T* moment, Eigen::Matrix<T, 9, 9>& h,
                       const Map& map) {
