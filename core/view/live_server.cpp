@@ -64,6 +64,8 @@ class BoundedServer final : public httplib::Server {
     new_task_queue = [] { return new AtOnce; };
   }
 
+  /// The library lets five connections wait to be accepted: of a burst, the others come again after a second.
+  void lengthen_queue() { ::listen(svr_sock_, SOMAXCONN); }
   void end_connections() { connections_.end(); }
 
  private:
@@ -177,6 +179,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_u
     throw std::runtime_error(
         "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
         std::strerror(errno) + "); name another port, or leave --port out for one that is free");
+  impl_->server.lengthen_queue();
   impl_->origin = "http://127.0.0.1:" + std::to_string(bound);
   impl_->same_origin = "http://localhost:" + std::to_string(bound);
   url_ = impl_->origin + base;
