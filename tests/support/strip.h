@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -67,10 +68,12 @@ inline double tip_angle(const Solved& s, int cells) {
   return std::atan2(-d.z(), d.x()) * 180 / M_PI;
 }
 
-/// Prints a row of a table.
-template <class... Values>
-void row(const char* format, Values... values) {
-  std::printf(format, values...);
+/// Prints a row of a table, as printf does.
+[[gnu::format(printf, 1, 2)]] inline void row(const char* format, ...) {
+  std::va_list values;
+  va_start(values, format);
+  std::vprintf(format, values);
+  va_end(values);
   std::printf("\n");
 }
 
