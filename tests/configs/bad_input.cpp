@@ -10,6 +10,7 @@
 #include <map>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
@@ -463,7 +464,7 @@ TEST_CASE("a run may be overwritten by one of its own config.yaml") {
 TEST_CASE("plugin libraries that do not fit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
-  const std::string plugins = DRAPE_TEST_PLUGIN_DIR;
+  const std::string plugins = folders::test_plugins();
   const auto said = [&](const std::string& path) {
     return refused(folder, "run e.yaml --out out", "DRAPE_PLUGIN_PATH=" + path);
   };

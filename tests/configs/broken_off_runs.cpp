@@ -6,6 +6,7 @@
 
 #include "core/cli/exit_codes.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -14,7 +15,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string with_failing = "DRAPE_PLUGIN_PATH=" DRAPE_TEST_PLUGIN_DIR "/failing";
+const std::string with_failing = "DRAPE_PLUGIN_PATH=" + folders::test_plugins() + "/failing";
 
 Json results_in(const Scratch& folder) { return Json::parse(text_of(folder / "out/results.json")); }
 

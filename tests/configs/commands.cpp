@@ -6,6 +6,7 @@
 
 #include "core/experiment/experiment.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 #include "tests/support/registry.h"
 
 namespace fs = std::filesystem;
@@ -16,7 +17,7 @@ using Catch::Matchers::StartsWith;
 
 namespace {
 
-Ended drape_of(const std::string& arguments) { return drape_with(arguments, DRAPE_SOURCE_DIR); }
+Ended drape_of(const std::string& arguments) { return drape_with(arguments, folders::source()); }
 
 /// Standard output of what must succeed in silence.
 std::string shown_by(const std::string& arguments) {
@@ -133,14 +134,14 @@ TEST_CASE("reference is docs/reference.md, which is up to date") {
   const std::string page = shown_by("reference");
   CHECK_THAT(page, StartsWith("# Configuration reference\n"));
   for (const auto& entry : test_registry().entries()) CHECK_THAT(page, Contains(entry->name));
-  const fs::path stored = fs::path(DRAPE_SOURCE_DIR) / "docs/reference.md";
+  const fs::path stored = fs::path(folders::source()) / "docs/reference.md";
   INFO("after a change, run: build/bin/drape reference > docs/reference.md");
   CHECK((text_of(stored) == page));
 }
 
 TEST_CASE("every plugin has a page of its own, with its parameters up to date") {
   const Scratch folder;
-  const fs::path plugins = fs::path(DRAPE_SOURCE_DIR) / "plugins";
+  const fs::path plugins = fs::path(folders::source()) / "plugins";
   for (const auto& entry : test_registry().entries()) {
     const fs::path name = fs::path(entry->kind) / entry->name / "README.md";
     INFO(name.string());

@@ -6,6 +6,7 @@
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -14,7 +15,7 @@ using Json = nlohmann::json;
 namespace {
 
 std::string contact_experiment() {
-  return text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml");
+  return text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml");
 }
 
 /// Standard error of a run that is refused, as a check is.
@@ -179,7 +180,7 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
   folder.write("e.yaml", replaced(small_experiment(), "levels: 2",
                                   "levels: 2\ncontact: {type: blind, height: -0.05}\nverify: every_step"));
   const Ended ended = drape_with("run e.yaml --out out --set newton.step_size=0.02" + quiet, folder.path,
-                                 std::string("DRAPE_PLUGIN_PATH=") + DRAPE_TEST_PLUGIN_DIR + "/blind");
+                                 std::string("DRAPE_PLUGIN_PATH=") + folders::test_plugins() + "/blind");
   CHECK(ended.exit_code == 1);
   CHECK(ended.err == "");
   const Json all = Json::parse(text_of(folder / "out/results.json"));

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace {
 
@@ -44,8 +45,9 @@ const Golden golden[] = {
 
 TEST_CASE("the golden run: energies to 1e-6, measures of consistency to 1 %") {
   const Scratch folder;
-  const Ended ended = drape_with(
-      "run " DRAPE_SOURCE_DIR "/tests/configs/data/golden.yaml --out out --quiet --no-report", folder.path);
+  const Ended ended =
+      drape_with("run " + folders::source() + "/tests/configs/data/golden.yaml --out out --quiet --no-report",
+                 folder.path);
   REQUIRE(ended.exit_code == 0);
   const auto methods = nlohmann::json::parse(text_of(folder / "out/results.json")).at("methods");
   CHECK(methods.size() == std::size(golden));

@@ -6,6 +6,7 @@
 
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -13,7 +14,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const fs::path source = DRAPE_SOURCE_DIR;
+const fs::path source = folders::source();
 
 /// A copy of the suite whose sweeps run Newton on one level.
 void copy_suite(const Scratch& folder) {

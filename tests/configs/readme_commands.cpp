@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
@@ -12,7 +13,7 @@ namespace {
 /// The lines of the README's sh blocks that call the command, continued lines joined, comments cut.
 std::vector<std::string> readme_commands() {
   std::vector<std::string> commands;
-  std::istringstream lines(text_of(fs::path(DRAPE_SOURCE_DIR) / "README.md"));
+  std::istringstream lines(text_of(fs::path(folders::source()) / "README.md"));
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("```")) inside = !inside && line.starts_with("```sh");
@@ -38,12 +39,12 @@ std::string made_small(const std::string& command) {
 }  // namespace
 
 TEST_CASE("every command of README.md runs") {
-  const fs::path source = DRAPE_SOURCE_DIR;
+  const fs::path source = folders::source();
   // In a copy, so that what a command writes stays out of the tree.
   const Scratch folder;
   for (const char* name : {"configs", "docs", "benchmarks"})
     fs::copy(source / name, folder / name, fs::copy_options::recursive);
-  fs::create_directory_symlink(fs::path(DRAPE_BUILD_BIN_DIR).parent_path(), folder / "build");
+  fs::create_directory_symlink(fs::path(folders::commands()).parent_path(), folder / "build");
   const std::vector<std::string> commands = readme_commands();
   CHECK(commands.size() >= 3);
   for (const std::string& command : commands) {

@@ -6,6 +6,7 @@
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace {
 
@@ -53,7 +54,7 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
   drape::write_mesh(folder / "sheets.obj", sheets);
   folder.write(
       "e.yaml",
-      replaced(text_of(std::filesystem::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml"),
+      replaced(text_of(std::filesystem::path(folders::source()) / "tests/configs/data/contact.yaml"),
                "{shape: square, side: 0.4, columns: 9, rows: 9}", "{shape: file, file: sheets.obj}"));
   const std::string options =
       "--set start.translate=[-0.2,-0.2,0.1035] --set newton.max_steps=6 --set contact.0.self_contact=";

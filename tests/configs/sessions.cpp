@@ -9,6 +9,7 @@
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -29,7 +30,7 @@ void write_sheets(const Scratch& folder) {
   sheets.triangles.resize(2 * triangles.rows(), 3);
   sheets.triangles << triangles, triangles.array() + n;
   write_mesh(folder / "sheets.obj", sheets);
-  const std::string one = text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml");
+  const std::string one = text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml");
   folder.write("e.yaml", replaced(replaced(one, "{shape: square, side: 0.4, columns: 9, rows: 9}",
                                            "{shape: file, file: sheets.obj}"),
                                   "levels: 2", "levels: 3"));
@@ -243,7 +244,7 @@ TEST_CASE("So has one with a level that is begun from the scene's start, conditi
   const Scratch folder;
   write_mesh(folder / "fan.obj", fan);
   folder.write("e.yaml",
-               replaced(text_of(fs::path(DRAPE_SOURCE_DIR) / "configs/hard/drape.yaml"),
+               replaced(text_of(fs::path(folders::source()) / "configs/hard/drape.yaml"),
                         "{shape: square, side: 1, columns: 16, rows: 16}", "{shape: file, file: fan.obj}") +
                    R"(
 schedule: {steps: 3, keys: [{set: energies.gravity.acceleration, at: [0, 1], to: [[0, 0, -9.81], [1, 0, -9.81]]}]}
@@ -527,7 +528,7 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
 
 TEST_CASE("An obstacle's mesh that changed since is named") {
   const Scratch folder;
-  folder.write("e.yaml", replaced(text_of(fs::path(DRAPE_SOURCE_DIR) / "tests/configs/data/contact.yaml"),
+  folder.write("e.yaml", replaced(text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"),
                                   "{type: ipc, friction: 0.1}",
                                   "{type: ipc, obstacles: [{file: box.obj, translate: [0, 0, -1]}]}"));
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));

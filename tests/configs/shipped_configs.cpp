@@ -4,12 +4,13 @@
 
 #include "core/experiment/yaml_file.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path source = DRAPE_SOURCE_DIR;
+const fs::path source = folders::source();
 
 /// Obstacles that `make data` makes are not part of the project.
 bool needs_missing_data(const fs::path& config) {

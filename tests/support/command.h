@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/folders.h"
 #include "tests/support/time_limit.h"
 
 /// An empty folder that goes away with the object.
@@ -128,7 +129,7 @@ class Command {
   int status_ = 0;
 };
 
-inline const std::string drape_command = DRAPE_BUILD_BIN_DIR "/drape";
+inline const std::string drape_command = folders::commands() + "/drape";
 
 /// `drape` with these arguments, in that folder, to its end.
 inline Ended drape_with(const std::string& arguments, const std::filesystem::path& folder,
@@ -148,5 +149,5 @@ inline std::string replaced(std::string text, const std::string& from, const std
 
 /// Three methods on a square of 6 × 6 vertices and 2 levels.
 inline std::string small_experiment() {
-  return text_of(std::filesystem::path(DRAPE_SOURCE_DIR) / "tests/configs/data/small.yaml");
+  return text_of(std::filesystem::path(folders::source()) / "tests/configs/data/small.yaml");
 }

@@ -8,12 +8,13 @@
 #include "core/plugin/loader.h"
 #include "core/plugin/make.h"
 #include "core/plugin/registry.h"
+#include "tests/support/folders.h"
 
 /// Everything that the build's plugins offer.
 inline const drape::Registry& test_registry() {
   static const drape::Registry* registry = [] {
     auto* r = new drape::Registry;  // like the libraries, it stays for good
-    drape::load_plugins(*r, {DRAPE_BUILD_PLUGIN_DIR});
+    drape::load_plugins(*r, {folders::plugins()});
     return r;
   }();
   return *registry;

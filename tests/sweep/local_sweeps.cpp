@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -15,7 +16,7 @@ using Json = nlohmann::json;
 
 namespace {
 
-const std::string small_sweep = "sweep " DRAPE_SOURCE_DIR "/tests/sweep/small_sweep.yaml ";
+const std::string small_sweep = "sweep " + folders::source() + "/tests/sweep/small_sweep.yaml ";
 
 Json runs_of(const fs::path& sweep) { return Json::parse(text_of(sweep / "sweep.json"))["runs"]; }
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
@@ -154,7 +155,7 @@ TEST_CASE("options that do not fit, and a folder that is somebody's") {
 
 TEST_CASE("--dry-run checks and lists, and leaves no trace") {
   const Scratch folder;
-  const std::string sweep = DRAPE_SOURCE_DIR "/tests/sweep/small_sweep.yaml";
+  const std::string sweep = folders::source() + "/tests/sweep/small_sweep.yaml";
   const Ended ended = drape_with("sweep " + sweep + " --dry-run", folder.path);
   CHECK(ended.exit_code == 0);
   CHECK(ended.err == "");

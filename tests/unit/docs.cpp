@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/cli/exit_codes.h"
+#include "tests/support/folders.h"
 
 namespace fs = std::filesystem;
 
@@ -19,7 +20,7 @@ std::string text_of(const fs::path& file) {
 std::string sources() {
   std::string all;
   for (const char* folder : {"core", "plugins"})
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(DRAPE_SOURCE_DIR) / folder))
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(folders::source()) / folder))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
         all += text_of(entry.path());
   return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
@@ -28,7 +29,7 @@ std::string sources() {
 }  // namespace
 
 TEST_CASE("docs/troubleshooting.md speaks of messages that there are") {
-  const std::string page = text_of(fs::path(DRAPE_SOURCE_DIR) / "docs/troubleshooting.md"), code = sources();
+  const std::string page = text_of(fs::path(folders::source()) / "docs/troubleshooting.md"), code = sources();
   const std::regex row("\n\\| `([^`]+)` \\|");
   int rows = 0;
   for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it, ++rows) {
@@ -39,7 +40,7 @@ TEST_CASE("docs/troubleshooting.md speaks of messages that there are") {
 }
 
 TEST_CASE("docs/exit-codes.md has every code as `drape --help` does") {
-  const std::string page = text_of(fs::path(DRAPE_SOURCE_DIR) / "docs/exit-codes.md");
+  const std::string page = text_of(fs::path(folders::source()) / "docs/exit-codes.md");
   for (const drape::ExitCode& code : drape::exit_codes) {
     INFO(code.code);
     CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.meaning + " |\n") !=
@@ -48,7 +49,7 @@ TEST_CASE("docs/exit-codes.md has every code as `drape --help` does") {
 }
 
 TEST_CASE("Every link between the documents leads somewhere") {
-  const fs::path root = DRAPE_SOURCE_DIR;
+  const fs::path root = folders::source();
   std::vector<fs::path> pages = {root / "README.md", root / "core/README.md", root / "third_party/README.md"};
   for (const auto& entry : fs::directory_iterator(root / "docs"))
     if (entry.path().extension() == ".md") pages.push_back(entry.path());

@@ -13,6 +13,7 @@
 #include "core/model/refiner.h"
 #include "core/plugin/abi.h"
 #include "core/plugin/make.h"
+#include "tests/support/folders.h"
 
 using namespace drape;
 using Catch::Matchers::Contains;
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path plugins = DRAPE_TEST_PLUGIN_DIR;
+const fs::path plugins = folders::test_plugins();
 
 fs::path library(const std::string& name) { return plugins / name / ("lib" + name + ".so"); }
 

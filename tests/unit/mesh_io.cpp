@@ -312,7 +312,7 @@ TEST_CASE("what is declared twice, left over, not finite or no text is refused",
 TEST_CASE("a word of a megabyte is shortened in the message", "[io]") {
   const Scratch scratch;
   const std::string word(1000000, 'x');
-  for (const std::string text : {"v 0 0 " + word, "f " + word, word, "v 0 0 0\nf 1/" + word + " 1 1"}) try {
+  for (const std::string& text : {"v 0 0 " + word, "f " + word, word, "v 0 0 0\nf 1/" + word + " 1 1"}) try {
       read_mesh(scratch.file("a.obj", text));
       FAIL("it was read");
     } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 
 #include "core/numerics/stopwatch.h"
 #include "tests/support/command.h"
+#include "tests/support/folders.h"
 
 using Catch::Matchers::Contains;
 
@@ -17,8 +18,8 @@ const std::string burn = "while :; do :; done";
 /// How a command ends as a test of ctest's, in limits of processor time and of idleness.
 Ended limited(const std::string& command, const std::string& cpu, const std::string& idle) {
   const Scratch folder;
-  return Command("exec env -u DRAPE_TEST_SLOWDOWN " DRAPE_BUILD_BIN_DIR "/../tests/drape_limited " + cpu +
-                     " " + idle + " " + command,
+  return Command("exec env -u DRAPE_TEST_SLOWDOWN " + folders::tests() + "/drape_limited " + cpu + " " +
+                     idle + " " + command,
                  folder.path)
       .wait();
 }
