@@ -118,7 +118,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 8;
+constexpr std::uint32_t format = 9;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

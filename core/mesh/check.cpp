@@ -208,10 +208,11 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
   Faults faults;
   if (mesh.vertices.rows() == 0) faults.push_back("the mesh has no vertices");
   if (mesh.triangles.rows() == 0) faults.push_back("the mesh has no triangles");
-  const bool in_range = check_indices(mesh, faults);
-  const std::vector<std::string> coordinates = check_coordinates(mesh.vertices);
-  for (const std::string& fault : coordinates) faults.push_back(fault);
-  if (!in_range || !coordinates.empty() || mesh.triangles.rows() == 0) return std::move(faults).all();
+  if (!check_indices(mesh, faults) || mesh.triangles.rows() == 0) return std::move(faults).all();
+  if (const std::vector<std::string> coordinates = check_coordinates(mesh.vertices); !coordinates.empty()) {
+    for (const std::string& fault : coordinates) faults.push_back(fault);
+    return std::move(faults).all();
+  }
   check_shapes(mesh, faults);
   check_duplicates(mesh.triangles, faults);
   check_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), faults);

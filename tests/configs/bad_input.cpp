@@ -125,11 +125,14 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   };
   CHECK(said_with(std::nan("")) ==
         "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
-  CHECK(
-      said_with(1e11) ==
-      "error: e.yaml:4:8: the start of level 0 is 9e+10 m from the origin, where rounding moves vertices by "
-      "2e-05 m; move it nearer\n");
+  CHECK(said_with(1e11) ==
+        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate of 1e+11 m; at most 1e+09 m can be computed "
+        "with\n");
   CHECK(said_with(0.1) == "");
+  CHECK_THAT(
+      drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
+      Catch::Matchers::Contains("the start of level 0 is 9e+08 m from the origin, where rounding moves "
+                                "vertices by 2e-07 m; move it nearer\n"));
 }
 
 TEST_CASE("however many errors there are, and however long, little is printed") {
@@ -298,7 +301,7 @@ TEST_CASE("pins that hold nothing, or what is not there") {
         "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to "
         "35\n");
   CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, -1]}") ==
-        "error: e.yaml:7:37: item 2 of \"vertices\" must be at least 0, not -1\n");
+        "error: e.yaml:7:38: item 2 of \"vertices\" must be at least 0, not -1\n");
 }
 
 TEST_CASE("every fault of a config is named at once, in the order of the file, then what was --set") {

@@ -70,8 +70,8 @@ TEST_CASE("contact's numbers too") {
   };
   CHECK(cages("growth: 1e40") == "\"growth\" must be at most 10, not 1e40\n");
   CHECK_THAT(cages("alpha: 1e-9, offset: 1e-9"),
-             Contains("\"alpha\" must be at least 0.001, not 1e-9\n") &&
-                 Contains("\"offset\" must be at least 0.0001, not 1e-9\n"));
+             Contains("\"alpha\" must be at least 0.005, not 1e-9\n") &&
+                 Contains("\"offset\" must be at least 1.0e-04, not 1e-9\n"));
   CHECK(said("ipc, obstacles: [{shape: box, size: [1, 1e40, 1]}]") ==
         "\"size\" must be at most 1.0e+06 m, not 1e40\n");
 }

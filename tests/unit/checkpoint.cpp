@@ -147,7 +147,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 8; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 9; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

@@ -123,7 +123,7 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .meaning("how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
   d.add("alpha", &P::alpha)
       .unit("1")
-      .at_least(1e-3)
+      .at_least(5e-3)
       .below(1)
       .meaning(
           "of the innermost cage, in diagonals of the mesh's box: smaller holes are closed, and triangles "
