@@ -173,9 +173,10 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
 
   // Before the first method, and where the rows of steps.csv no longer fit.
   CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_broken_off);
-  const Ended rows = limited(16 * 512,
-                             " run e.yaml --quiet --no-report --method newton --levels 1 --set frames=0 "
-                             "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
+  const Ended rows =
+      limited(16 * 512,
+              " run e.yaml --quiet --no-report --method newton --levels 1 --set frames=0 "
+              "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
   CHECK(rows.exit_code == drape::exit_broken_off);
   CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
 }
