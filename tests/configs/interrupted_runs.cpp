@@ -90,10 +90,11 @@ TEST_CASE("SIGKILL at any moment leaves whole files, that a report can be made o
 
 namespace {
 
-/// Sends SIGTERM, and again at once: whatever the process is at, it must not finish that.
+/// Sends SIGTERM, and again as soon as it has been delivered: whatever the process is at, it must not finish
+/// that.
 Ended ended_by_two_signals(Command& command) {
   command.send(SIGTERM);
-  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  command.wait_until("the signal is delivered", [&] { return !command.has_pending(SIGTERM); });
   command.send(SIGTERM);
   return command.wait({20 * test_slowdown(), 10});
 }

@@ -85,6 +85,12 @@ class Command {
   void send(int signal) const {
     if (pid_ > 0) kill(-pid_, signal);
   }
+  /// Whether a signal that was sent has still to be delivered: until then another of its kind would be lost.
+  bool has_pending(int signal) const {
+    const std::string status = text_of("/proc/" + std::to_string(pid_) + "/status");
+    const std::string mask = "ShdPnd:\t";
+    return std::stoull(status.substr(status.find(mask) + mask.size(), 16), nullptr, 16) >> (signal - 1) & 1;
+  }
 
   /// Fails the test case when the command takes more than the limit.
   Ended wait(const TimeLimit& limit = command_limit) {
