@@ -14,10 +14,9 @@ namespace drape {
 namespace {
 
 /// A hinge's Hessian takes 16 blocks and a vertex has 3 hinges: their numbers must fit an int.
-constexpr double most_finest_vertices = 4e7;
-/// A grid of more than so many times the vertices asked for, or less than so much of them, is not what was
-/// meant.
-constexpr double far_off = 2;
+constexpr double max_finest_vertices = 4e7;
+/// A grid whose vertices are more, or fewer, than those asked for by more than this factor is refused.
+constexpr double max_vertex_ratio = 2;
 
 // Peak memory is 0.1 GB for the program and then grows as n log₂ n, as factors of plane meshes do. The
 // constant is the largest of 29 runs of Table 1's scenes with 6K to 224K vertices
@@ -51,7 +50,8 @@ GridSize grid_size(const ClothParameters& c) {
   }
   const double all = columns * rows;
   const std::string made = about(columns) + " × " + about(rows);
-  if (c.columns == 0 && c.rows == 0 && (all > far_off * c.vertices || far_off * all < c.vertices))
+  if (c.columns == 0 && c.rows == 0 &&
+      (all > max_vertex_ratio * c.vertices || max_vertex_ratio * all < c.vertices))
     throw std::runtime_error(c.shape + ": about " + std::to_string(c.vertices) +
                              " vertices are asked for, but its grid of even cells has " + made + " = " +
                              about(all) + "; set columns and rows, or ask for another number of vertices");
@@ -96,21 +96,21 @@ void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& erro
   if (vertices.empty()) return;
   const double machine = machine_memory();
   const auto fits = [&](double n) {
-    return n <= most_finest_vertices && (large == LargeMemory::allowed || estimated_memory(n) <= machine);
+    return n <= max_finest_vertices && (large == LargeMemory::allowed || estimated_memory(n) <= machine);
   };
   const auto fitting = std::find_if_not(vertices.begin(), vertices.end(), fits) - vertices.begin();
   if (fitting == std::ssize(vertices)) return;
   const double finest = vertices.back();
   std::string why =
       "level " + std::to_string(vertices.size() - 1) + " would have about " + about(finest) + " vertices";
-  if (finest > most_finest_vertices)
-    why += ", more than the " + about(most_finest_vertices) + " that can be counted";
+  if (finest > max_finest_vertices)
+    why += ", more than the " + about(max_finest_vertices) + " that can be counted";
   else
     why += " and take about " + memory_text(estimated_memory(finest)) +
            " of memory, where this machine has " + memory_text(machine);
   why += fitting > 0 ? "; take at most " + std::to_string(fitting) + (fitting == 1 ? " level" : " levels")
                      : "; ask for fewer vertices";
-  if (finest <= most_finest_vertices) why += ", or allow it with --allow-memory";
+  if (finest <= max_finest_vertices) why += ", or allow it with --allow-memory";
   errors.push_back({e.place_of(e.source.find("levels") ? "levels" : "cloth"), why});
 }
 

@@ -7,11 +7,11 @@ namespace drape {
 
 namespace {
 
-/// Nothing is known before so many notes have brought something, and before this part of the whole is done.
-constexpr int fewest = 8;
-constexpr double least_done = 0.02;
-/// An estimate of more than this many times the time so far says nothing.
-constexpr double farthest = 50;
+/// No time is shown before this many notes have made progress, and before this part of the whole is done.
+constexpr int min_notes = 8;
+constexpr double min_done = 0.02;
+/// An estimate above this many times the time so far is not shown.
+constexpr double max_ratio = 50;
 /// Time in which what is shown comes about as near to the estimate as 1/e of the way [s].
 constexpr double smoothing = 5;
 
@@ -34,13 +34,13 @@ void TimeToGo::note(double seconds, double done) {
 }
 
 std::optional<double> TimeToGo::extrapolated() const {
-  if (static_cast<int>(track_.size()) < fewest || track_.back().second < least_done) return {};
+  if (static_cast<int>(track_.size()) < min_notes || track_.back().second < min_done) return {};
   const double begun = track_.front().first, half = (begun + now_) / 2;
   const auto later = std::ranges::upper_bound(track_, half, {}, &std::pair<double, double>::first);
   const auto& [middle, done] = *std::prev(later);
   const double rate = (track_.back().second - done) / (now_ - middle);
   const double estimate = (1 - track_.back().second) / rate;
-  if (!(rate > 0) || !(estimate <= farthest * (now_ - begun))) return {};
+  if (!(rate > 0) || !(estimate <= max_ratio * (now_ - begun))) return {};
   return std::max(estimate, 1e-3);  // of a time that has a logarithm
 }
 

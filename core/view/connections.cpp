@@ -57,8 +57,8 @@ class Peer final : public httplib::Stream {
   bool fill() {
     while (taken_ < all_.limits_.request && !all_.is_too_late(since_.seconds())) {
       if (!waits_for(POLLIN, poll_pause)) continue;
-      const std::size_t most = std::min(buffer_.size(), all_.limits_.request - taken_);
-      const ssize_t n = recv(socket_, buffer_.data(), most, MSG_DONTWAIT);
+      const std::size_t size = std::min(buffer_.size(), all_.limits_.request - taken_);
+      const ssize_t n = recv(socket_, buffer_.data(), size, MSG_DONTWAIT);
       if (n < 0 && would_block()) continue;
       if (n <= 0) return false;
       taken_ += static_cast<std::size_t>(n);
