@@ -5,6 +5,7 @@
 
 #include "core/mesh/generate.h"
 #include "core/numerics/newton_state.h"
+#include "tests/support/weight.h"
 
 using namespace drape;
 
@@ -303,25 +304,9 @@ TEST_CASE("The smooth part is evaluated once where x stays, and anew under anoth
 
 TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") {
   // Constant forces, on a cloth without pins: no equilibrium, and no end to its fall.
-  class Weight : public Wells {
-   public:
-    using Wells::Wells;
-    std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-      return std::make_unique<Weight>(*this);
-    }
-    double value(const Positions& x) const override { return x.col(2).sum(); }
-    double add_gradient(const Positions& x, Positions& g) const override {
-      g.col(2).array() += 1;
-      return value(x);
-    }
-    void add_hessian(const Positions&, Projection, BlockSink& sink) const override {
-      const double zero[9] = {};
-      for (int i = 0; i < stencils().rows(); ++i) sink.add(i, 0, 0, zero);
-    }
-  };
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     Case c;
-    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(c.centres, 1, 0)}}, {});
+    const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
     PlainObjective objective(model);
     NewtonParameters p;
     p.form = form;
