@@ -129,18 +129,3 @@ TEST_CASE(
   CHECK(allowed.exit_code == 0);
   CHECK_THAT(allowed.out, Contains("Vertices by level: 90000\nMemory to solve them, at most about: 3.1 GB"));
 }
-
-TEST_CASE("a sweep with a run that may take more memory than there is begins none") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nmethods: [newton]\nablation:\n  - {name: small, levels: 1}\n"
-               "  - {name: large, levels: 10, set: {cloth.columns: 12, cloth.rows: 12}}\n");
-  const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK_THAT(
-      ended.err,
-      Matches("error: large, seed 1, may need 1582 GB of memory, where this machine has [0-9.]+ GB; take "
-              "fewer levels or vertices, or allow it with --allow-memory\n"));
-  CHECK(!std::filesystem::exists(folder / "out"));
-}

@@ -124,6 +124,14 @@ TEST_CASE("two variations that are one") {
         "error: s.yaml:3:18: variation \"levels=1\" is given twice; rename one of them\n");
 }
 
+TEST_CASE("a sweep with a run that may take more memory than there is begins none") {
+  CHECK_THAT(said_of("methods: [newton]\nablation:\n  - {name: small, levels: 1}\n"
+                     "  - {name: large, levels: 10, set: {cloth.columns: 12, cloth.rows: 12}}\n"),
+             Catch::Matchers::Matches(
+                 "error: large, seed 1, may need 1582 GB of memory, where this machine has [0-9.]+ GB; take "
+                 "fewer levels or vertices, or allow it with --allow-memory\n"));
+}
+
 TEST_CASE("options that do not fit, and a folder that is somebody's") {
   const int cores = int(std::thread::hardware_concurrency());
   const std::string count = std::to_string(cores), more = std::to_string(cores + 1);
