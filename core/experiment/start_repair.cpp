@@ -3,10 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/experiment/yaml_file.h"
+#include "core/mesh/message_text.h"
 
 namespace drape {
 
@@ -179,9 +179,7 @@ std::string pinned_text(const Standing& start) {
 }
 
 std::string hopeless_text(const Standing& start, const Search& search, double diagonal) {
-  char reach[32];
-  std::snprintf(reach, sizeof reach, "%.3g m", diagonal);
-  const std::string ways = std::string("moving the start by up to ") + reach + " up or to a side";
+  const std::string ways = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
   const std::string level = " on level " + std::to_string(start.level);
   if (!search.lasting().empty())
     return ways + " does not part " + to_string(search.lasting()[0]) + level +

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "core/mesh/extent.h"
 #include "core/mesh/half_edges.h"
+#include "core/mesh/message_text.h"
 
 namespace drape {
 namespace {
@@ -37,12 +37,6 @@ class Faults {
 };
 
 std::string text(int number) { return std::to_string(number); }
-
-std::string brief(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", number);
-  return text;
-}
 
 std::string triangle_name(const Triangles& triangles, int t) {
   return "triangle " + text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
@@ -193,14 +187,14 @@ std::vector<std::string> check_coordinates(const Positions& x) {
     if (!std::isfinite(largest))
       faults.push_back("vertex " + text(v) + " has a coordinate that is not finite");
     else if (largest > largest_coordinate)
-      faults.push_back("vertex " + text(v) + " has a coordinate of " + brief(largest) + " m; at most " +
-                       brief(largest_coordinate) + " m can be computed with");
+      faults.push_back("vertex " + text(v) + " has a coordinate of " + three_digits(largest) +
+                       " m; at most " + three_digits(largest_coordinate) + " m can be computed with");
   }
   if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
   const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
   if (diagonal < smallest_diagonal)
-    faults.push_back("the mesh is " + brief(diagonal) + " m across; at least " + brief(smallest_diagonal) +
-                     " m can be computed with");
+    faults.push_back("the mesh is " + three_digits(diagonal) + " m across; at least " +
+                     three_digits(smallest_diagonal) + " m can be computed with");
   return std::move(faults).all();
 }
 

@@ -96,6 +96,12 @@ std::size_t first_unprintable(std::string_view text) {
 
 std::string excerpt(std::string_view text) { return printable(text, 90); }
 
+std::string three_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
 std::string reason_of(const std::exception& error) {
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const std::string from = file->path1().string(), to = file->path2().string();

@@ -20,6 +20,9 @@ std::size_t first_unprintable(std::string_view text);
 /// The same as printable for a word within a message.
 std::string excerpt(std::string_view text);
 
+/// A quantity to three significant digits.
+std::string three_digits(double value);
+
 /// An exception as a sentence: errors of the file system name the file, and lack of memory says what to do.
 std::string reason_of(const std::exception& error);
 

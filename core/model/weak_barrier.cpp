@@ -1,8 +1,8 @@
 #include "core/model/weak_barrier.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "core/mesh/message_text.h"
 #include "core/model/smallest_gap.h"
 
 namespace drape {
@@ -14,12 +14,6 @@ constexpr double far_below = 1e-3;
 /// A barrier as stiff as the load presses leaves half of the range for a gap, one ten times as stiff five
 /// sixths (core/contact/stiffness.h).
 constexpr double suitable = 10;
-
-std::string brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// The external forces a unit of area, root mean square over free vertices [Pa].
 double pressure_of_load(const LevelModel& model, const Positions& x) {
@@ -39,10 +33,11 @@ std::string weak_barrier(const LevelModel& model, const Positions& x) {
     if (!(smallest.gap < far_below * smallest.range)) continue;
     const double pressure = pressure_of_load(model, x);
     if (smallest.stiffness >= pressure) continue;
-    return "the barrier is too weak for the load: its stiffness is " + brief(smallest.stiffness) +
-           " Pa where the load presses with " + brief(pressure) + " Pa, so that the gap between " +
-           smallest.between + " is " + brief(smallest.gap) + " m, " + brief(smallest.gap / smallest.range) +
-           " of the contact's range; set its stiffness to about " + brief(suitable * pressure) +
+    return "the barrier is too weak for the load: its stiffness is " + three_digits(smallest.stiffness) +
+           " Pa where the load presses with " + three_digits(pressure) + " Pa, so that the gap between " +
+           smallest.between + " is " + three_digits(smallest.gap) + " m, " +
+           three_digits(smallest.gap / smallest.range) +
+           " of the contact's range; set its stiffness to about " + three_digits(suitable * pressure) +
            " (null chooses it from the cloth's weight)";
   }
   return "";

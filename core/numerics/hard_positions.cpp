@@ -1,8 +1,9 @@
 #include "core/numerics/hard_positions.h"
 
 #include <cmath>
-#include <cstdio>
 #include <map>
+
+#include "core/mesh/message_text.h"
 
 namespace drape {
 
@@ -137,10 +138,9 @@ std::string HardPositions::message(const Positions& x) const {
   }
   std::string text;
   for (const auto& [pin, k] : farthest_of_pin) {
-    char short_by[32];
-    std::snprintf(short_by, sizeof short_by, "%.3g", distance(x, k));
-    text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " + short_by +
-            " m short of its place (vertex " + std::to_string(model_.held()[k].vertex) + ")";
+    text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " +
+            three_digits(distance(x, k)) + " m short of its place (vertex " +
+            std::to_string(model_.held()[k].vertex) + ")";
   }
   return text + (held_by_.empty() ? "" : ", held by " + held_by_);
 }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "core/mesh/message_text.h"
 #include "core/model/stretch_limit.h"
 #include "core/model/weak_barrier.h"
 #include "core/numerics/block_cholesky.h"
@@ -61,12 +61,6 @@ constexpr double lost_after = 100;
 constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
 static_assert(std::size(shares) == projection_share_count);
 
-std::string brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 /// The state of one minimisation; each member function is one phase of an iteration.
 class Newton {
  public:
@@ -116,13 +110,14 @@ class Newton {
         if (changing && !hard_.pulling() && (settled || at_once)) {
           change_conditions(settled);
           if (times_held_up_ >= most_held_up)
-            return finish(Outcome::infeasible, "the conditions of pseudo-time " + brief(conditions_->time()) +
-                                                   " cannot be reached" + held());
+            return finish(Outcome::infeasible, "the conditions of pseudo-time " +
+                                                   three_digits(conditions_->time()) + " cannot be reached" +
+                                                   held());
         }
         if (result_.steps - changed_at_.steps == p_.max_steps)
           return finish(Outcome::out_of_steps,
                         "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
-                            "; force residual " + brief(result_.force_residual) +
+                            "; force residual " + three_digits(result_.force_residual) +
                             (hard_.pulling() ? "; " + hard_.message(result_.x) : ""));
         begin_step();
       }
@@ -130,7 +125,7 @@ class Newton {
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
       if (run_.finer_follows && observer_.refine_requested())
         return finish(Outcome::refined_early,
-                      "refined on request; force residual " + brief(result_.force_residual));
+                      "refined on request; force residual " + three_digits(result_.force_residual));
       const double step_size = h_;
       if (!step()) {
         stuck = is_at_rounding_floor();
@@ -141,7 +136,7 @@ class Newton {
       const double gone = (middle() - begun_at_).norm() / diagonal_;
       if (gone > lost_after)
         return finish(Outcome::infeasible,
-                      "nothing holds the cloth: it has moved on by " + brief(gone) +
+                      "nothing holds the cloth: it has moved on by " + three_digits(gone) +
                           " of its diagonals and does not come to rest; pin it, put something under it, or "
                           "raise the friction");
     }
@@ -276,12 +271,13 @@ class Newton {
   LevelResult finish_settled(bool in_tolerance) {
     if (conditions_) report_change();
     if (!hard_.given_up())
-      return in_tolerance ? finish(Outcome::converged, "")
-                          : finish(Outcome::converged_to_rounding,
-                                   "the force residual has come down to " + brief(result_.force_residual) +
-                                       ", not to force_tolerance = " + brief(p_.force_tolerance) +
-                                       ": rounding alone makes up to " + brief(rounding_residual_) +
-                                       " of it here, and no step lowers it");
+      return in_tolerance
+                 ? finish(Outcome::converged, "")
+                 : finish(Outcome::converged_to_rounding,
+                          "the force residual has come down to " + three_digits(result_.force_residual) +
+                              ", not to force_tolerance = " + three_digits(p_.force_tolerance) +
+                              ": rounding alone makes up to " + three_digits(rounding_residual_) +
+                              " of it here, and no step lowers it");
     return finish(Outcome::infeasible,
                   hard_.message(result_.x) + "; the rest of the cloth is at equilibrium");
   }
@@ -525,8 +521,8 @@ class Newton {
       }
       if (is_static()) {
         if (add_mass()) continue;
-        message_ =
-            "the line search found no descent (the direction's slope is " + brief(slope_) + ")" + held();
+        message_ = "the line search found no descent (the direction's slope is " + three_digits(slope_) +
+                   ")" + held();
         return false;
       }
       h_ /= 4;

@@ -28,6 +28,12 @@ TEST_CASE("control characters and bytes that are no UTF-8 are shown escaped, oth
   CHECK(printable_lines("a\x01\nb\n") == "a\\x01\nb\n");
 }
 
+TEST_CASE("a quantity is shown with three digits, whatever its size") {
+  CHECK(three_digits(1234.5) == "1.23e+03");
+  CHECK(three_digits(0.125) == "0.125");
+  CHECK(three_digits(2) == "2");
+}
+
 TEST_CASE("a long text keeps its beginning and its end, cut between characters") {
   const std::string text = "begin" + std::string(3000000, 'x') + "end";
   CHECK(excerpt(text).size() < 150);
