@@ -1,6 +1,4 @@
 #include <cmath>
-#include <cstdio>
-#include <limits>
 #include <random>
 
 #include "core/experiment/experiment.h"
@@ -113,27 +111,13 @@ Positions make_start(const Positions& rest, const Positions& shape, const StartP
   return x;
 }
 
-/// Whether the cloth starts where its shape can be told: appends what is wrong.
+/// Whether the cloth starts where it can be computed with: appends what is wrong.
 bool check_start(const Experiment& e, const Level& level, const Positions& x, ConfigErrors& errors) {
-  const auto refuse = [&](const std::string& why) {
-    errors.push_back({e.place_of("start"), "the start of level " + std::to_string(level.index) + " " + why});
-    return false;
-  };
-  for (Eigen::Index v = 0; v < x.rows(); ++v)
-    if (!x.row(v).allFinite())
-      return refuse("has vertex " + std::to_string(v) +
-                    " at no finite place; check its file, scale and translate");
-  constexpr double coarsest_rounding = 1e-6;  // relative to the cloth
-  const Positions& rest = level.rest.vertices;
-  const double size = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
-  const double distance = x.cwiseAbs().maxCoeff();
-  const double rounding = distance * std::numeric_limits<double>::epsilon();
-  if (rounding <= coarsest_rounding * size) return true;
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "is %.3g m from the origin, where rounding moves vertices by %.1g m; move it nearer",
-                distance, rounding);
-  return refuse(text);
+  const std::vector<std::string> faults = check_coordinates(x);
+  for (const std::string& fault : faults)
+    errors.push_back(
+        {e.place_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
+  return faults.empty();
 }
 
 }  // namespace

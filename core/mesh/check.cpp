@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
@@ -181,6 +182,7 @@ void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
 }  // namespace
 
 std::vector<std::string> check_coordinates(const Positions& x) {
+  constexpr double largest_rounding = 1e-6;  // of a coordinate, relative to the diagonal
   Faults faults;
   for (int v = 0; v < x.rows(); ++v) {
     const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
@@ -192,9 +194,15 @@ std::vector<std::string> check_coordinates(const Positions& x) {
   }
   if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
   const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double distance = x.cwiseAbs().maxCoeff();
+  const double rounding = distance * std::numeric_limits<double>::epsilon();
   if (diagonal < smallest_diagonal)
     faults.push_back("the mesh is " + three_digits(diagonal) + " m across; at least " +
                      three_digits(smallest_diagonal) + " m can be computed with");
+  else if (rounding > largest_rounding * diagonal)
+    faults.push_back("the mesh is " + three_digits(diagonal) + " m across and " + three_digits(distance) +
+                     " m from the origin, where rounding moves vertices by " + three_digits(rounding) +
+                     " m; move it nearer");
   return std::move(faults).all();
 }
 

@@ -131,8 +131,11 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
       drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
-      Catch::Matchers::Contains("the start of level 0 is 9e+08 m from the origin, where rounding moves "
-                                "vertices by 2e-07 m; move it nearer\n"));
+      Catch::Matchers::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
+                                "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
+  CHECK_THAT(drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
+             Catch::Matchers::Contains("the start of level 0: vertex 1 has a coordinate of 2e+09 m; at most "
+                                       "1e+09 m can be computed with\n"));
 }
 
 TEST_CASE("however many errors there are, and however long, little is printed") {

@@ -66,6 +66,14 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
     mesh.vertices = strip().vertices * 1e-8;
     CHECK(check_mesh(mesh).empty());
   }
+  SECTION("so far away that rounding changes its shape") {
+    mesh.vertices *= 1e-8;
+    mesh.vertices.col(0).array() += 1;
+    CHECK(check_mesh(mesh).empty());
+    mesh.vertices.col(0).array() += 1e3;
+    CHECK(check_mesh(mesh) == Faults{"the mesh is 1.41e-08 m across and 1e+03 m from the origin, where "
+                                     "rounding moves vertices by 2.22e-13 m; move it nearer"});
+  }
   SECTION("vertex without triangle") {
     append_vertex(mesh, 5, 5, 5);
     CHECK(check_mesh(mesh) == Faults{"vertex 4 belongs to no triangle"});
