@@ -9,7 +9,9 @@ function(drape_add_plugin name)
   add_library(${name} MODULE ${plugin_SOURCES})
   target_link_libraries(${name} PRIVATE drape::drape)
   set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX)
-  if(NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-    target_link_options(${name} PRIVATE -Wl,--no-undefined)  # a missing symbol shows here, not when loading
+  # A missing symbol shows here, not when loading; a sanitizer's own are in the program alone.
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
+  if(NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" MATCHES "-fsanitize")
+    target_link_options(${name} PRIVATE -Wl,--no-undefined)
   endif()
 endfunction()
