@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/experiment/json_file.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
@@ -124,14 +125,17 @@ bool methods_ended_as_asked(const fs::path& folder) {
 void refuse_damaged_results(const fs::path& folder) {
   std::vector<std::string> damaged;
   const auto results = results_of(folder);
-  for (const auto& [name, method] : results["methods"].items())
-    for (const auto& level : method.value("levels", nlohmann::ordered_json::array())) {
-      if (!level.contains("mesh_checksum")) continue;  // of a level that failed
-      const std::string mesh = level.value("mesh", "");
-      if (!fs::is_regular_file(folder / mesh) ||
-          checksum_of(read_file(folder / mesh)) != level["mesh_checksum"])
+  const JsonFile file(folder / "results.json", "run the experiment anew");
+  for (const auto& [name, method] : results["methods"].items()) {
+    if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
+    for (const auto& level : method["levels"]) {
+      const auto checksum = file.find<double>(level, "mesh_checksum");
+      if (!checksum) continue;  // of a level that failed
+      const auto mesh = file.at<std::string>(level, "mesh");
+      if (!fs::is_regular_file(folder / mesh) || checksum_of(read_file(folder / mesh)) != *checksum)
         damaged.push_back(mesh);
     }
+  }
   if (!damaged.empty())
     throw std::runtime_error(
         folder.string() + ": the run is complete, but damaged or gone since: " + joined(damaged) +

@@ -6,8 +6,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/experiment/json_file.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
+#include "core/mesh/message_text.h"
 #include "core/report/csv.h"
 
 namespace drape {
@@ -15,6 +17,8 @@ namespace drape {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* remedy = "run the experiment anew";
 
 const Json& at(const Json& json, const char* key) {
   static const Json absent;
@@ -36,9 +40,9 @@ NamedFigures named_figures(const Json& json) {
   return figures;
 }
 
-LevelRecord level_record(const Json& json, int position) {
+LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
   LevelRecord r;
-  r.level = static_cast<int>(figure(at(json, "level")).value_or(position));
+  r.level = file.find<int>(json, "level").value_or(position);
   r.status = text(at(json, "status"));
   r.message = text(at(json, "message"));
   r.vertices = figure(at(json, "vertices"));
@@ -61,10 +65,10 @@ LevelRecord level_record(const Json& json, int position) {
   return r;
 }
 
-ConsistencyRecord consistency_record(const Json& json) {
+ConsistencyRecord consistency_record(const JsonFile& file, const Json& json) {
   ConsistencyRecord r;
-  r.coarse = static_cast<int>(figure(at(json, "coarse")).value_or(-1));
-  r.fine = static_cast<int>(figure(at(json, "fine")).value_or(-1));
+  r.coarse = file.find<int>(json, "coarse").value_or(-1);
+  r.fine = file.find<int>(json, "fine").value_or(-1);
   r.d_H_fit = figure(at(json, "d_H_fit"));
   r.d_H_ddg = figure(at(json, "d_H_ddg"));
   r.d_K_fit = figure(at(json, "d_K_fit"));
@@ -74,7 +78,7 @@ ConsistencyRecord consistency_record(const Json& json) {
   return r;
 }
 
-MethodRecord method_record(const std::string& name, const Json& json) {
+MethodRecord method_record(const JsonFile& file, const std::string& name, const Json& json) {
   MethodRecord method;
   method.name = name;
   method.status = text(at(json, "status"));
@@ -84,12 +88,12 @@ MethodRecord method_record(const std::string& name, const Json& json) {
   const Json& pairs = at(json, "consistency");
   if (levels.is_array()) {
     for (const Json& level : levels) {
-      if (level.is_object()) method.levels.push_back(level_record(level, int(method.levels.size())));
+      if (level.is_object()) method.levels.push_back(level_record(file, level, int(method.levels.size())));
     }
   }
   if (pairs.is_array()) {
     for (const Json& pair : pairs) {
-      const ConsistencyRecord record = consistency_record(pair);
+      const ConsistencyRecord record = consistency_record(file, pair);
       if (record.coarse >= 0 && record.fine > record.coarse) method.consistency.push_back(record);
     }
   }
@@ -104,6 +108,14 @@ ConditionRow change_row(const Json& json) {
 
 std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
+}
+
+/// The level of a row; the coarsest where the cell is empty.
+int level_of(const Csv& csv, std::size_t row, const std::filesystem::path& path) {
+  const double level = csv.figure(row, "level").value_or(0);
+  if (const std::optional<int> whole = whole_number(level)) return *whole;
+  throw std::runtime_error(path.string() + ": \"level\" of row " + std::to_string(row + 1) +
+                           " must be a whole number, not " + excerpt(csv.text(row, "level")) + "; " + remedy);
 }
 
 /// The rows of one level of one method, which are made if they are not there yet.
@@ -121,7 +133,7 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
   if (!csv.has("method") || !csv.has("level")) return all;
   for (std::size_t k = 0; k < csv.size(); ++k) {
     const auto cell = [&](const char* name) { return csv.figure(k, name); };
-    series_of(all, csv.text(k, "method"), static_cast<int>(cell("level").value_or(0)))
+    series_of(all, csv.text(k, "method"), level_of(csv, k, path))
         .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
                          cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
                          cell("smallest_gap"), cell("intersections")});
@@ -139,18 +151,17 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
     for (std::size_t t = 0; t < error_targets.size(); ++t)
       for (std::size_t m = 0; m < error_measures.size(); ++m)
         row.error[t][m] = csv.figure(k, std::string(error_targets[t]) + "_" + error_measures[m]);
-    series_of(all, csv.text(k, "method"), static_cast<int>(csv.figure(k, "level").value_or(0)))
-        .rows.push_back(row);
+    series_of(all, csv.text(k, "method"), level_of(csv, k, path)).rows.push_back(row);
   }
   return all;
 }
 
-std::vector<ConditionSeries> changes_of(const std::string& method, const Json& changes) {
+std::vector<ConditionSeries> changes_of(const JsonFile& file, const std::string& method,
+                                        const Json& changes) {
   std::vector<ConditionSeries> all;
   if (!changes.is_array()) return all;
   for (const Json& change : changes)
-    series_of(all, method, static_cast<int>(figure(at(change, "level")).value_or(0)))
-        .rows.push_back(change_row(change));
+    series_of(all, method, file.find<int>(change, "level").value_or(0)).rows.push_back(change_row(change));
   return all;
 }
 
@@ -240,6 +251,7 @@ RunData read_run(const std::filesystem::path& folder) {
   const Json json = Json::parse(read_file(path), nullptr, false);
   if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
 
+  const JsonFile file(path, remedy);
   RunData run;
   run.folder = folder;
   run.experiment = text(at(json, "experiment"));
@@ -262,8 +274,8 @@ RunData read_run(const std::filesystem::path& folder) {
   const Json& methods = at(json, "methods");
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
-      run.methods.push_back(method_record(name, value));
-      const std::vector<ConditionSeries> changes = changes_of(name, at(value, "changes"));
+      run.methods.push_back(method_record(file, name, value));
+      const std::vector<ConditionSeries> changes = changes_of(file, name, at(value, "changes"));
       run.changes.insert(run.changes.end(), changes.begin(), changes.end());
     }
   }

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/cli/exit_codes.h"
+#include "core/experiment/json_file.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/report/csv.h"
@@ -28,6 +29,7 @@ void read_sweep(const fs::path& folder, RunSet& set) {
   const Json json = Json::parse(read_file(path), nullptr, false);
   if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array())
     throw std::runtime_error(path.string() + ": not a sweep's list of runs; is it cut short?");
+  const JsonFile file(path, "run the sweep again, which writes it");
   const auto complete = json.find("complete");
   set.complete = set.complete && complete != json.end() && complete->is_boolean() && complete->get<bool>();
   set.name += (set.name.empty() ? "" : ", ") + text_at(json, "sweep");
@@ -38,7 +40,7 @@ void read_sweep(const fs::path& folder, RunSet& set) {
     run.variation = text_at(entry, "name");
     run.status = text_at(entry, "status");
     run.error = text_at(entry, "error");
-    run.exit_code = entry.value("exit_code", 0);
+    run.exit_code = file.find<int>(entry, "exit_code").value_or(0);
     if (const auto expect = entry.find("expect"); expect != entry.end() && expect->is_object()) {
       run.expected = text_at(*expect, "outcome");
       run.expected_message = text_at(*expect, "message");

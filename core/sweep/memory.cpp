@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/experiment/json_file.h"
 #include "core/experiment/size_estimate.h"
 
 namespace drape {
@@ -13,12 +14,13 @@ MemoryEstimate::MemoryEstimate(const Sweep& sweep, const SweepFolder& folder) {
 }
 
 void MemoryEstimate::learn(const SweepRun& run, const RunFiles& files) {
-  const auto results =
-      nlohmann::ordered_json::parse(text_of_file(files.folder / "results.json"), nullptr, false);
+  const std::filesystem::path path = files.folder / "results.json";
+  const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
+  const auto results = JsonFile::Json::parse(text_of_file(path), nullptr, false);
   if (!results.is_object() || !results.contains("methods")) return;
   double& peak = peaks_[{run.vertices, run.levels}];
   for (const auto& [name, method] : results["methods"].items())
-    peak = std::max(peak, method.value("peak_memory_bytes", 0.0));
+    peak = std::max(peak, file.find<double>(method, "peak_memory_bytes").value_or(0));
 }
 
 double MemoryEstimate::bytes(const SweepRun& run) const {

@@ -6,7 +6,9 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/experiment/json_file.h"
 #include "core/mesh/file.h"
+#include "core/mesh/message_text.h"
 #include "core/model/solver.h"
 
 namespace drape {
@@ -61,23 +63,20 @@ Json RunStatus::json() const {
 RunStatus read_status(const RunFiles& files) {
   const std::string text = text_of_file(files.status());
   if (text.empty()) return {};
-  try {
-    const Json json = Json::parse(text);
-    RunStatus status;
-    const std::string word = json.at("status");
-    const auto* found = std::find(std::begin(words), std::end(words), word);
-    if (found == std::end(words)) throw std::runtime_error("no status is called \"" + word + "\"");
-    status.state = RunState(found - words);
-    status.error = json.at("error");
-    status.exit_code = json.at("exit_code");
-    status.seconds = json.at("seconds");
-    status.starts = json.at("starts");
-    status.threads = json.at("threads");
-    return status;
-  } catch (const std::exception& error) {
-    throw std::runtime_error(files.status().string() + ": is not a run's status (" + error.what() +
-                             "); remove it and the run's folder");
-  }
+  const JsonFile file(files.status(), "remove it and the run's folder");
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) file.refuse("is not a run's status");
+  RunStatus status;
+  const auto word = file.at<std::string>(json, "status");
+  const auto* found = std::find(std::begin(words), std::end(words), word);
+  if (found == std::end(words)) file.refuse("no status is called \"" + excerpt(word) + "\"");
+  status.state = RunState(found - words);
+  status.error = file.at<std::string>(json, "error");
+  status.exit_code = file.at<int>(json, "exit_code");
+  status.seconds = file.at<double>(json, "seconds");
+  status.starts = file.at<int>(json, "starts");
+  status.threads = file.at<int>(json, "threads");
+  return status;
 }
 
 void write_status(const RunFiles& files, const RunStatus& status) {
@@ -88,13 +87,16 @@ void write_status(const RunFiles& files, const RunStatus& status) {
 RunStatus settled(const RunFiles& files, RunStatus status) {
   if (status.state != RunState::running) return status;
   status.state = RunState::cancelled;
-  const Json results = Json::parse(text_of_file(files.folder / "results.json"), nullptr, false);
-  if (!results.is_object() || !results.value("complete", false)) return status;
+  const std::filesystem::path path = files.folder / "results.json";
+  const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
+  const Json results = Json::parse(text_of_file(path), nullptr, false);
+  if (!file.find<bool>(results, "complete").value_or(false)) return status;
+  if (!results.contains("methods")) file.refuse("\"methods\" is missing");
   status.state = RunState::converged;
   status.seconds = 0;
-  for (const auto& [name, method] : results.at("methods").items()) {
-    if (!has_converged(method.value("status", ""))) status.state = RunState::ended;
-    status.seconds += method.value("seconds", 0.0);
+  for (const auto& [name, method] : results["methods"].items()) {
+    if (!has_converged(file.find<std::string>(method, "status").value_or(""))) status.state = RunState::ended;
+    status.seconds += file.find<double>(method, "seconds").value_or(0);
   }
   status.exit_code = status.state == RunState::converged ? exit_done : exit_not_converged;
   return status;

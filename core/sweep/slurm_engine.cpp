@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "core/experiment/json_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/message_text.h"
 #include "core/sweep/memory.h"
@@ -76,7 +77,9 @@ bool in_queue(const SlurmJobs& jobs) {
 std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
   const Json json = Json::parse(text_of_file(folder.jobs()), nullptr, false);
   if (!json.is_object()) return std::nullopt;
-  return SlurmJobs{json.value("array", ""), json.value("collector", "")};
+  const JsonFile file(folder.jobs(), "see which of its jobs are in the queue (`squeue`), then remove it");
+  return SlurmJobs{file.find<std::string>(json, "array").value_or(""),
+                   file.find<std::string>(json, "collector").value_or("")};
 }
 
 void refuse_while_queued(const SweepFolder& folder) {

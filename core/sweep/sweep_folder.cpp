@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/experiment/json_file.h"
 #include "core/mesh/file.h"
 
 namespace drape {
@@ -29,8 +30,17 @@ Json SweepFolder::read() const {
   const std::string text = text_of_file(file);
   if (text.empty()) return nullptr;
   Json json = Json::parse(text, nullptr, false);
+  const JsonFile sweep(file, "name another folder with --out");
   if (!json.is_object() || !json.contains("sweep") || !json.contains("runs"))
-    throw std::runtime_error(file.string() + ": is not a sweep's; name another folder with --out");
+    sweep.refuse("is not a sweep's");
+  sweep.at<std::string>(json, "sweep");
+  if (!json["runs"].is_array()) sweep.refuse("\"runs\" must be a list");
+  for (const Json& run : json["runs"]) {
+    sweep.at<std::string>(run, "name");
+    sweep.at<std::string>(run, "folder");
+    sweep.at<int>(run, "seed");
+    if (run.contains("expect")) sweep.at<std::string>(run["expect"], "outcome");
+  }
   return json;
 }
 

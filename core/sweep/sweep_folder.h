@@ -27,7 +27,8 @@ class SweepFolder {
   nlohmann::ordered_json refresh() const;
   /// As `refresh`, once nothing of the sweep runs any more: what is still marked as running is settled.
   nlohmann::ordered_json settle() const;
-  nlohmann::ordered_json read() const;  ///< sweep.json; null if there is none
+  /// sweep.json; null if there is none. Throws std::runtime_error where it lacks what names a run.
+  nlohmann::ordered_json read() const;
 
  private:
   void refuse_other_runs(const Sweep& sweep, int threads) const;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace drape {
+
+/// Reads values of a JSON file that a run or a sweep wrote, and that may have been changed since. A value of
+/// the wrong kind throws std::runtime_error, which names the file and the key and says what to do.
+class JsonFile {
+ public:
+  using Json = nlohmann::ordered_json;
+
+  JsonFile(std::filesystem::path path, std::string remedy)
+      : path_(std::move(path)), remedy_(std::move(remedy)) {}
+
+  /// T is bool, int (not negative), double (finite) or std::string. None where the key is absent or null.
+  template <class T>
+  std::optional<T> find(const Json& object, const std::string& key) const;
+  /// The same of a key that must be there.
+  template <class T>
+  T at(const Json& object, const std::string& key) const {
+    if (const std::optional<T> value = find<T>(object, key)) return *value;
+    refuse("\"" + key + "\" is missing");
+  }
+  [[noreturn]] void refuse(const std::string& fault) const;
+
+ private:
+  [[noreturn]] void refuse(const std::string& key, const std::string& kind, const Json& value) const;
+
+  std::filesystem::path path_;
+  std::string remedy_;
+};
+
+/// A number without fraction as an int; none where an int cannot hold it, or where it is negative.
+std::optional<int> whole_number(double value);
+
+}  // namespace drape

@@ -1,0 +1,61 @@
+// Files that a sweep left and that were changed since.
+
+#include <catch2/catch.hpp>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+using Json = nlohmann::json;
+
+TEST_CASE("a value of the wrong kind in a sweep's files is named with its file and its key") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\n");
+  REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  const auto said = [&](const std::string& file, const std::function<void(Json&)>& damage) {
+    const std::string sound = text_of(folder / file);
+    Json json = Json::parse(sound);
+    damage(json);
+    folder.write(file, json.dump());
+    const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
+    CHECK(ended.exit_code == 2);
+    folder.write(file, sound);
+    return ended.err;
+  };
+  const std::string status = "out/runs/base/seed_1.status.json", of_status = "error: " + status + ": ",
+                    remove = "; remove it and the run's folder\n";
+  CHECK(said(status, [](Json& json) { json["status"] = "done"; }) ==
+        of_status + "no status is called \"done\"" + remove);
+  CHECK(said(status, [](Json& json) { json["status"] = 3; }) ==
+        of_status + "\"status\" must be a text, not 3" + remove);
+  CHECK(said(status, [](Json& json) { json["threads"] = 1e300; }) ==
+        of_status + "\"threads\" must be a whole number, not 1e+300" + remove);
+  CHECK(said(status, [](Json& json) { json.erase("seconds"); }) ==
+        of_status + "\"seconds\" is missing" + remove);
+
+  const std::string of_sweep = "error: out/sweep.json: ", another = "; name another folder with --out\n";
+  CHECK(said("out/sweep.json", [](Json& json) { json["sweep"] = 1; }) ==
+        of_sweep + "\"sweep\" must be a text, not 1" + another);
+  CHECK(said("out/sweep.json", [](Json& json) { json["runs"] = "none"; }) ==
+        of_sweep + "\"runs\" must be a list" + another);
+  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0] = {}; }) ==
+        of_sweep + "\"name\" is missing" + another);
+  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0].erase("folder"); }) ==
+        of_sweep + "\"folder\" is missing" + another);
+  CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0]["seed"] = -1e300; }) ==
+        of_sweep + "\"seed\" must be a whole number, not -1e+300" + another);
+  CHECK(said("out/sweep.json", [](Json& json) {
+          json["runs"][0]["expect"] = {{"outcome", true}};
+        }) == of_sweep + "\"outcome\" must be a text, not true" + another);
+
+  const std::string results = "out/runs/base/seed_1/results.json",
+                    rerun = "; remove the run's folder, and the sweep runs it again\n";
+  CHECK(said(results, [](Json& json) { json["methods"]["newton"]["peak_memory_bytes"] = "all"; }) ==
+        "error: " + results + ": \"peak_memory_bytes\" must be a number, not \"all\"" + rerun);
+  folder.write(status, replaced(text_of(folder / status), "\"converged\"", "\"running\""));
+  CHECK(said(results, [](Json& json) { json["methods"]["newton"]["status"] = {1}; }) ==
+        "error: " + results + ": \"status\" must be a text, not [1]" + rerun);
+  CHECK(said(results, [](Json& json) { json["complete"] = "yes"; }) ==
+        "error: " + results + ": \"complete\" must be true or false, not \"yes\"" + rerun);
+}
