@@ -21,7 +21,7 @@ class ShapeSweep final : public ContactSweep {
  public:
   ShapeSweep(std::shared_ptr<const ShapeScene> scene, const Positions& x0, const Positions& x1)
       : scene_(std::move(scene)) {
-    const std::vector<TrianglePair> triangles = find_triangles(*scene_, x0, x1);
+    const std::vector<TriangleSolidPair> triangles = find_triangles(*scene_, x0, x1);
     if (x0 != x1) limit_ = filter(triangles, x0, x1);
     // Long ways are mostly cut short, and contacts are asked for no farther.
     candidates_ = find_candidates(*scene_, triangles, x0,
@@ -41,7 +41,8 @@ class ShapeSweep final : public ContactSweep {
   }
 
  private:
-  StepLimit filter(const std::vector<TrianglePair>& pairs, const Positions& x0, const Positions& x1) const {
+  StepLimit filter(const std::vector<TriangleSolidPair>& pairs, const Positions& x0,
+                   const Positions& x1) const {
     std::vector<double> fractions(pairs.size());
     parallel_for(static_cast<int>(pairs.size()), 256, [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
@@ -58,7 +59,7 @@ class ShapeSweep final : public ContactSweep {
 
   std::shared_ptr<const ShapeScene> scene_;
   StepLimit limit_;
-  Candidates candidates_;
+  ShapeCandidates candidates_;
 };
 
 class BoundShapes final : public BoundContact, public MovableObstacles, public NamesSmallestGap {
@@ -71,7 +72,7 @@ class BoundShapes final : public BoundContact, public MovableObstacles, public N
 
   std::vector<Touch> intersections(const Positions& x) const override {
     std::vector<Touch> found;
-    for (const TrianglePair& pair : find_triangles(*scene_, x, x)) {
+    for (const TriangleSolidPair& pair : find_triangles(*scene_, x, x)) {
       const Corners c = scene_->corners(pair.triangle, x);
       if (touches(scene_->solids[pair.solid], c))
         found.push_back(
@@ -90,7 +91,7 @@ class BoundShapes final : public BoundContact, public MovableObstacles, public N
     SmallestGap smallest;
     smallest.range = scene_->barrier.range;
     smallest.stiffness = scene_->barrier.stiffness;
-    for (const TrianglePair& pair : find_triangles(*scene_, x, x)) {
+    for (const TriangleSolidPair& pair : find_triangles(*scene_, x, x)) {
       const double gap = separate(scene_->solids[pair.solid], scene_->corners(pair.triangle, x)).gap;
       if (gap >= std::min(smallest.gap, smallest.range)) continue;
       smallest.gap = gap;

@@ -180,8 +180,9 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   return s;
 }
 
-std::vector<TrianglePair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1) {
-  std::vector<TrianglePair> found;
+std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
+                                              const Positions& x1) {
+  std::vector<TriangleSolidPair> found;
   std::vector<int> all(scene.triangles.rows());
   std::iota(all.begin(), all.end(), 0);
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
@@ -189,9 +190,9 @@ std::vector<TrianglePair> find_triangles(const ShapeScene& scene, const Position
   return found;
 }
 
-Candidates find_candidates(const ShapeScene& scene, const std::vector<TrianglePair>& found,
-                           const Positions& x0, const Positions& x1) {
-  Candidates c;
+ShapeCandidates find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& found,
+                                const Positions& x0, const Positions& x1) {
+  ShapeCandidates c;
   std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
     const Solid& solid = scene.solids[k];

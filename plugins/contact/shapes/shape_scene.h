@@ -34,21 +34,22 @@ struct ShapeScene {
 };
 
 /// A triangle of the cloth and a solid.
-struct TrianglePair {
+struct TriangleSolidPair {
   int triangle, solid;
 };
 
 /// Triangles that may come within range of a solid on the straight way from x0 to x1, solid by solid.
-std::vector<TrianglePair> find_triangles(const ShapeScene& scene, const Positions& x0, const Positions& x1);
+std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
+                                              const Positions& x1);
 
 /// All contacts that may be within range between two states.
-struct Candidates {
+struct ShapeCandidates {
   std::vector<VertexPair> vertices;
   std::vector<ContactPair> pairs;
 };
 
 /// Those of the triangles on the straight way from x0 to x1.
-Candidates find_candidates(const ShapeScene& scene, const std::vector<TrianglePair>& triangles,
-                           const Positions& x0, const Positions& x1);
+ShapeCandidates find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& triangles,
+                                const Positions& x0, const Positions& x1);
 
 }  // namespace drape

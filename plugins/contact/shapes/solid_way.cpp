@@ -119,7 +119,7 @@ void carry_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, co
     const Vector3d local = scene.solids[solid].to_local(touched);
     moves.add(vertex, to[solid].to_world(local) - touched, weight);
   };
-  const Candidates near = find_candidates(scene, find_triangles(scene, x, x), x, x);
+  const ShapeCandidates near = find_candidates(scene, find_triangles(scene, x, x), x, x);
   const double range = scene.barrier.range;
   for (const VertexPair& pair : near.vertices) {
     const Vector3d p = x.row(pair.vertex);
