@@ -46,7 +46,12 @@ bool meet_beside_vertex(const Corners& a, const Corners& b) {
          CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(a[1]), point(a[2])));
 }
 
+bool has_no_area(const Corners& c) { return CGAL::collinear(point(c[0]), point(c[1]), point(c[2])); }
+
+/// A triangle without area touches a neighbour, whose corner or edge it has come upon; CGAL's predicates are
+/// not made for it.
 bool meet(const Corners& a, const Corners& b, int shared) {
+  if (has_no_area(a) || has_no_area(b)) return true;
   if (shared == 3) return true;
   if (shared == 2) return overlap_beside_edge(a, b);
   if (shared == 1) return meet_beside_vertex(a, b);

@@ -5,7 +5,7 @@
 
 #include "core/mesh/generate.h"
 #include "core/numerics/parallel.h"
-#include "core/numerics/stopwatch.h"
+#include "tests/support/processor_time.h"
 
 using namespace drape;
 
@@ -181,14 +181,14 @@ TEST_CASE("broad phase: eight folded layers of 50 thousand triangles") {
   std::vector<AdjacencyList> found;
   for (const BroadPhaseKind kind : kinds) {
     const auto phase = make_broad_phase(kind);
-    Stopwatch watch;
+    ProcessorTime watch;
     phase->update(flat);  // so that the tree is one of the flat cloth, as in a run
     const double build = watch.seconds();
     phase->update(boxes);
-    watch = Stopwatch();
+    watch = ProcessorTime();
     phase->update(boxes);
     const double refit = watch.seconds();
-    watch = Stopwatch();
+    watch = ProcessorTime();
     found.push_back(pairs_of(*phase));
     const double query = watch.seconds();
     CAPTURE(static_cast<int>(kind), build, refit, query);

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/mesh/generate.h"
-#include "core/numerics/stopwatch.h"
+#include "tests/support/processor_time.h"
 
 using namespace drape;
 
@@ -136,6 +136,19 @@ TEST_CASE("intersections: the same as CGAL's on crumpled cloths") {
   }
 }
 
+TEST_CASE("intersections: triangles that have lost their area touch their neighbours") {
+  TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
+  const Positions flat = mesh.vertices;
+  mesh.vertices.rowwise() = flat.row(5);  // all in one point
+  CHECK(count(mesh) > 0);
+  mesh.vertices = flat;
+  mesh.vertices.col(1).setZero();  // all in one line
+  CHECK(count(mesh) > 0);
+  mesh.vertices = flat;
+  mesh.vertices.row(5) = flat.row(6);  // two vertices in one place
+  CHECK(count(mesh) > 0);
+}
+
 TEST_CASE("intersections: 50 thousand triangles, flat, tilted and folded") {
   TriangleMesh mesh = grid({1, 1}, 160, 160, Diagonals::one_way);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector(1, 2, 3).normalized()).toRotationMatrix();
@@ -147,7 +160,7 @@ TEST_CASE("intersections: 50 thousand triangles, flat, tilted and folded") {
                      layers == 1 ? 0 : 2e-3 * along + 5e-4 * std::sin(phase));
       mesh.vertices.row(v) = (turn * p).transpose();
     }
-    Stopwatch watch;
+    const ProcessorTime watch;
     CHECK(count(mesh) == 0);
     CHECK(watch.seconds() < 1.5);  // 0.1 on two idle cores
   }

@@ -6,9 +6,9 @@
 #include "core/contact/pair_geometry.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/generate.h"
-#include "core/numerics/stopwatch.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
+#include "tests/support/processor_time.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -373,13 +373,13 @@ TEST_CASE("ipc: time to find that nothing is near") {
     Positions x1 = x0;
     x1.col(2) += 1e-3 * (3 * x0.col(0)).array().sin().matrix();
     contact->sweep(x0, x1);
-    Stopwatch watch;
+    ProcessorTime watch;
     const auto sweep = contact->sweep(x0, x1);
     const double search = watch.seconds();
-    watch = Stopwatch();
+    watch = ProcessorTime();
     CHECK(sweep->max_step().fraction == 1);
     const double filter = watch.seconds();
-    watch = Stopwatch();
+    watch = ProcessorTime();
     CHECK(sweep->build(x1)->contact_count() == 0);
     const double build = watch.seconds();
     CAPTURE(wave, search, filter, build);
