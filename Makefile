@@ -40,7 +40,7 @@ build: configure
 	@cmake --build $(BUILD) -j $(JOBS)
 
 demo: build
-	@$(BUILD)/bin/drape run configs/sphere.yaml --levels 3 --out results/sphere --overwrite; ended=$$?; \
+	@$(BUILD)/bin/drape run configs/sphere.yaml --levels 3 --method pcs --method cascadic --method newton --out results/sphere --overwrite; ended=$$?; \
 	  $(BUILD)/bin/drape table1 results/sphere; \
 	  echo "Open results/sphere/report.html in a browser."; exit $$ended
 
@@ -71,8 +71,8 @@ data: configure
 
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
-	-$(BUILD)/bin/drape run configs/pinned_square.yaml --out results/bench_pinned_square --overwrite
-	-$(BUILD)/bin/drape run configs/sphere.yaml --out results/bench_sphere --overwrite
+	-$(BUILD)/bin/drape run configs/pinned_square.yaml --method pcs --method cascadic --method newton --out results/bench_pinned_square --overwrite
+	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method cascadic --method newton --out results/bench_sphere --overwrite
 	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method newton --set newton.refine_at=1 --out results/bench_sphere_handed_on --overwrite
 	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json $(addprefix results/bench_,pinned_square sphere sphere_handed_on)
 	$(BUILD)/bin/drape_bench_changes benchmarks/results/changes.json

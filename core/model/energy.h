@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/hierarchy/level.h"
@@ -35,6 +37,27 @@ struct Projection {
 /// vertices to places; a `limit` belongs to the mesh it is on, as contact does, and is never evaluated on a
 /// finer one in its place.
 enum class EnergyRole { membrane, bending, external, position, limit };
+
+/// A set of roles.
+class Roles {
+ public:
+  constexpr Roles() = default;
+  constexpr Roles(std::initializer_list<EnergyRole> roles) {
+    for (EnergyRole role : roles) bits_ |= bit(role);
+  }
+  static constexpr Roles all() {
+    return {EnergyRole::membrane, EnergyRole::bending, EnergyRole::external, EnergyRole::position,
+            EnergyRole::limit};
+  }
+
+  constexpr bool has(EnergyRole role) const { return (bits_ & bit(role)) != 0; }
+  constexpr bool empty() const { return bits_ == 0; }
+  constexpr void add(EnergyRole role) { bits_ |= bit(role); }
+
+ private:
+  static constexpr unsigned bit(EnergyRole role) { return 1U << static_cast<unsigned>(role); }
+  unsigned bits_ = 0;
+};
 
 /// How far along a step a state stays allowed, and what ends it there.
 struct StepLimit {
@@ -77,6 +100,10 @@ class Energy {
  public:
   virtual ~Energy() = default;
   virtual EnergyRole role() const = 0;
+  /// By what factor the energy of a surface grows where every triangle, at rest and deformed, is split into
+  /// four at its edges' midpoints: 1 for energies of the surface itself; 2 where folds sit at edges, for
+  /// each half of an edge has a quarter of the area beside it. None where no factor holds for all states.
+  virtual std::optional<double> midpoint_factor() const { return std::nullopt; }
   /// The level and the material must outlive nothing: whatever is needed is copied.
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
 };

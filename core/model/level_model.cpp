@@ -89,11 +89,13 @@ void LevelModel::take_contacts(const LevelModel& other) {
 
 void LevelModel::add_up_linear_energies() {
   const Positions origin = Positions::Zero(level_->vertex_count(), 3);
-  linear_gradient_ = origin;
   for (const Term& term : terms_)
     if (term.is_linear()) {
-      linear_at_origin_ += term.energy->add_gradient(origin, linear_gradient_);
-      if (!std::isfinite(linear_at_origin_) || !linear_gradient_.allFinite())
+      auto sum = std::find_if(linear_.begin(), linear_.end(),
+                              [&](const LinearSum& s) { return s.role == term.role; });
+      if (sum == linear_.end()) sum = linear_.insert(sum, {term.role, origin, 0});
+      sum->at_origin += term.energy->add_gradient(origin, sum->gradient);
+      if (!std::isfinite(sum->at_origin) || !sum->gradient.allFinite())
         throw std::runtime_error(
             "energy " + term.name +
             ": its forces are too large to be computed with; are its parameters and the density in SI units? "
@@ -102,43 +104,72 @@ void LevelModel::add_up_linear_energies() {
     }
 }
 
-double LevelModel::linear_value(const Positions& x, Positions* g) const {
-  const auto add = [&](int begin, int end) {
-    const auto of = linear_gradient_.middleRows(begin, end - begin);
-    if (g) g->middleRows(begin, end - begin) = of;
-    return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
-  };
-  return linear_at_origin_ + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {
+  double value = 0;
+  bool first = true;
+  for (const LinearSum& sum : linear_) {
+    if (!roles.has(sum.role)) continue;
+    const auto add = [&](int begin, int end) {
+      const auto of = sum.gradient.middleRows(begin, end - begin);
+      if (g && first)
+        g->middleRows(begin, end - begin) = of;
+      else if (g)
+        g->middleRows(begin, end - begin) += of;
+      return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
+    };
+    value += sum.at_origin + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+    first = false;
+  }
+  if (g && first) g->setZero();
+  return value;
 }
 
-double LevelModel::value(const Positions& x) const {
-  double sum = linear_value(x, nullptr);
+double LevelModel::value(const Positions& x, Roles roles) const {
+  double sum = linear_value(x, nullptr, roles);
   for (const Term& term : terms_) {
-    if (!term.slots) continue;
+    if (!term.slots || !roles.has(term.role)) continue;
     sum += term.energy->value(x);
     if (!std::isfinite(sum)) return sum;
   }
   return sum;
 }
 
-double LevelModel::gradient(const Positions& x, Positions& g) const {
+double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const {
   g.resize(x.rows(), 3);
-  double sum = linear_value(x, &g);
+  double sum = linear_value(x, &g, roles);
   for (const Term& term : terms_) {
-    if (!term.slots) continue;
+    if (!term.slots || !roles.has(term.role)) continue;
     sum += term.energy->add_gradient(x, g);
     if (!std::isfinite(sum)) return sum;
   }
   return sum;
 }
 
-void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix) const {
+void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles) const {
   matrix.set_zero();
+  add_hessian(x, projection, matrix, roles, 1);
+}
+
+void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                             double factor) const {
   for (const Term& term : terms_)
-    if (term.slots) {
-      BlockSink sink(*term.slots, matrix);
+    if (term.slots && roles.has(term.role)) {
+      BlockSink sink(*term.slots, matrix, factor);
       term.energy->add_hessian(x, projection, sink);
     }
+}
+
+std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
+  std::optional<double> common = 1;
+  bool first = true;
+  for (const Term& term : terms_) {
+    if (term.role != role) continue;
+    const std::optional<double> own = term.kind->midpoint_factor();
+    if (!own || (!first && own != common)) return std::nullopt;
+    common = own;
+    first = false;
+  }
+  return common;
 }
 
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {

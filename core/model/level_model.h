@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,12 +49,18 @@ class LevelModel {
   const std::vector<char>& fixed() const { return fixed_; }
   const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
 
-  /// The energies that a finer level may stand in for, Ψ_l and the external ones: all but the limits [J].
-  double value(const Positions& x) const;
+  /// Ψ_l and the external energies, or those of them that play one of the `roles`; never the limits [J].
+  double value(const Positions& x, Roles roles = Roles::all()) const;
   /// Overwrites g (n×3) with its gradient [N], fixed vertices included, and returns the value.
-  double gradient(const Positions& x, Positions& g) const;
+  double gradient(const Positions& x, Positions& g, Roles roles = Roles::all()) const;
   /// Overwrites `matrix`, which must be over pattern(), with its projected Hessian [N/m].
-  void hessian(const Positions& x, Projection projection, BlockMatrix& matrix) const;
+  void hessian(const Positions& x, Projection projection, BlockMatrix& matrix,
+               Roles roles = Roles::all()) const;
+  /// Adds `factor` times that to the matrix.
+  void add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                   double factor) const;
+  /// The Energy::midpoint_factor that all energies of a role have; none where they differ or have none.
+  std::optional<double> midpoint_factor(EnergyRole role) const;
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
   /// The energies of role `limit`, S_l.
@@ -85,13 +92,19 @@ class LevelModel {
 
     bool is_linear() const { return role != EnergyRole::limit && !slots; }
   };
+  /// The sum of the linear energies of one role: one pass over their forces does for all of them.
+  struct LinearSum {
+    EnergyRole role;
+    Positions gradient;
+    double at_origin = 0;  // where all x are 0
+  };
 
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;
   void add_up_linear_energies();
   /// The linear energies' sum; `g`, if given, is overwritten with their gradient.
-  double linear_value(const Positions& x, Positions* g) const;
+  double linear_value(const Positions& x, Positions* g, Roles roles) const;
 
   const Level* level_;
   Material material_;
@@ -104,8 +117,7 @@ class LevelModel {
   std::vector<std::shared_ptr<const BoundContact>> bound_;    // of each of them; null where it binds nothing
   BoundContacts contacts_;                                    // those that are not null
   std::shared_ptr<const BlockPattern> pattern_;
-  Positions linear_gradient_;      // of the linear energies together: one pass over it does for all
-  double linear_at_origin_ = 0;    // their sum where all x are 0
+  std::vector<LinearSum> linear_;
   bool load_is_constant_ = true;   // whether every external energy is linear
   double constant_load_norm_ = 0;  // then the norm of its forces
 };

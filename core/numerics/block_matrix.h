@@ -58,8 +58,9 @@ class BlockSlots {
 /// Adds elements' 3×3 blocks to a matrix. Concurrent calls are safe for elements that share no vertex.
 class BlockSink {
  public:
-  BlockSink(const BlockSlots& slots, BlockMatrix& matrix)
-      : slots_(slots.slots_.data()), pairs_(slots.pairs_), values_(matrix.values.data()) {}
+  /// What is added is multiplied by `factor`.
+  BlockSink(const BlockSlots& slots, BlockMatrix& matrix, double factor = 1)
+      : slots_(slots.slots_.data()), pairs_(slots.pairs_), values_(matrix.values.data()), factor_(factor) {}
 
   /// The same for a part of an energy, whose elements begin at row `first` of the stencils.
   BlockSink from(int first) const {
@@ -73,11 +74,11 @@ class BlockSink {
     const int slot = slots_[static_cast<std::size_t>(element) * pairs_ + b * (b + 1) / 2 + a];
     if (slot >= 0) {
       double* v = values_ + 9 * static_cast<std::size_t>(slot);
-      for (int i = 0; i < 9; ++i) v[i] += h[i];
+      for (int i = 0; i < 9; ++i) v[i] += factor_ * h[i];
     } else if (slot != BlockSlots::no_block) {
       double* v = values_ + 9 * static_cast<std::size_t>(~slot);
       for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) v[3 * r + c] += h[3 * c + r];
+        for (int c = 0; c < 3; ++c) v[3 * r + c] += factor_ * h[3 * c + r];
     }
   }
 
@@ -85,6 +86,7 @@ class BlockSink {
   const int* slots_;
   int pairs_;
   double* values_;
+  double factor_;
 };
 
 }  // namespace drape

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/hierarchy/hierarchy.h"
+#include "core/hierarchy/midpoint.h"
 #include "core/mesh/generate.h"
 #include "core/model/energy.h"
 #include "core/model/refiner.h"
@@ -323,4 +324,23 @@ TEST_CASE("A collapsed triangle has an energy that is a number or +infinity", "[
     infinite += unbounded;
   }
   REQUIRE(infinite >= 1);
+}
+
+TEST_CASE("Energies: what they say of the same surface split at midpoints holds", "[conformance]") {
+  int factors = 0;
+  for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& bound) {
+    const std::optional<double> factor = candidate.energy->midpoint_factor();
+    if (!factor) return;
+    ++factors;
+    const Refinement split = midpoint_refinement(level);
+    const Level fine = Level::of(1, {split.weights * level.rest.vertices, split.triangles});
+    const auto finer = candidate.energy->bind(fine, material);
+    for (const State& state : states(candidate, level)) {
+      INFO(state.name);
+      const double expected = *factor * bound.value(state.x);
+      REQUIRE(expected != 0);
+      CHECK(finer->value(split.weights * state.x) == Approx(expected).epsilon(1e-9));
+    }
+  });
+  CHECK(factors >= 10);
 }

@@ -51,6 +51,10 @@ class ConstantLoad final : public Energy {
 
   explicit ConstantLoad(const Parameters& parameters) : p_(parameters) {}
   EnergyRole role() const override { return EnergyRole::external; }
+  /// The vertex that is nearest to a point may be another one on the finer mesh.
+  std::optional<double> midpoint_factor() const override {
+    return p_.points.empty() ? std::optional(1.0) : std::nullopt;
+  }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 
  private:

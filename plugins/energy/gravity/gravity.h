@@ -22,6 +22,7 @@ class Gravity final : public Energy {
 
   explicit Gravity(const Parameters& parameters) : p_(parameters) {}
   EnergyRole role() const override { return EnergyRole::external; }
+  std::optional<double> midpoint_factor() const override { return 1; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 
  private:

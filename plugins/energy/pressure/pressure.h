@@ -34,6 +34,7 @@ class Pressure final : public Energy {
 
   explicit Pressure(const Parameters& parameters) : p_(parameters) {}
   EnergyRole role() const override { return EnergyRole::external; }
+  std::optional<double> midpoint_factor() const override { return 1; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 
  private:

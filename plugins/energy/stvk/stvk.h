@@ -14,6 +14,7 @@ class Stvk final : public Energy {
 
   explicit Stvk(const Parameters&) {}
   EnergyRole role() const override { return EnergyRole::membrane; }
+  std::optional<double> midpoint_factor() const override { return 1; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 };
 

@@ -1,31 +1,42 @@
+#include <algorithm>
+
 #include "core/numerics/newton_state.h"
 #include "core/numerics/progression.h"
 #include "core/plugin/plugin.h"
-#include "proxy_objective.h"
+#include "plugins/solver/pcs/proxy_parts.h"
 
 namespace drape {
-
-/// Which matrix makes the directions on the coarse levels.
-enum class ProxyMatrix { coarse, galerkin };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
 /// plain Newton (Zhang et al. 2022; docs/method.md, section 3).
 class PcsSolver : public ResumableSolver {
  public:
   struct Parameters {
+    ProxyInterpolation interpolation;
+    int target = 0;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
+      d.add_section("interpolation", &Parameters::interpolation)
+          .meaning("how a coarse level sees the fine mesh whose energy it minimises");
+      d.add("target", &Parameters::target)
+          .at_least(0)
+          .at_most(8)
+          .meaning(
+              "levels from a coarse one to that whose energy it minimises, where there are so many; 0 for "
+              "the finest")
+          .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
-          .meaning("matrix on coarse levels: the plain coarse model's, or a finer one's carried down")
+          .meaning("matrix on coarse levels: the plain coarse model's, or that of what is minimised")
           .source("PCS section 4.2 for coarse; galerkin is a departure");
       d.add("depth", &Parameters::depth)
           .at_least(1)
           .at_most(8)
           .meaning(
-              "levels between the galerkin matrix and the level it is made for, where there are so many");
+              "levels up to the model whose matrix galerkin carries down, of energies that the refiner's "
+              "mesh is needed for, where there are so many");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }
   };
@@ -33,13 +44,16 @@ class PcsSolver : public ResumableSolver {
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
-    const int depth = p_.hessian == ProxyMatrix::galerkin ? p_.depth : 0;
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
-      if (level < problem.finest()) return std::make_unique<ProxyObjective>(problem, level, depth);
-      return std::make_unique<PlainObjective>(*problem.models[level]);
+      const int to_finest = problem.finest() - level;
+      if (to_finest == 0) return std::make_unique<PlainObjective>(*problem.models[level]);
+      const int above = p_.target == 0 ? to_finest : std::min(p_.target, to_finest);
+      return std::make_unique<ProxyObjective>(
+          problem, level, proxy_parts(problem, level, above, p_.depth, p_.interpolation), p_.hessian);
     };
-    return solve_progressively(problem, problem.hierarchy.prolongations, objective, p_.newton, from,
-                               observer);
+    const auto& weights = p_.interpolation.state == Interpolation::midpoint ? problem.hierarchy.midpoints
+                                                                            : problem.hierarchy.prolongations;
+    return solve_progressively(problem, weights, objective, p_.newton, from, observer);
   }
 
  private:

@@ -1,50 +1,157 @@
 #include "proxy_objective.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace drape {
 
-ProxyObjective::ProxyObjective(const Problem& problem, int level, int depth)
-    : Objective(*problem.models[level]),
-      problem_(problem),
-      level_(level),
-      depth_(std::min(depth, problem.finest() - level)) {
-  const int above = problem.finest() - level;
-  for (int k = 0; k < above; ++k) transfers_.emplace_back(problem.hierarchy.prolongations[level + k]);
-  carried_.resize(above);
-  forces_.resize(above);
-  matrices_.emplace_back(problem.models[level + depth_]->pattern());
-  for (int k = depth_; k > 0; --k) {
-    products_.emplace_back(*matrices_.back().pattern, problem.hierarchy.prolongations[level + k - 1]);
-    matrices_.emplace_back(products_.back().coarse_pattern());
+namespace {
+
+/// Of each block of `part`, its place in `whole`, which has them all.
+std::vector<int> places(const BlockPattern& part, const BlockPattern& whole) {
+  std::vector<int> result;
+  result.reserve(part.blocks());
+  for (int i = 0; i < part.rows(); ++i)
+    for (int k = part.row_start[i]; k < part.row_start[i + 1]; ++k)
+      result.push_back(whole.find(i, part.columns[k]));
+  return result;
+}
+
+std::shared_ptr<const BlockPattern> united(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
+  if (patterns.size() == 1) return patterns.front();
+  std::vector<int> row_start(1, 0), columns;
+  for (int i = 0; i < patterns.front()->rows(); ++i) {
+    std::vector<int> row;
+    for (const auto& p : patterns)
+      row.insert(row.end(), p->columns.begin() + p->row_start[i], p->columns.begin() + p->row_start[i + 1]);
+    std::sort(row.begin(), row.end());
+    columns.insert(columns.end(), row.begin(), std::unique(row.begin(), row.end()));
+    row_start.push_back(static_cast<int>(columns.size()));
+  }
+  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+}
+
+void add_blocks(const BlockMatrix& part, const std::vector<int>& place, double factor, BlockMatrix& whole) {
+  for (std::size_t b = 0; b < place.size(); ++b) {
+    const double* from = part.block(static_cast<int>(b));
+    double* to = whole.block(place[b]);
+    for (int i = 0; i < 9; ++i) to[i] += factor * from[i];
   }
 }
 
-const Positions& ProxyObjective::carry(const Positions& x, int count) {
+}  // namespace
+
+ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
+                               ProxyMatrix matrix)
+    : Objective(*problem.models[level]),
+      problem_(problem),
+      plain_(*problem.models[level]),
+      level_(level),
+      kind_(matrix) {
+  std::vector<std::shared_ptr<const BlockPattern>> patterns;
+  for (const ProxyPart& part : parts) {
+    if (part.above == 0) {
+      own_.push_back(part);
+      continue;
+    }
+    FinerPart& finer = finer_.emplace_back();
+    finer.part = part;
+    for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level + k]);
+    finer.carried.resize(part.above);
+    finer.forces.resize(part.above);
+    if (kind_ == ProxyMatrix::coarse) continue;
+    finer.matrices.emplace_back(problem.models[level + part.matrix_above]->pattern());
+    for (int k = part.matrix_above; k > 0; --k) {
+      finer.products.emplace_back(*finer.matrices.back().pattern, (*part.interpolation)[level + k - 1]);
+      finer.matrices.emplace_back(finer.products.back().coarse_pattern());
+    }
+    patterns.push_back(finer.matrices.back().pattern);
+  }
+  if (kind_ == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(plain_.pattern());
+  lay_out(patterns);
+}
+
+void ProxyObjective::lay_out(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
+  matrix_ = BlockMatrix(united(patterns));
+  for (FinerPart& finer : finer_)
+    if (!finer.matrices.empty()) finer.place = places(*finer.matrices.back().pattern, *matrix_.pattern);
+  if (kind_ == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == plain_.pattern()) return;
+  own_matrix_ = BlockMatrix(plain_.pattern());
+  own_place_ = places(*plain_.pattern(), *matrix_.pattern);
+}
+
+const Positions& ProxyObjective::FinerPart::carry(const Positions& x, int count) {
   const Positions* from = &x;
   for (int k = 0; k < count; ++k) {
-    transfers_[k].prolong(*from, carried_[k]);
-    from = &carried_[k];
+    transfers[k].prolong(*from, carried[k]);
+    from = &carried[k];
   }
   return *from;
 }
 
 double ProxyObjective::smooth_value(const Positions& x) {
-  return problem_.models.back()->value(carry(x, static_cast<int>(transfers_.size())));
+  double sum = 0;
+  for (const ProxyPart& own : own_) sum += own.factor * plain_.value(x, own.roles);
+  for (FinerPart& finer : finer_) {
+    const ProxyPart& part = finer.part;
+    sum += part.factor * problem_.models[level_ + part.above]->value(finer.carry(x, part.above), part.roles);
+  }
+  return sum;
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
-  const int above = static_cast<int>(transfers_.size());
-  const double energy = problem_.models.back()->gradient(carry(x, above), forces_[above - 1]);
-  for (int k = above - 1; k > 0; --k) transfers_[k].restrict(forces_[k], forces_[k - 1]);
-  transfers_[0].restrict(forces_[0], g);
-  return energy;
+  g.resize(x.rows(), 3);
+  double sum = 0;
+  bool first = true;
+  const auto add = [&](double factor) {
+    if (first)
+      g = factor * part_gradient_;
+    else
+      g += factor * part_gradient_;
+    first = false;
+  };
+  for (const ProxyPart& own : own_) {
+    sum += own.factor * plain_.gradient(x, part_gradient_, own.roles);
+    add(own.factor);
+  }
+  for (FinerPart& finer : finer_) {
+    const int above = finer.part.above;
+    const LevelModel& model = *problem_.models[level_ + above];
+    sum +=
+        finer.part.factor * model.gradient(finer.carry(x, above), finer.forces[above - 1], finer.part.roles);
+    for (int k = above - 1; k > 0; --k) finer.transfers[k].restrict(finer.forces[k], finer.forces[k - 1]);
+    finer.transfers[0].restrict(finer.forces[0], part_gradient_);
+    add(finer.part.factor);
+  }
+  return sum;
+}
+
+void ProxyObjective::add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const {
+  for (const ProxyPart& own : own_) plain_.add_hessian(x, projection, matrix, own.roles, own.factor);
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
-  problem_.models[level_ + depth_]->hessian(carry(x, depth_), projection, matrices_[0]);
-  for (std::size_t k = 0; k < products_.size(); ++k) products_[k].form(matrices_[k], matrices_[k + 1]);
-  return matrices_.back();
+  if (kind_ == ProxyMatrix::coarse) {
+    plain_.hessian(x, projection, matrix_);
+    return matrix_;
+  }
+  matrix_.set_zero();
+  if (!own_.empty() && own_place_.empty()) {
+    add_own_hessians(x, projection, matrix_);
+  } else if (!own_.empty()) {
+    own_matrix_.set_zero();
+    add_own_hessians(x, projection, own_matrix_);
+    add_blocks(own_matrix_, own_place_, 1, matrix_);
+  }
+  for (FinerPart& finer : finer_) {
+    const int above = finer.part.matrix_above;
+    problem_.models[level_ + above]->hessian(finer.carry(x, above), projection, finer.matrices[0],
+                                             finer.part.roles);
+    for (std::size_t k = 0; k < finer.products.size(); ++k)
+      finer.products[k].form(finer.matrices[k], finer.matrices[k + 1]);
+    add_blocks(finer.matrices.back(), finer.place, finer.part.factor, matrix_);
+  }
+  return matrix_;
 }
 
 }  // namespace drape

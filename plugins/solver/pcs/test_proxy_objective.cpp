@@ -1,6 +1,7 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "proxy_objective.h"
+#include "proxy_parts.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
 
@@ -30,12 +31,26 @@ methods: {pcs: {}}
   }
 };
 
+constexpr ProxyInterpolation by_refiner{Interpolation::refiner, Interpolation::refiner,
+                                        Interpolation::refiner, Interpolation::refiner};
+constexpr ProxyInterpolation by_midpoints;
+constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refiner, Interpolation::midpoint,
+                                   Interpolation::midpoint};
+
+/// The proxy of a level that stands for the finest one.
+ProxyObjective proxy_of(const Problem& problem, int level, int depth,
+                        const ProxyInterpolation& interpolation = by_refiner,
+                        ProxyMatrix matrix = ProxyMatrix::galerkin) {
+  return ProxyObjective(problem, level,
+                        proxy_parts(problem, level, problem.finest() - level, depth, interpolation), matrix);
+}
+
 }  // namespace
 
 TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]") {
   const Fixture f;
   for (int level : {0, 1}) {
-    ProxyObjective proxy(f.problem, level, 1);
+    ProxyObjective proxy = proxy_of(f.problem, level, 1);
     const Positions x = f.state(level);
     const double expected = f.s.model().value(f.s.scene->hierarchy.prolong(x, level, 2));
     REQUIRE(std::abs(expected - f.problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
@@ -47,10 +62,60 @@ TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]"
   }
 }
 
+TEST_CASE("By midpoints the proxy's energy is that of the coarse surface on the finest mesh",
+          "[proxy_objective]") {
+  // A grid's rest shapes are the same by Loop and by midpoints, so that the finest model has this surface.
+  Solved s = scene_from(R"(
+name: proxy
+cloth: {shape: rectangle, size: [0.6, 0.5], triangulation: one_way, columns: 5, rows: 4}
+levels: 3
+material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson_ratio: 0.3}
+energies: [neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]
+methods: {pcs: {}}
+)");
+  const Problem problem = s.scene->problem();
+  for (int level : {0, 1}) {
+    Positions x = s.scene->hierarchy.levels[level].rest.vertices;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
+      x(i, 0) *= 1.1 + 0.3 * x(i, 1);
+    }
+    Positions fine = x;
+    for (int l = level; l < 2; ++l) fine = (problem.hierarchy.midpoints[l] * fine).eval();
+    ProxyObjective proxy = proxy_of(problem, level, 1, by_midpoints);
+    const double expected = s.model().value(fine);
+    REQUIRE(std::abs(expected - problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
+    CHECK(proxy.value(x) == Approx(expected).epsilon(1e-11));
+    const auto parts = proxy_parts(problem, level, 2 - level, 1, by_midpoints);
+    CHECK(std::all_of(parts.begin(), parts.end(), [](const ProxyPart& part) { return part.above == 0; }));
+    CHECK(proxy.matrix(x, Projection::clamp).pattern == problem.models[level]->pattern());
+  }
+}
+
+TEST_CASE("An energy without a factor is evaluated on the finest mesh by midpoints", "[proxy_objective]") {
+  Solved s = scene_from(R"(
+name: proxy
+cloth: {shape: rectangle, size: [0.6, 0.5], triangulation: random, vertices: 14}
+levels: 3
+material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson_ratio: 0.3}
+energies: [neo_hookean, midedge_bending, gravity]
+methods: {pcs: {}}
+)");
+  const Problem problem = s.scene->problem();
+  const auto parts = proxy_parts(problem, 0, 2, 1, by_midpoints);
+  REQUIRE(parts.size() == 2);
+  CHECK(parts[0].above == 0);
+  CHECK(parts[1].above == 2);
+  CHECK(parts[1].interpolation == &problem.hierarchy.midpoints);
+  CHECK(parts[1].roles.has(EnergyRole::bending));
+  CHECK_FALSE(parts[1].roles.has(EnergyRole::membrane));
+}
+
 TEST_CASE("The proxy's gradient is that of its value", "[proxy_objective]") {
   const Fixture f;
+  const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints, mixed);
   for (int level : {0, 1}) {
-    ProxyObjective proxy(f.problem, level, 1);
+    ProxyObjective proxy = proxy_of(f.problem, level, 1, interpolation);
     const Positions x = f.state(level);
     Positions g;
     proxy.gradient(x, g);
@@ -63,8 +128,10 @@ TEST_CASE("The proxy's gradient is that of its value", "[proxy_objective]") {
 
 TEST_CASE("The Galerkin matrix of the finest level is the proxy's Hessian", "[proxy_objective]") {
   const Fixture f;
+  const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints, mixed);
   for (int level : {0, 1}) {
-    ProxyObjective proxy(f.problem, level, 8);  // deeper than there are levels: as deep as there are
+    ProxyObjective proxy =
+        proxy_of(f.problem, level, 8, interpolation);  // deeper than there are levels: as deep as there are
     const Positions x = f.state(level);
     const Eigen::MatrixXd h = dense(proxy.matrix(x, Projection::none));
     const auto gradient = [&](const Positions& y) {
@@ -77,14 +144,14 @@ TEST_CASE("The Galerkin matrix of the finest level is the proxy's Hessian", "[pr
   }
 }
 
-TEST_CASE("With depth 0 the matrix is the plain model's", "[proxy_objective]") {
+TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
   const Fixture f;
-  ProxyObjective proxy(f.problem, 0, 0);
+  ProxyObjective proxy = proxy_of(f.problem, 0, 1, by_refiner, ProxyMatrix::coarse);
   const Positions x = f.state(0);
   BlockMatrix plain(f.problem.models[0]->pattern());
   f.problem.models[0]->hessian(x, Projection::clamp, plain);
   CHECK(proxy.matrix(x, Projection::clamp).values == plain.values);
-  ProxyObjective galerkin(f.problem, 0, 1);
+  ProxyObjective galerkin = proxy_of(f.problem, 0, 1);
   REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - dense(plain)).norm() > 1e-3 * dense(plain).norm());
 }
 
@@ -100,7 +167,7 @@ contact: {type: shapes, shapes: [{name: floor, shape: half_space}]}
 methods: {pcs: {}}
 )");
   const Problem problem = s.scene->problem();
-  ProxyObjective proxy(problem, 0, 8);
+  ProxyObjective proxy = proxy_of(problem, 0, 8);
   Positions x = s.scene->hierarchy.levels[0].rest.vertices;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {
     x(i, 0) *= 1.1;

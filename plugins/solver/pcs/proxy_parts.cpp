@@ -1,0 +1,61 @@
+#include "plugins/solver/pcs/proxy_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace drape {
+
+void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
+  const auto add = [&](const char* name, Interpolation ProxyInterpolation::*value) -> auto{
+    return d.add_choice(name, value,
+                        {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
+  };
+  add("membrane", &ProxyInterpolation::membrane)
+      .meaning("where stretching is measured: on the coarse surface itself, or on the refiner's, which locks")
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+  add("bending", &ProxyInterpolation::bending)
+      .meaning(
+          "where bending is measured: on the coarse surface with folds at its edges, or on the refiner's")
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+  add("external", &ProxyInterpolation::external)
+      .meaning("where loads and soft positions act")
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+  add("state", &ProxyInterpolation::state)
+      .meaning("carries a level's state up to the next")
+      .source("PCS section 4.3 for refiner; midpoint is a departure (docs/locking.md)");
+}
+
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,
+                                   const ProxyInterpolation& interpolation) {
+  std::vector<ProxyPart> parts;
+  const auto add = [&](const ProxyPart& wanted, EnergyRole role) {
+    for (ProxyPart& part : parts)
+      if (part.above == wanted.above && part.factor == wanted.factor &&
+          part.interpolation == wanted.interpolation) {
+        part.roles.add(role);
+        return;
+      }
+    parts.push_back(wanted);
+    parts.back().roles.add(role);
+  };
+  for (const auto& [role, way] : {std::pair(EnergyRole::membrane, interpolation.membrane),
+                                  std::pair(EnergyRole::external, interpolation.external),
+                                  std::pair(EnergyRole::position, interpolation.external),
+                                  std::pair(EnergyRole::bending, interpolation.bending)}) {
+    ProxyPart part;
+    const auto factor = problem.models[level]->midpoint_factor(role);
+    if (way == Interpolation::midpoint && factor) {
+      part.factor = std::pow(*factor, above);
+    } else {
+      part.above = above;
+      part.matrix_above = std::min(depth, above);
+      part.interpolation =
+          way == Interpolation::midpoint ? &problem.hierarchy.midpoints : &problem.hierarchy.prolongations;
+    }
+    add(part, role);
+  }
+  return parts;
+}
+
+}  // namespace drape
