@@ -248,8 +248,7 @@ TEST_CASE("a plugin that is unknown, of every kind") {
         "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, none, shapes\n");
   CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
         "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
-        "residuals, "
-        "stretch\n");
+        "energy_above_end, residuals, silhouette, stretch\n");
   CHECK(said_of_edit("  cascadic: {}", "  fast: {type: multigrid}") ==
         "error: e.yaml:12:16: unknown solver \"multigrid\"; known: cascadic, newton, pcs\n");
   CHECK(said_of_edit("  cascadic: {}", "  psc: {depth: 2}") ==

@@ -1,0 +1,36 @@
+#include <stdexcept>
+
+#include "core/model/level_model.h"
+#include "core/model/metric.h"
+#include "core/plugin/plugin.h"
+
+namespace drape {
+
+/// How much higher another state lies than the end, in the plain energy of the end's level without contact.
+class EnergyAboveEnd : public Metric {
+ public:
+  struct Parameters {
+    static void declare(Declaration<Parameters>&) {}
+  };
+  explicit EnergyAboveEnd(const Parameters&) {}
+
+  MetricScope scope() const override { return MetricScope::pair; }
+
+  MetricResult evaluate(const MetricInput& input) const override {
+    if (!input.other)
+      throw std::runtime_error("energy_above_end compares two states of one level, but was given one");
+    const auto energy = [&](const Positions& x) {
+      double sum = input.model.value(x);
+      for (const BoundEnergy* limit : input.model.limits()) sum += limit->value(x);
+      return sum;
+    };
+    return {{{"energy_above_end", energy(*input.other) - energy(input.x), "J", Better::lower}}, {}};
+  }
+};
+
+}  // namespace drape
+
+DRAPE_PLUGIN(registry) {
+  registry.add<drape::Metric, drape::EnergyAboveEnd>(
+      "energy_above_end", "How much higher in energy a state lies than the one that it is compared with.");
+}

@@ -1,0 +1,72 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/model/metric.h"
+#include "tests/support/metric_check.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Draped by nothing but its weight, with a limit on its stretch, above a floor.
+struct Fixture {
+  Solved s = scene_from(R"(
+name: above
+cloth: {shape: rectangle, size: [0.3, 0.25], columns: 5, rows: 4}
+levels: 1
+start: {translate: [0, 0, 0.01]}
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]
+contact: {type: shapes, shapes: [{name: floor, shape: half_space}]}
+methods: {newton: {}}
+)");
+
+  double above(const Positions& other, const Positions& end) const {
+    const auto metric = make_plugin_from<Metric>("energy_above_end");
+    REQUIRE(metric->scope() == MetricScope::pair);
+    const MetricResult result = metric->evaluate({s.level(), s.model(), end, &other});
+    REQUIRE(result.values.size() == 1);
+    CHECK(result.values[0].unit == "J");
+    CHECK(result.values[0].better == Better::lower);
+    return value(result, "energy_above_end");
+  }
+  Positions lifted(double height) const {
+    Positions x = s.rest();
+    x.col(2).array() += height;
+    return x;
+  }
+  Positions stretched(double factor) const {
+    Positions x = lifted(0.01);
+    x.col(0) *= factor;
+    return x;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A cloth that is lifted lies higher by its weight times the way") {
+  const Fixture f;
+  const double weight = f.s.model().masses().sum() * 9.81;
+  CHECK(f.above(f.lifted(0.03), f.lifted(0.01)) == Approx(weight * 0.02).epsilon(1e-9));
+  CHECK(f.above(f.lifted(0.01), f.lifted(0.03)) == Approx(-weight * 0.02).epsilon(1e-9));
+  CHECK(f.above(f.lifted(0.02), f.lifted(0.02)) == 0);
+  // Within reach of the floor, and beneath it: contact is not counted.
+  CHECK(f.above(f.lifted(-0.01), f.lifted(0.01)) == Approx(-weight * 0.02).epsilon(1e-9));
+}
+
+TEST_CASE("The strain limit is in the energy, and infinite beyond") {
+  const Fixture f;
+  const Positions end = f.lifted(0.01), near = f.stretched(1.29);
+  double parts = 0;
+  for (const BoundEnergy* limit : f.s.model().limits()) parts += limit->value(near);
+  REQUIRE(parts > 0);
+  CHECK(f.above(near, end) == Approx(f.s.model().value(near) - f.s.model().value(end) + parts).epsilon(1e-9));
+  CHECK(f.above(f.stretched(1.31), end) == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("One state alone is not above another") {
+  const Fixture f;
+  const auto metric = make_plugin_from<Metric>("energy_above_end");
+  const Positions x = f.lifted(0);
+  CHECK_THROWS_WITH(metric->evaluate({f.s.level(), f.s.model(), x, nullptr}), Catch::Contains("two states"));
+}

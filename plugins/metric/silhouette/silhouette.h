@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "core/model/metric.h"
+#include "core/plugin/parameters.h"
+
+namespace drape {
+
+/// How far the outlines of two states cover each other: silhouette_overlap, the mean over fixed views, and
+/// silhouette_lowest, that of the worst view [1].
+class Silhouette : public Metric {
+ public:
+  struct Parameters {
+    int resolution = 256;
+    static void declare(Declaration<Parameters>& d) {
+      d.add("resolution", &Parameters::resolution)
+          .at_least(16)
+          .at_most(4096)
+          .meaning("pixels along the diagonal of the rest shape");
+    }
+  };
+
+  explicit Silhouette(const Parameters& parameters) : p_(parameters) {}
+  MetricScope scope() const override { return MetricScope::pair; }
+  /// Throws std::runtime_error without a second state, where one has another number of vertices than the
+  /// level, or where one is not finite.
+  MetricResult evaluate(const MetricInput& input) const override;
+
+  /// The directions of view, as unit vectors: the twelve axes through the vertices of a rhombicuboctahedron.
+  static std::array<Eigen::Vector3d, 12> directions();
+
+ private:
+  Parameters p_;
+};
+
+}  // namespace drape

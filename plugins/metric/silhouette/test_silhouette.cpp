@@ -1,0 +1,180 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "core/hierarchy/midpoint.h"
+#include "core/numerics/parallel.h"
+#include "plugins/metric/silhouette/silhouette.h"
+#include "tests/support/metric_check.h"
+
+using namespace drape;
+
+namespace {
+
+MetricResult evaluate(const Level& level, const Positions& x, const Positions& other, int resolution = 256) {
+  Silhouette::Parameters parameters;
+  parameters.resolution = resolution;
+  return Silhouette(parameters).evaluate({level, no_model(), x, &other});
+}
+
+double overlap(const Level& level, const Positions& x, const Positions& other) {
+  return value(evaluate(level, x, other), "silhouette_overlap");
+}
+
+Positions wavy(const Level& level, double phase) {
+  Positions x = level.rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    x(i, 2) = 0.2 * std::sin(5 * x(i, 0) + phase) * std::cos(3 * x(i, 1) - phase);
+  return x;
+}
+
+Positions shifted(const Positions& x, double dx, double dy, double dz) {
+  return x.rowwise() + Eigen::RowVector3d(dx, dy, dz);
+}
+
+}  // namespace
+
+TEST_CASE("Twelve directions of view lie evenly", "[silhouette]") {
+  const auto views = Silhouette::directions();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    CHECK(views[i].norm() == Approx(1).epsilon(1e-14));
+    second += views[i] * views[i].transpose() / views.size();
+    for (std::size_t j = 0; j < i; ++j)  // 41.9° apart, whichever way a view looks
+      CHECK(std::abs(views[i].dot(views[j])) < std::cos(41.8 * std::acos(-1) / 180));
+  }
+  CHECK((second - Eigen::Matrix3d::Identity() / 3).norm() < 1e-14);
+}
+
+TEST_CASE("A state covers itself, and nothing of one beside it", "[silhouette]") {
+  const Level level = square(9);
+  const Positions x = wavy(level, 0);
+  const MetricResult same = evaluate(level, x, x);
+  REQUIRE(same.values.size() == 2);
+  for (const MetricValue& v : same.values) {
+    CHECK(v.value == 1);
+    CHECK(v.unit == "1");
+    CHECK(v.better == Better::higher);
+  }
+  // In a direction that no view looks along.
+  for (const MetricValue& v : evaluate(level, x, shifted(x, 20, 30, 0)).values) CHECK(v.value == 0);
+}
+
+TEST_CASE("A square that is shifted by half a side covers a third of both", "[silhouette]") {
+  const Level level = square(7);
+  const Positions& x = level.rest.vertices;
+  const double previous = std::abs(overlap(level, x, shifted(x, 0.5, 0, 0)) - 1.0 / 3);
+  CHECK(previous < 0.01);  // every view sees a parallelogram
+  const MetricResult fine = evaluate(level, x, shifted(x, 0.5, 0, 0), 2048);
+  CHECK(value(fine, "silhouette_overlap") == Approx(1.0 / 3).margin(1e-3));
+  CHECK(value(fine, "silhouette_lowest") == Approx(1.0 / 3).margin(2e-3));
+}
+
+TEST_CASE("A quarter of a square covers a quarter, and a hole stays open", "[silhouette]") {
+  // The square against itself at half the size about its corner: a quarter, in every view.
+  const Level level = square(5);
+  const Positions half = 0.5 * level.rest.vertices;
+  CHECK(overlap(level, level.rest.vertices, half) == Approx(0.25).margin(0.01));
+  // A hole counts: a square without its middle half covers three quarters.
+  TriangleMesh ring = level.rest;
+  const Level coarse = square(4);
+  Triangles kept(0, 3);
+  for (Eigen::Index t = 0; t < coarse.rest.triangles.rows(); ++t) {
+    Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+    for (int k = 0; k < 3; ++k) centre += coarse.rest.vertices.row(coarse.rest.triangles(t, k)) / 3;
+    const bool inside =
+        std::abs(centre[0] - 0.5) < 0.25 && std::abs(centre[1] - 0.5) < 0.25;  // the middle quarter
+    if (inside) continue;
+    kept.conservativeResize(kept.rows() + 1, 3);
+    kept.row(kept.rows() - 1) = coarse.rest.triangles.row(t);
+  }
+  REQUIRE(kept.rows() == 24);
+  ring = {coarse.rest.vertices, kept};
+  // The vertex in the middle belongs to no triangle: the level is made without a check of the mesh.
+  const Level holed = Level::of(0, ring);
+  const Positions covering = [&] {
+    Positions x = coarse.rest.vertices;
+    x.col(0).array() -= 0.5, x.col(1).array() -= 0.5;
+    return Positions(2 * x);  // its hole is as large as the unit square
+  }();
+  Positions centred = coarse.rest.vertices;
+  centred.col(0).array() -= 0.5, centred.col(1).array() -= 0.5;
+  CHECK(overlap(holed, centred, covering) == Approx(0).margin(0.02));
+}
+
+TEST_CASE("The order of vertices, corners and triangles does not matter", "[silhouette]") {
+  const Level level = square(9);
+  const Positions x = wavy(level, 0.3), other = wavy(level, 1.1);
+  const double expected = overlap(level, x, other);
+  REQUIRE(expected < 0.99);
+  REQUIRE(expected > 0.3);
+  const Eigen::Index n = x.rows(), m = level.rest.triangles.rows();
+  Positions rest(n, 3), y(n, 3), z(n, 3);
+  Triangles triangles(m, 3);
+  const auto place = [n](Eigen::Index i) { return (7 * i + 3) % n; };  // n = 100
+  for (Eigen::Index i = 0; i < n; ++i)
+    rest.row(place(i)) = level.rest.vertices.row(i), y.row(place(i)) = x.row(i),
+    z.row(place(i)) = other.row(i);
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k)
+      triangles(m - 1 - t, (k + t) % 3) = static_cast<int>(place(level.rest.triangles(t, k)));
+  const Level mixed = Level::of(0, {rest, triangles});
+  CHECK(overlap(mixed, y, z) == expected);
+  CHECK(overlap(mixed, z, y) == expected);
+}
+
+TEST_CASE("A mesh that is split at its edges' midpoints has the same silhouette", "[silhouette]") {
+  const Level level = square(9);
+  const Refinement finer = midpoint_refinement(level);
+  const Level fine = Level::of(1, {finer.weights * level.rest.vertices, finer.triangles});
+  const Positions x = wavy(level, 0.3), other = wavy(level, 1.1);
+  const Positions y = finer.weights * x, z = finer.weights * other;
+  CHECK(overlap(fine, y, z) == Approx(overlap(level, x, other)).epsilon(1e-4));
+}
+
+TEST_CASE("Triangles that have collapsed cover nothing", "[silhouette]") {
+  const Level level = square(4);
+  const Positions& x = level.rest.vertices;
+  Positions line = x;
+  line.col(1).setZero();
+  CHECK(overlap(level, x, line) == 0);
+  CHECK(overlap(level, line, line) == 1);  // nothing differs
+  const Positions point = Positions::Constant(x.rows(), 3, 0.25);
+  CHECK(overlap(level, point, point) == 1);
+  // One row of vertices on the next: a row of triangles without area, the others cover the square.
+  Positions collapsed = x;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    if (x(i, 1) == 0.25) collapsed(i, 1) = 0;
+  CHECK(overlap(level, x, collapsed) == 1);
+}
+
+TEST_CASE("A state that has flown apart is seen in larger pixels", "[silhouette]") {
+  const Level level = square(4);
+  const Positions& x = level.rest.vertices;
+  CHECK(overlap(level, x, 1e9 * x) == Approx(0).margin(1e-6));
+  CHECK(overlap(level, 1e9 * x, 1e9 * x) == 1);
+}
+
+TEST_CASE("Silhouettes are the same bits with any number of threads", "[silhouette]") {
+  const Level level = square(24);
+  const Positions x = wavy(level, 0), other = wavy(level, 0.4);
+  const int before = thread_count();
+  set_thread_count(1);
+  const double one = overlap(level, x, other);
+  set_thread_count(3);
+  const double three = overlap(level, x, other);
+  set_thread_count(before);
+  CHECK(one == three);
+}
+
+TEST_CASE("A silhouette needs two finite states of the level", "[silhouette]") {
+  const Level level = square(2);
+  const Positions& x = level.rest.vertices;
+  const Silhouette metric({});
+  CHECK(metric.scope() == MetricScope::pair);
+  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), x, nullptr}), Catch::Contains("two states"));
+  CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));
+  Positions broken = x;
+  broken(1, 1) = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_WITH(evaluate(level, x, broken), Catch::Contains("not finite"));
+}
