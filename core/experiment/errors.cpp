@@ -27,8 +27,10 @@ std::string cells(const StateError& error) {
 
 }  // namespace
 
-double energy_on_finest(const Scene& scene, int level, const Positions& x) {
-  return scene.models.back()->value(scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1));
+double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
+                        const Positions& x) {
+  return scene.models.back()->value(
+      scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1, weights));
 }
 
 StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
@@ -59,11 +61,12 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   level.file = "frames/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
   level.converged = has_converged(result.outcome);
+  const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
   nlohmann::ordered_json entry = {{"file", level.file}};
   for (const Frame& frame : frames) {
     level.work.push_back(before + frame.work);
     level.iterations.push_back(frame.work.iterations);
-    level.energies.push_back(energy_on_finest(scene_, result.level, frame.x));
+    level.energies.push_back(energy_on_finest(scene_, weights, result.level, frame.x));
     entry["iterations"].push_back(frame.work.iterations);
     entry["seconds"].push_back(spent.seconds + frame.work.seconds);
   }
@@ -88,6 +91,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     for (const LevelFrames& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
         own = {other.last, other.energies.back()};
+    const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
     std::vector<Positions> states;
@@ -100,7 +104,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     if (states.size() != level.work.size()) continue;
     states.back() = level.last;
     for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
-      const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest);
+      const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
       const auto against = [&](const std::optional<ErrorTarget>& target) {
         return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
       };

@@ -29,8 +29,9 @@ struct ErrorTarget {
 StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
                        const ErrorTarget& target, const std::function<void(const std::string&)>& fault);
 
-/// The energy of the finest level in a state carried up to it by the refiner [J].
-double energy_on_finest(const Scene& scene, int level, const Positions& x);
+/// The energy of the finest level in a state carried up to it by these weights, [l]: n_{l+1} × n_l [J].
+double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
+                        const Positions& x);
 
 /// What is known of the frames of one level.
 struct LevelFrames {

@@ -150,6 +150,8 @@ struct Experiment {
 
   /// Where a key of the file is set; without it, where the file begins.
   Location place_of(const std::string& key) const;
+  /// The solver of one of the methods. Throws std::logic_error where there is no such method.
+  const Solver& solver_of(const std::string& method) const;
 };
 
 /// An error unless the name, of an experiment, a method or a sweep, can be one of files and a cell of a

@@ -192,6 +192,8 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   for (const auto& [name, joules] : scene_.models[r.level]->energy_parts(r.x)) energy += joules;
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
+  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+  const double on_finest = energy_on_finest(scene_, weights, r.level, r.x);
   Json entry = {{"level", r.level},
                 {"vertices", level.vertex_count()},
                 {"triangles", level.triangle_count()},
@@ -206,7 +208,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"seconds", r.seconds},
                 {"seconds_by_phase", r.seconds_by_phase},
                 {"energy", finite_or_null(energy)},
-                {"energy_on_finest", finite_or_null(drape::energy_on_finest(scene_, r.level, r.x))},
+                {"energy_on_finest", finite_or_null(on_finest)},
                 {"decrement", finite_or_null(r.decrement)},
                 {"force_residual", finite_or_null(r.force_residual)},
                 {"intersections", crossing},
@@ -303,10 +305,11 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
           at_dotted(state, v.name) = finite_or_null(v.value);
   }
   write_collection(method_);
+  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
       const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
-      const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine);
+      const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
       const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};
       row.update(compare(fine, results[f].x, carried, fine == finest ? "fields/" + tag + ".ply" : ""));

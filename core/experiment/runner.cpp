@@ -131,12 +131,6 @@ std::vector<std::string> methods_of(const Experiment& experiment, const RunOptio
   return names;
 }
 
-const Solver& solver_of(const Experiment& experiment, const std::string& method) {
-  for (const auto& [name, solver] : experiment.methods)
-    if (name == method) return *solver;
-  throw std::logic_error("no method " + method);
-}
-
 /// What the exception that is being handled says. A file that cannot be written is of the whole run: that is
 /// thrown on.
 std::string cause_in_method() {
@@ -198,7 +192,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   bool all_converged = begun.all_converged, cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
     const std::string& name = begun.methods[m];
-    const Solver& solver = solver_of(experiment, name);
+    const Solver& solver = experiment.solver_of(name);
     const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver);
     MethodState state;
     state.level = begun.first_level;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "core/experiment/experiment.h"
 #include "core/experiment/places.h"
@@ -135,6 +136,12 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
           {e.place_of("start"), "… and " + std::to_string(touches.size() - most_said) +
                                     " more pairs; move the start or the obstacle so that they are apart"});
   }
+}
+
+const Solver& Experiment::solver_of(const std::string& method) const {
+  for (const auto& [name, solver] : methods)
+    if (name == method) return *solver;
+  throw std::logic_error("no method " + method);
 }
 
 Location Experiment::place_of(const std::string& key) const {

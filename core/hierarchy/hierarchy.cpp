@@ -37,7 +37,8 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
   return hierarchy;
 }
 
-Positions Hierarchy::prolong(const Positions& x, int from, int to) const {
+Positions Hierarchy::prolong(const Positions& x, int from, int to,
+                             const std::vector<ProlongationMatrix>& weights) const {
   if (from < 0 || from > to || to >= level_count())
     throw std::runtime_error("prolong: levels " + std::to_string(from) + " to " + std::to_string(to) +
                              " of a hierarchy of " + std::to_string(level_count()));
@@ -46,7 +47,7 @@ Positions Hierarchy::prolong(const Positions& x, int from, int to) const {
                              std::to_string(levels[from].vertex_count()) + " vertices of level " +
                              std::to_string(from));
   Positions fine = x;
-  for (int l = from; l < to; ++l) fine = (prolongations[l] * fine).eval();
+  for (int l = from; l < to; ++l) fine = (weights[l] * fine).eval();
   return fine;
 }
 

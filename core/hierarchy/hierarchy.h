@@ -19,8 +19,14 @@ struct Hierarchy {
 
   int level_count() const { return static_cast<int>(levels.size()); }
 
-  /// P_{to-1→to} ⋯ P_{from→from+1} x, for x (n_from × 3) and 0 ≤ from ≤ to < level_count().
-  Positions prolong(const Positions& x, int from, int to) const;
+  /// W_{to-1} ⋯ W_{from} x by the given weights, [l]: n_{l+1} × n_l, for x (n_from × 3) and
+  /// 0 ≤ from ≤ to < level_count().
+  Positions prolong(const Positions& x, int from, int to,
+                    const std::vector<ProlongationMatrix>& weights) const;
+  /// The same by the refiner's prolongations.
+  Positions prolong(const Positions& x, int from, int to) const {
+    return prolong(x, from, to, prolongations);
+  }
 };
 
 }  // namespace drape

@@ -37,15 +37,15 @@ struct MetricResult {
 /// Whether a metric looks at one state or at two.
 enum class MetricScope {
   state,  ///< one level's state
-  pair    ///< a coarse state, carried up to the fine level by the refiner, against a fine one
+  pair    ///< a coarse state, carried up to the fine level by its method's interpolation, against a fine one
 };
 
 /// What a metric may look at: a state on one level and, for pairs, another on the same level.
 struct MetricInput {
   const Level& level;                ///< the (fine) level; area weights are level.vertex_area
   const LevelModel& model;           ///< the plain model of that level
-  const Positions& x;                ///< n×3, the state on it
-  const Positions* other = nullptr;  ///< n×3, pairs only: what x is measured against
+  const Positions& x;                ///< n×3, the state on it; of a pair, the finer one
+  const Positions* other = nullptr;  ///< n×3, pairs only: what is measured against x
 };
 
 /// A measure of a state or of a pair of states. Evaluation is const and stateless.

@@ -10,6 +10,10 @@ Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const 
   return y;
 }
 
+std::vector<ProlongationMatrix> Solver::interpolation(const Hierarchy& hierarchy) const {
+  return hierarchy.midpoints;
+}
+
 std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer& observer) const {
   return resume(problem, MethodState(), observer);
 }

@@ -110,6 +110,9 @@ class Solver {
   virtual ~Solver() = default;
   /// Results of the levels reached, in order. Only misuse throws.
   virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
+  /// The prolongations, [l]: n_{l+1} × n_l, that carry the method's states up where they are measured or
+  /// shown on a finer mesh. Unless the method says otherwise, the surface stays where it is.
+  virtual std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const;
 };
 
 /// A Solver that can also go on where an earlier solve of the same problem was

@@ -49,8 +49,11 @@ struct Loaded {
     throw_errors(errors);
   }
   StateError error(const Positions& x, const Positions& target) const {
-    return state_error(*experiment, *scene, x, energy_on_finest(*scene, 1, x),
-                       {target, energy_on_finest(*scene, 1, target)}, [](const std::string& f) { FAIL(f); });
+    return state_error(*experiment, *scene, x, energy(x), {target, energy(target)},
+                       [](const std::string& f) { FAIL(f); });
+  }
+  double energy(const Positions& x) const {
+    return energy_on_finest(*scene, scene->hierarchy.prolongations, 1, x);
   }
 };
 
@@ -69,7 +72,7 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
   CHECK(error[1].value() > 0.5 * 0.01 / std::sqrt(2.0));
   CHECK(error[2].value() < 1e-12);
   const double lifted = 472.6 * 3.18e-4 * 9.81 * 0.01;  // weight of a square metre, 1 cm up [J]
-  CHECK(error[3].value() == Approx(lifted / std::abs(energy_on_finest(*small.scene, 1, x))).epsilon(1e-6));
+  CHECK(error[3].value() == Approx(lifted / std::abs(small.energy(x))).epsilon(1e-6));
 }
 
 TEST_CASE("measures that no metric of the experiment gives stay out") {
@@ -151,6 +154,55 @@ TEST_CASE("a run writes frames and errors, against its own end and a tighter ref
       CHECK(again[k].at("reference_rms") == rows[k].at("reference_rms"));
     // Its saved config names the copy in its own folder.
     CHECK(drape_with("check next/config.yaml", folder.path).exit_code == 0);
+  }
+}
+
+TEST_CASE("every method's states are carried up by its own interpolation") {
+  const Overrides changed = {
+      {"levels", "3"}, {"methods.smooth", "{type: cascadic, prolongation: refiner}"}, {"frames", "1"}};
+  const Loaded small(changed);
+  const Hierarchy& hierarchy = small.scene->hierarchy;
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  std::string command = "run e.yaml --out out --threads 1 --quiet --no-report";
+  for (const auto& [key, value] : changed) command += " --set '" + key + "=" + value + "'";
+  REQUIRE(drape_with(command, folder.path).exit_code == 0);
+  const Json all = Json::parse(text_of(folder / "out/results.json"))["methods"];
+  const std::vector<Row> rows = rows_of(folder / "out/errors.csv");
+  const auto value_of = [&](const Positions& x, const Positions& target, const std::string& name) {
+    for (const auto& [metric_name, metric] : small.experiment->metrics)
+      if (metric->scope() == MetricScope::pair)
+        for (const MetricValue& v :
+             metric->evaluate({hierarchy.levels[2], *small.scene->models[2], target, &x}).values)
+          if (v.name == name) return v.value;
+    FAIL(name);
+    return 0.0;
+  };
+  for (const auto& [method, smooth] :
+       std::map<std::string, bool>{{"pcs", true}, {"cascadic", false}, {"newton", false}, {"smooth", true}}) {
+    INFO(method);
+    const auto& weights = smooth ? hierarchy.prolongations : hierarchy.midpoints;
+    const auto& others = smooth ? hierarchy.midpoints : hierarchy.prolongations;
+    const auto state = [&](int l) {
+      return read_mesh(folder / "out/levels" / (method + "_l" + std::to_string(l) + ".ply")).vertices;
+    };
+    const Positions carried = hierarchy.prolong(state(0), 0, 2, weights), end = state(2);
+    const Positions by_the_other = hierarchy.prolong(state(0), 0, 2, others);
+    REQUIRE((carried - by_the_other).norm() > 1e-3);
+    const Json& level = all[method]["levels"][0];
+    CHECK(level["energy_on_finest"].get<double>() ==
+          Approx(small.scene->models[2]->value(carried)).epsilon(1e-9));
+    for (const Json& pair : all[method]["consistency"]) {
+      if (pair["coarse"] != 0 || pair["fine"] != 2) continue;
+      for (const char* name :
+           {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
+        INFO(name);
+        CHECK(pair[name].get<double>() == Approx(value_of(carried, end, name)).epsilon(1e-6));
+      }
+    }
+    for (const Row& row : rows)
+      if (row.at("method") == method && row.at("level") == "0")
+        CHECK(std::stod(row.at("own_rms")) == Approx(value_of(carried, end, "distance_rms")).epsilon(1e-5));
   }
 }
 

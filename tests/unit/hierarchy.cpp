@@ -78,6 +78,8 @@ TEST_CASE("rest shapes and positions follow the same operators", "[hierarchy]") 
   CHECK(hierarchy.prolong(x, 1, 2) == Positions(hierarchy.prolongations[1] * x));
   CHECK(hierarchy.midpoints[1].isApprox(midpoint_refinement(hierarchy.levels[1]).weights));
   CHECK_FALSE(hierarchy.midpoints[1].isApprox(hierarchy.prolongations[1]));
+  CHECK(hierarchy.prolong(coarsest, 0, 2, hierarchy.midpoints) ==
+        Positions(hierarchy.midpoints[1] * Positions(hierarchy.midpoints[0] * coarsest)));
 
   CHECK_THROWS_WITH(hierarchy.prolong(x, 1, 3), "prolong: levels 1 to 3 of a hierarchy of 3");
   CHECK_THROWS_WITH(hierarchy.prolong(x, 2, 1), "prolong: levels 2 to 1 of a hierarchy of 3");

@@ -24,17 +24,23 @@ class CascadicSolver : public ResumableSolver {
   };
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
 
+  std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
+    return weights(hierarchy);
+  }
+
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
-    const auto& weights =
-        p_.prolongation == CarryUp::midpoint ? problem.hierarchy.midpoints : problem.hierarchy.prolongations;
     const auto objective = [&](int level) {
       return std::make_unique<PlainObjective>(*problem.models[level]);
     };
-    return solve_progressively(problem, weights, objective, p_.newton, from, observer);
+    return solve_progressively(problem, weights(problem.hierarchy), objective, p_.newton, from, observer);
   }
 
  private:
+  const std::vector<ProlongationMatrix>& weights(const Hierarchy& hierarchy) const {
+    return p_.prolongation == CarryUp::midpoint ? hierarchy.midpoints : hierarchy.prolongations;
+  }
+
   Parameters p_;
 };
 

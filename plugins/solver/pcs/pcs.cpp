@@ -42,6 +42,10 @@ class PcsSolver : public ResumableSolver {
   };
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
 
+  std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
+    return hierarchy.prolongations;
+  }
+
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
