@@ -306,6 +306,9 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   }
   write_collection(method_);
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+  std::vector<Json> of_start;  // what the scene's start scores against each level's state
+  for (const LevelResult& r : results)
+    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
       const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
@@ -313,6 +316,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};
       row.update(compare(fine, results[f].x, carried, fine == finest ? "fields/" + tag + ".ply" : ""));
+      row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }
   if (!sound_of_method_) worst = Outcome::infeasible;
@@ -372,7 +376,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
     for (const RecordedState* state : finest_states())
       if (&state->x != reference) {
         method_ = state->method;
-        Json row = compare(finest, state->x, *reference, "");
+        Json row = compare(finest, *reference, state->x, "");
         row["against"] = p.method.empty() ? p.file : p.method;
         method_entry()["reference"] = row;
       }

@@ -9,6 +9,7 @@
 #include "core/plugin/parameters.h"
 #include "core/plugin/words.h"
 #include "core/report/html.h"
+#include "core/report/pair_measures.h"
 #include "core/report/run_rows.h"
 #include "core/report/text_table.h"
 
@@ -31,12 +32,6 @@ constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
                               {"largest_stretch", &LevelRecord::largest_stretch},
                               {"intersections", &LevelRecord::intersections},
                               {"smallest_gap", &LevelRecord::smallest_gap}};
-const std::pair<const char*, Figure ConsistencyRecord::*> pair_keys[] = {
-    {"d_H_fit", &ConsistencyRecord::d_H_fit},
-    {"d_H_ddg", &ConsistencyRecord::d_H_ddg},
-    {"d_K_fit", &ConsistencyRecord::d_K_fit},
-    {"d_K_ddg", &ConsistencyRecord::d_K_ddg},
-    {"distance_rms", &ConsistencyRecord::distance_rms}};
 
 std::vector<std::string> known_keys() {
   std::vector<std::string> keys;
@@ -44,14 +39,18 @@ std::vector<std::string> known_keys() {
     if (std::find(keys.begin(), keys.end(), name) == keys.end()) keys.emplace_back(name);
   };
   for (const Key& key : level_keys) add(key.name);
-  for (const auto& key : pair_keys) add(key.first);
+  for (const PairMeasure& measure : pair_measures) add(measure.name);
   for (const RowFigure& f : row_figures()) add(f.name);
   return keys;
 }
 
 bool is_time(const std::string& key) { return key == "seconds" || key == "preview_seconds"; }
 bool is_work(const std::string& key) { return key == "iterations" || key == "flops"; }
-bool higher_is_better(const std::string& key) { return key == "smallest_gap"; }
+bool higher_is_better(const std::string& key) {
+  for (const PairMeasure& measure : pair_measures)
+    if (key == measure.name) return measure.better == Better::higher;
+  return key == "smallest_gap";
+}
 
 /// Figures by place, then key, in order of writing; and how each method ended.
 struct Sheet {
@@ -81,9 +80,9 @@ void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, con
       for (const Key& k : level_keys)
         if (std::string(k.name) == key) sheet.add(name, key, method.levels.front().*k.of);
   for (const ConsistencyRecord& pair : method.consistency)
-    for (const auto& [key, of] : pair_keys)
-      sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine), key,
-                pair.*of);
+    for (const PairMeasure& measure : pair_measures)
+      sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine),
+                measure.name, pair.*measure.value);
 }
 
 Sheet sheet_of(const RunSet& set, bool named) {

@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "core/report/html.h"
+#include "core/report/pair_measures.h"
 #include "core/report/tables.h"
 #include "core/report/text_table.h"
 
@@ -14,6 +15,8 @@ using html::escape;
 using html::figure;
 
 using Row = std::vector<Cell>;
+
+constexpr const char* start_title = "flat start";
 
 Cell words(const std::string& content) { return {content, false}; }
 
@@ -57,63 +60,70 @@ std::vector<Source> sources_of(const Table1Block& block) {
   return sources;
 }
 
-struct Measure {
-  const char* plain_name;
-  const char* name;  ///< HTML
-  const char* unit;
-  Figure ConsistencyRecord::*value;
-};
+std::vector<std::optional<ConsistencyRecord>> records_of(const std::vector<Source>& sources, int coarse,
+                                                         int fine) {
+  std::vector<std::optional<ConsistencyRecord>> records;
+  for (const Source& source : sources) records.push_back(source.find(coarse, fine));
+  return records;
+}
 
-constexpr Measure curvature_measures[] = {
-    {"d_H_fit", "d<sub>H</sub><sup>fit</sup>", "1", &ConsistencyRecord::d_H_fit},
-    {"d_H_ddg", "d<sub>H</sub><sup>ddg</sup>", "1", &ConsistencyRecord::d_H_ddg},
-    {"d_K_fit", "d<sub>K</sub><sup>fit</sup>", "1/m²", &ConsistencyRecord::d_K_fit},
-    {"d_K_ddg", "d<sub>K</sub><sup>ddg</sup>", "1/m²", &ConsistencyRecord::d_K_ddg}};
-constexpr Measure distance_measure = {"distance", "distance, RMS", "diagonal",
-                                      &ConsistencyRecord::distance_rms};
+std::vector<const ConsistencyRecord*> pointers_to(
+    const std::vector<std::optional<ConsistencyRecord>>& records) {
+  std::vector<const ConsistencyRecord*> pointers;
+  for (const auto& record : records)
+    if (record) pointers.push_back(&*record);
+  return pointers;
+}
 
-/// The cells of one row, its lowest figures strong when there is something to compare.
-void add_compared(Row& row, const std::vector<Source>& sources, const Measure& measure, int coarse,
+/// The cells of one row, its best figure strong.
+void add_compared(Row& row, const std::vector<Source>& sources, const PairMeasure& measure, int coarse,
                   int fine) {
-  std::vector<Figure> values;
-  Figure lowest;
-  int known = 0;
-  for (const Source& source : sources) {
-    const auto record = source.find(coarse, fine);
-    values.push_back(record ? (*record).*(measure.value) : Figure());
-    if (!values.back()) continue;
-    ++known;
-    lowest = std::min(lowest.value_or(*values.back()), *values.back());
+  const auto records = records_of(sources, coarse, fine);
+  const Figure best = best_of(measure, pointers_to(records));
+  for (const auto& record : records) {
+    const Figure value = record ? (*record).*(measure.value) : Figure();
+    row.push_back({figure(value), true, best && value && *value == *best});
   }
-  for (const Figure& value : values) {
-    row.push_back({figure(value), true, known > 1 && value && *value == *lowest});
-  }
+}
+
+/// What the scene's start scores in the place of the coarse states: one figure where the methods agree on it
+/// as far as it is shown, else the lowest and the highest.
+std::string start_cell(const std::vector<Source>& sources, const PairMeasure& measure, int coarse, int fine) {
+  std::vector<double> values;
+  for (const auto& record : records_of(sources, coarse, fine))
+    if (record && record->of_start.*(measure.value)) values.push_back(*(record->of_start.*(measure.value)));
+  if (values.empty()) return figure({});
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const std::string from = figure(*low), to = figure(*high);
+  return from == to ? from : from + " … " + to;
 }
 
 std::string measures_table(const std::vector<std::pair<int, int>>& pairs, const std::vector<Source>& run,
                            const std::vector<Source>& paper) {
   Row titles = {words("levels"), words("measure"), words("unit")};
   for (const Source& source : run) titles.push_back({escape(source.title)});
+  if (!run.empty()) titles.push_back({start_title});
   for (const Source& source : paper) titles.push_back({source.title});
   std::vector<Row> head = {titles};
   if (!run.empty() && !paper.empty()) {
     head.insert(head.begin(),
-                Row{Cell{"", false, false, 1, 3}, Cell{"this run", true, false, 1, int(run.size())},
+                Row{Cell{"", false, false, 1, 3}, Cell{"this run", true, false, 1, int(run.size()) + 1},
                     Cell{"paper, Table 1", true, false, 1, int(paper.size())}});
   }
   std::vector<Row> body;
-  const int measures = run.empty() ? 4 : 5;
+  const int measures = run.empty() ? published_measures : static_cast<int>(std::size(pair_measures));
   for (const auto& [coarse, fine] : pairs) {
     for (int k = 0; k < measures; ++k) {
-      const Measure& measure = k < 4 ? curvature_measures[k] : distance_measure;
+      const PairMeasure& measure = pair_measures[k];
       Row row;
       if (k == 0) {
         row.push_back(words(std::to_string(coarse) + " → " + std::to_string(fine)));
         row.back().rows = measures;
       }
-      row.push_back(words(measure.name));
+      row.push_back(words(measure.html));
       row.push_back(words(measure.unit));
       add_compared(row, run, measure, coarse, fine);
+      if (!run.empty()) row.push_back({start_cell(run, measure, coarse, fine)});
       add_compared(row, paper, measure, coarse, fine);
       body.push_back(row);
     }
@@ -122,6 +132,21 @@ std::string measures_table(const std::vector<std::pair<int, int>>& pairs, const 
 }
 
 }  // namespace
+
+Figure best_of(const PairMeasure& measure, const std::vector<const ConsistencyRecord*>& records) {
+  const ConsistencyRecord* best = nullptr;
+  int known = 0;
+  for (const ConsistencyRecord* record : records) {
+    const Figure& value = record->*measure.value;
+    if (!value) continue;
+    ++known;
+    if (!best || measure.beats(*value, *(best->*measure.value))) best = record;
+  }
+  if (known < 2) return {};
+  const Figure& start = best->of_start.*measure.value;  // not known of runs of earlier versions
+  if (start && !measure.beats(*(best->*measure.value), *start)) return {};
+  return best->*measure.value;
+}
 
 std::string consistency_table(const RunData& run, const Table1Block* published) {
   const std::vector<Source> sources = sources_of(run);
@@ -140,7 +165,8 @@ std::string published_table(const Table1Block& block) {
 
 std::string table1_text(const RunData& run) {
   const Table1Block* published = table1_block(run.table1_scene);
-  std::vector<Source> sources = sources_of(run);
+  const std::vector<Source> own = sources_of(run);
+  std::vector<Source> sources = own;
   if (sources.empty()) return run.experiment + ": no pair of levels has been compared\n";
   if (published) {
     for (Source& source : sources_of(*published)) {
@@ -149,14 +175,17 @@ std::string table1_text(const RunData& run) {
     }
   }
   std::vector<std::vector<std::string>> rows = {{"levels", "measure", "unit"}};
-  for (const Source& source : sources) rows.front().push_back(source.title);
+  for (std::size_t k = 0; k < sources.size(); ++k) {
+    rows.front().push_back(sources[k].title);
+    if (k + 1 == own.size()) rows.front().push_back(start_title);
+  }
   for (const auto& [coarse, fine] : run.pairs()) {
-    for (const Measure& measure : curvature_measures) {
-      rows.push_back(
-          {std::to_string(coarse) + " → " + std::to_string(fine), measure.plain_name, measure.unit});
-      for (const Source& source : sources) {
-        const auto record = source.find(coarse, fine);
+    for (const PairMeasure& measure : pair_measures) {
+      rows.push_back({std::to_string(coarse) + " → " + std::to_string(fine), measure.name, measure.unit});
+      for (std::size_t k = 0; k < sources.size(); ++k) {
+        const auto record = sources[k].find(coarse, fine);
         rows.back().push_back(figure(record ? (*record).*(measure.value) : Figure()));
+        if (k + 1 == own.size()) rows.back().push_back(start_cell(own, measure, coarse, fine));
       }
     }
   }

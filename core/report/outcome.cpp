@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "core/report/html.h"
+#include "core/report/pair_measures.h"
 #include "core/report/tables.h"
 
 namespace drape {
@@ -19,23 +20,21 @@ std::string shortest(double value) {
   return text.str();
 }
 
-/// The method whose widest pair of levels differs least, where several have one.
+/// The method whose widest pair of levels differs least, where several have one and the flat start would not
+/// do as well.
 std::string most_consistent(const RunData& run) {
   const auto pairs = run.pairs();
   if (pairs.empty()) return "";
   const int coarse = pairs.front().first, fine = pairs.back().second;
-  const MethodRecord* best = nullptr;
-  Figure lowest;
-  int known = 0;
-  for (const MethodRecord& method : run.methods) {
+  std::vector<const ConsistencyRecord*> records;
+  for (const MethodRecord& method : run.methods)
+    if (const ConsistencyRecord* pair = method.pair(coarse, fine)) records.push_back(pair);
+  const Figure lowest = best_of(pair_measures[0], records);
+  if (!lowest) return "";
+  const auto best = std::find_if(run.methods.begin(), run.methods.end(), [&](const MethodRecord& method) {
     const ConsistencyRecord* pair = method.pair(coarse, fine);
-    if (!pair || !pair->d_H_fit) continue;
-    ++known;
-    if (lowest && *lowest <= *pair->d_H_fit) continue;
-    best = &method;
-    lowest = pair->d_H_fit;
-  }
-  if (known < 2) return "";
+    return pair && pair->d_H_fit == lowest;
+  });
   return "; from level " + std::to_string(coarse) + " to " + std::to_string(fine) + ", <b>" +
          escape(best->name) +
          "</b> changes its mean curvature least (d<sub>H</sub><sup>fit</sup> = " + figure(lowest) + ")";

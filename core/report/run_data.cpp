@@ -11,6 +11,7 @@
 #include "core/mesh/file.h"
 #include "core/mesh/message_text.h"
 #include "core/report/csv.h"
+#include "core/report/pair_measures.h"
 
 namespace drape {
 
@@ -69,11 +70,10 @@ ConsistencyRecord consistency_record(const JsonFile& file, const Json& json) {
   ConsistencyRecord r;
   r.coarse = file.find<int>(json, "coarse").value_or(-1);
   r.fine = file.find<int>(json, "fine").value_or(-1);
-  r.d_H_fit = figure(at(json, "d_H_fit"));
-  r.d_H_ddg = figure(at(json, "d_H_ddg"));
-  r.d_K_fit = figure(at(json, "d_K_fit"));
-  r.d_K_ddg = figure(at(json, "d_K_ddg"));
-  r.distance_rms = figure(at(json, "distance_rms"));
+  for (const PairMeasure& measure : pair_measures) {
+    r.*measure.value = figure(at(json, measure.name));
+    r.of_start.*measure.value = figure(at(at(json, "of_start"), measure.name));
+  }
   r.fields = text(at(json, "fields"));
   return r;
 }

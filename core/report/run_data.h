@@ -33,12 +33,19 @@ struct LevelRecord {
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
 
-/// Differences of one coarse state, carried up, from one finer state.
-struct ConsistencyRecord {
-  int coarse = 0, fine = 0;
+/// What one state scores against a finer level's.
+struct PairFigures {
   Figure d_H_fit, d_H_ddg, d_K_fit, d_K_ddg;  ///< [1], [1], [1/m²], [1/m²]
   Figure distance_rms;                        ///< in diagonals of the rest shape
-  std::string fields;                         ///< relative to the run's folder; may be empty
+  Figure silhouette_overlap;                  ///< [1]; higher is better
+  Figure energy_above_end;                    ///< [J]
+};
+
+/// Differences of one coarse state, carried up, from one finer state.
+struct ConsistencyRecord : PairFigures {
+  int coarse = 0, fine = 0;
+  PairFigures of_start;  ///< the same of the scene's start in the coarse state's place
+  std::string fields;    ///< relative to the run's folder; may be empty
 };
 
 struct MethodRecord {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/report/pair_measures.h"
 #include "core/report/tables.h"
 
 namespace drape {
@@ -100,24 +101,27 @@ std::vector<CostPoint> error_curve(const RunData& run, const std::string& method
 }
 
 RunData median_consistency(const RunSet& set, const std::string& variation) {
-  constexpr std::array members = {&ConsistencyRecord::d_H_fit, &ConsistencyRecord::d_H_ddg,
-                                  &ConsistencyRecord::d_K_fit, &ConsistencyRecord::d_K_ddg,
-                                  &ConsistencyRecord::distance_rms};
   RunData medians;
   for (const RunRow& row : rows_of(set)) {
     if (row.variation != variation) continue;
     MethodRecord& method = medians.methods.emplace_back();
     method.name = row.method;
-    std::map<std::pair<int, int>, std::array<std::vector<double>, members.size()>> values;
+    std::map<std::pair<int, int>, std::vector<const ConsistencyRecord*>> repeats;
     for (const Repeat& repeat : row.repeats)
       for (const ConsistencyRecord& pair : repeat.method->consistency)
-        for (std::size_t k = 0; k < members.size(); ++k)
-          if (const Figure& value = pair.*members[k]) values[{pair.coarse, pair.fine}][k].push_back(*value);
-    for (const auto& [levels, lists] : values) {
+        repeats[{pair.coarse, pair.fine}].push_back(&pair);
+    for (const auto& [levels, records] : repeats) {
       ConsistencyRecord& pair = method.consistency.emplace_back();
       pair.coarse = levels.first, pair.fine = levels.second;
-      for (std::size_t k = 0; k < members.size(); ++k)
-        if (const auto spread = spread_of(lists[k])) pair.*members[k] = spread->median;
+      for (const PairMeasure& measure : pair_measures) {
+        std::vector<double> values, of_start;
+        for (const ConsistencyRecord* r : records) {
+          if (const Figure& value = r->*measure.value) values.push_back(*value);
+          if (const Figure& value = r->of_start.*measure.value) of_start.push_back(*value);
+        }
+        if (const auto spread = spread_of(values)) pair.*measure.value = spread->median;
+        if (const auto spread = spread_of(of_start)) pair.of_start.*measure.value = spread->median;
+      }
     }
   }
   return medians;

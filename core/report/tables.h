@@ -35,8 +35,9 @@ std::string summary_table(const RunData& run);
 /// One row a level of each method.
 std::string level_table(const RunData& run);
 
-/// One row a pair of levels and measure, one column a method, the lowest of a row in bold; the
-/// published columns beside if `published` is not null.
+/// One row a pair of levels and measure, one column a method and one for the scene's start in the coarse
+/// state's place; the best of a row in bold, unless that start scores as well. The published columns are
+/// beside if `published` is not null.
 std::string consistency_table(const RunData& run, const Table1Block* published);
 
 /// The same as plain text for a terminal, with the verdict on intersections below.

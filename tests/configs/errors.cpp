@@ -198,6 +198,8 @@ TEST_CASE("every method's states are carried up by its own interpolation") {
            {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
         INFO(name);
         CHECK(pair[name].get<double>() == Approx(value_of(carried, end, name)).epsilon(1e-6));
+        CHECK(pair["of_start"][name].get<double>() ==
+              Approx(value_of(small.scene->starts[2], end, name)).epsilon(1e-6));
       }
     }
     for (const Row& row : rows)

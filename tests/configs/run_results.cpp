@@ -104,7 +104,12 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
 
     std::vector<std::pair<int, int>> pairs;
     for (const Json& pair : method["consistency"]) {
-      REQUIRE(has(pair, {"coarse", "fine", "d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"}));
+      const std::set<std::string> measures = {"d_H_fit",         "d_H_ddg",      "d_K_fit",
+                                              "d_K_ddg",         "distance_rms", "silhouette_overlap",
+                                              "energy_above_end"};
+      REQUIRE(has(pair, {"coarse", "fine"}));
+      REQUIRE(has(pair, measures));
+      REQUIRE(has(pair["of_start"], measures));
       pairs.emplace_back(pair["coarse"], pair["fine"]);
       for (const char* measure : {"d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"}) {
         INFO(measure);

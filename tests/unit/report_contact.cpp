@@ -110,15 +110,56 @@ TEST_CASE("what did not converge is told with its message") {
 TEST_CASE("Table 1 as text sets the paper's columns beside the run's") {
   RunData run = contact_run();
   const std::string text = table1_text(run);
-  CHECK(text.find("levels  measure  unit  pcs   a<b  paper: PCS  paper: SC\n"
-                  "0 → 1   d_H_fit  1     12.0  345  105         1400\n"
-                  "0 → 1   d_H_ddg  1     –     –    139         423\n") != std::string::npos);
+  CHECK(text.find("levels  measure             unit      pcs   a<b  flat start  paper: PCS  paper: SC\n"
+                  "0 → 1   d_H_fit             1         12.0  345  –           105         1400\n"
+                  "0 → 1   d_H_ddg             1         –     –    –           139         423\n") !=
+        std::string::npos);
   CHECK(text.find("No intersection at any recorded state") != std::string::npos);
 
   run.table1_scene.clear();
-  CHECK(table1_text(run).find("levels  measure  unit  pcs   a<b\n") == 0);
+  run.methods[0].consistency[0].silhouette_overlap = 0.98;
+  run.methods[1].consistency[0].of_start.d_H_fit = 34;
+  CHECK(table1_text(run).find("levels  measure             unit      pcs    a<b  flat start\n"
+                              "0 → 1   d_H_fit             1         12.0   345  34.0\n") == 0);
+  CHECK(table1_text(run).find("0 → 1   silhouette_overlap  1         0.980  –    –\n") != std::string::npos);
+  run.methods[0].consistency[0].of_start.d_H_fit = 33;
+  CHECK(table1_text(run).find("d_H_fit             1         12.0   345  33.0 … 34.0\n") !=
+        std::string::npos);
   for (MethodRecord& method : run.methods) method.consistency.clear();
   CHECK(table1_text(run) == "sample: no pair of levels has been compared\n");
+}
+
+TEST_CASE("No method is the best on what the flat start would win") {
+  RunData run = contact_run();
+  const auto pair = [&](int m) -> ConsistencyRecord& { return run.methods[m].consistency[0]; };
+  const auto is_best = [&](const std::string& figure) {
+    return consistency_table(run, nullptr).find("<td><strong>" + figure + "</strong></td>") !=
+           std::string::npos;
+  };
+  CHECK(is_best("12.0"));  // nothing is known of the start, as in runs of earlier versions
+  CHECK(outcome_sentence(run).find("changes its mean curvature least") != std::string::npos);
+  pair(0).of_start.d_H_fit = 12.5;
+  CHECK(is_best("12.0"));
+  for (const double start : {12.0, 11.0}) {
+    pair(0).of_start.d_H_fit = start;
+    CHECK_FALSE(is_best("12.0"));
+    CHECK_FALSE(is_best("345"));
+    CHECK(outcome_sentence(run).find("changes its mean curvature least") == std::string::npos);
+  }
+
+  // Of silhouettes the higher is the better; against the flat start too.
+  pair(0).silhouette_overlap = 0.91, pair(1).silhouette_overlap = 0.93;
+  CHECK(is_best("0.930"));
+  CHECK_FALSE(is_best("0.910"));
+  pair(1).of_start.silhouette_overlap = 0.9;
+  CHECK(is_best("0.930"));
+  pair(1).of_start.silhouette_overlap = 0.93;
+  CHECK_FALSE(is_best("0.930"));
+
+  // An energy below the end's is no better than one as far above it.
+  pair(0).energy_above_end = -0.02, pair(1).energy_above_end = 0.01;
+  CHECK(is_best("0.0100"));
+  CHECK_FALSE(is_best("-0.0200"));
 }
 
 TEST_CASE("Newton steps are the decrement times h, which a static method has from its settings") {
