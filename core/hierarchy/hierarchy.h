@@ -6,6 +6,12 @@
 
 namespace drape {
 
+/// How the vertices of a finer level follow from a coarse one's.
+enum class Interpolation {
+  midpoint,  ///< the surface stays where it is: new vertices lie in the middle of its edges
+  refiner    ///< by the hierarchy's refiner
+};
+
 /// Levels of one cloth from coarse to fine, and the operators between them. Immutable once made.
 struct Hierarchy {
   std::vector<Level> levels;                      ///< at least one
@@ -17,6 +23,9 @@ struct Hierarchy {
   /// fault of check_mesh, if any level has one, and on fewer than one level.
   static Hierarchy of(TriangleMesh coarsest, const Refiner& refiner, int level_count);
 
+  const std::vector<ProlongationMatrix>& weights(Interpolation interpolation) const {
+    return interpolation == Interpolation::midpoint ? midpoints : prolongations;
+  }
   int level_count() const { return static_cast<int>(levels.size()); }
 
   /// W_{to-1} ⋯ W_{from} x by the given weights, [l]: n_{l+1} × n_l, for x (n_from × 3) and

@@ -4,19 +4,16 @@
 
 namespace drape {
 
-/// How a coarse state becomes the next level's start.
-enum class CarryUp { midpoint, refiner };
-
 /// Coarse to fine, each level under its own energy, in the style of Sensitive Couture (Umetani et al.
 /// 2011): the finest level is plain Newton from a better start.
 class CascadicSolver : public ResumableSolver {
  public:
   struct Parameters {
-    CarryUp prolongation = CarryUp::midpoint;
+    Interpolation prolongation = Interpolation::midpoint;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
       d.add_choice("prolongation", &Parameters::prolongation,
-                   {{"midpoint", CarryUp::midpoint}, {"refiner", CarryUp::refiner}})
+                   {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
           .meaning("carries a level's state up: by edge midpoints, or by the experiment's refiner")
           .source("docs/method.md section 3");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
@@ -25,7 +22,7 @@ class CascadicSolver : public ResumableSolver {
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
 
   std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
-    return weights(hierarchy);
+    return hierarchy.weights(p_.prolongation);
   }
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
@@ -33,14 +30,11 @@ class CascadicSolver : public ResumableSolver {
     const auto objective = [&](int level) {
       return std::make_unique<PlainObjective>(*problem.models[level]);
     };
-    return solve_progressively(problem, weights(problem.hierarchy), objective, p_.newton, from, observer);
+    return solve_progressively(problem, problem.hierarchy.weights(p_.prolongation), objective, p_.newton,
+                               from, observer);
   }
 
  private:
-  const std::vector<ProlongationMatrix>& weights(const Hierarchy& hierarchy) const {
-    return p_.prolongation == CarryUp::midpoint ? hierarchy.midpoints : hierarchy.prolongations;
-  }
-
   Parameters p_;
 };
 

@@ -43,7 +43,7 @@ class PcsSolver : public ResumableSolver {
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
 
   std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
-    return hierarchy.prolongations;
+    return hierarchy.weights(p_.interpolation.state);
   }
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
@@ -55,9 +55,8 @@ class PcsSolver : public ResumableSolver {
       return std::make_unique<ProxyObjective>(
           problem, level, proxy_parts(problem, level, above, p_.depth, p_.interpolation), p_.hessian);
     };
-    const auto& weights = p_.interpolation.state == Interpolation::midpoint ? problem.hierarchy.midpoints
-                                                                            : problem.hierarchy.prolongations;
-    return solve_progressively(problem, weights, objective, p_.newton, from, observer);
+    return solve_progressively(problem, problem.hierarchy.weights(p_.interpolation.state), objective,
+                               p_.newton, from, observer);
   }
 
  private:

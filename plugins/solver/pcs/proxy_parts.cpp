@@ -50,8 +50,7 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above,
     } else {
       part.above = above;
       part.matrix_above = std::min(depth, above);
-      part.interpolation =
-          way == Interpolation::midpoint ? &problem.hierarchy.midpoints : &problem.hierarchy.prolongations;
+      part.interpolation = &problem.hierarchy.weights(way);
     }
     add(part, role);
   }

@@ -8,12 +8,6 @@
 
 namespace drape {
 
-/// How the vertices of a finer mesh follow from those of a coarse one.
-enum class Interpolation {
-  midpoint,  ///< the surface stays where it is, its edges split in the middle
-  refiner    ///< by the experiment's refiner
-};
-
 /// By which interpolation a proxy's energies see the fine mesh, role by role.
 struct ProxyInterpolation {
   Interpolation membrane = Interpolation::midpoint;
