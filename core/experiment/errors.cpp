@@ -10,8 +10,10 @@ namespace drape {
 
 namespace {
 
-/// The value of a metric that a measure is; the energy gap needs none.
-constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit"};
+/// The value of a metric that a measure is, or, of an overlap, what it lacks of the whole; the energy gap
+/// needs none.
+constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit", "silhouette_overlap"};
+static_assert(metric_values.size() + 1 == error_measures.size());
 
 std::string number(double value) {
   char text[40];
@@ -43,7 +45,7 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
           metric->evaluate({scene.hierarchy.levels.back(), *scene.models.back(), target.x, &x});
       for (const MetricValue& v : result.values)
         for (std::size_t k = 0; k < metric_values.size(); ++k)
-          if (v.name == metric_values[k]) error[k] = v.value;
+          if (v.name == metric_values[k]) error[k] = v.better == Better::higher ? 1 - v.value : v.value;
     } catch (const std::exception& problem) {
       fault(name + ": " + reason_of(problem));
     }

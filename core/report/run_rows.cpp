@@ -11,7 +11,7 @@ namespace drape {
 namespace {
 
 constexpr std::size_t own = 0, reference = 1;                // targets
-constexpr std::size_t rms = 0, d_H_fit = 2, energy_gap = 3;  // measures
+constexpr std::size_t rms = 0, d_H_fit = 2, energy_gap = 4;  // measures
 
 const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool preview) {
   if (method.levels.empty() || (preview && method.levels.size() < 2)) return nullptr;

@@ -127,7 +127,7 @@ TEST_CASE("report of a sweep is one page with every row, curve and failure") {
   CHECK(data["rows"].size() == 6);
   for (const char* work : {"seconds", "iterations", "flops"})
     for (const char* target : {"own", "reference"})
-      for (const char* measure : {"rms", "hausdorff", "d_H_fit", "energy_gap"}) {
+      for (const char* measure : {"rms", "hausdorff", "d_H_fit", "silhouette_mismatch", "energy_gap"}) {
         const Json& plot = data["errors"][work][target][measure];
         INFO(work << " " << target << " " << measure);
         REQUIRE(plot["curves"].size() == 6);

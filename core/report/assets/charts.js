@@ -11,7 +11,8 @@ const drape = (() => {
 
   // What errors are measured in and against, and what they cost, as errors.csv has them.
   const measures = {rms: 'distance, RMS [diagonals]', hausdorff: 'Hausdorff distance [diagonals]',
-    d_H_fit: 'difference in mean curvature, d_H_fit', energy_gap: 'energy above the target, relative'};
+    d_H_fit: 'difference in mean curvature, d_H_fit', silhouette_mismatch: 'silhouettes, 1 − overlap',
+    energy_gap: 'energy above the target, relative'};
   const targets = {reference: 'the reference', own: 'the method’s own finest state'};
   const works = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 
