@@ -169,7 +169,11 @@ void HandleParameters::declare(Declaration<HandleParameters>& d) {
 }
 
 void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
-  d.add("method", &ReferenceParameters::method).meaning("method whose finest state it is");
+  d.add("method", &ReferenceParameters::method)
+      .meaning(
+          "method whose finest state it is; `lowest` takes, of all methods' finest states that have "
+          "converged, "
+          "the one of lowest energy");
   d.add("force_tolerance", &ReferenceParameters::force_tolerance)
       .at_least(0)
       .at_most(1e12)
@@ -218,8 +222,8 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add_section("reference", &ExperimentParameters::reference)
       .or_word("method")
       .meaning(
-          "what errors are measured against, beside each method's own finest state; a method's name is "
-          "enough");
+          "what errors are measured against, beside each method's own finest state; a method's name, "
+          "or `lowest`, is enough");
   d.add("frames", &ExperimentParameters::frames)
       .at_least(0)
       .at_most(1000)
@@ -375,10 +379,14 @@ class Maker {
     const auto refuse = [&](const std::string& what) {
       errors_.push_back({e_.place_of("reference"), "\"reference\" " + what});
     };
+    const bool lowest = reference.method == ReferenceParameters::lowest;
     if (!reference.method.empty() && !reference.file.empty())
       refuse("takes either a method or a file, not both");
-    else if (!reference.method.empty() && !methods.count(reference.method))
-      refuse("must be one of the methods, not \"" + excerpt(reference.method) + "\"");
+    else if (lowest && methods.count(reference.method))
+      refuse(
+          "takes the word lowest for the lowest state of all methods; give the method of that name another");
+    else if (!reference.method.empty() && !lowest && !methods.count(reference.method))
+      refuse("must be one of the methods, or lowest, not \"" + excerpt(reference.method) + "\"");
     else if (reference.method.empty() && reference.force_tolerance > 0)
       refuse("needs the method whose finest state is solved further, as in {method: " +
              (methods.empty() ? "newton" : *methods.rbegin()) + ", force_tolerance: 1e-5}");

@@ -104,6 +104,8 @@ struct ScheduleParameters {
 
 /// The state that the methods' errors are measured against, beside each method's own finest one.
 struct ReferenceParameters {
+  /// In place of a method's name: of the finest states that have converged, that of lowest energy.
+  static constexpr const char* lowest = "lowest";
   std::string method;
   double force_tolerance = 0;
   std::string file;
@@ -148,10 +150,10 @@ struct Experiment {
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
   const Registry* registry = nullptr;  ///< that the plugins are from; for those of a schedule's conditions
 
-  /// Where a key of the file is set; without it, where the file begins.
-  Location place_of(const std::string& key) const;
   /// The solver of one of the methods. Throws std::logic_error where there is no such method.
   const Solver& solver_of(const std::string& method) const;
+  /// Where a key of the file is set; without it, where the file begins.
+  Location place_of(const std::string& key) const;
 };
 
 /// An error unless the name, of an experiment, a method or a sweep, can be one of files and a cell of a

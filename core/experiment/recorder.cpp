@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <limits>
 
 #include "core/experiment/machine.h"
 #include "core/experiment/recorder_files.h"
@@ -337,34 +338,49 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
 }
 
+const RecordedState* Recorder::reference_state() const {
+  const std::string& named = experiment_.parameters.reference.method;
+  const RecordedState* lowest = nullptr;
+  double lowest_energy = std::numeric_limits<double>::infinity();
+  for (const RecordedState* state : finest_states()) {
+    if (state->method == named) return state;
+    for (const Json& entry : results_.at("methods").at(state->method).at("levels")) {
+      if (entry.at("level") != state->level || !has_converged(entry.at("status").get<std::string>()))
+        continue;
+      const Json& energy = entry.at("energy");  // with limits and contact
+      if (energy.is_number() && energy < lowest_energy) lowest = state, lowest_energy = energy;
+    }
+  }
+  return named == ReferenceParameters::lowest ? lowest : nullptr;
+}
+
 const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   const ReferenceParameters& p = experiment_.parameters.reference;
   if (scene_.reference) {
     results_["reference"] = {{"file", p.file}, {"mesh", "reference.ply"}};
     return &*scene_.reference;
   }
-  for (const RecordedState* state : finest_states()) {
-    if (state->method != p.method) continue;
-    Json& entry = results_["reference"];
-    entry = {{"method", p.method}, {"mesh", "reference.ply"}};
-    if (p.force_tolerance == 0 || cancelled) return &state->x;
-    entry["force_tolerance"] = p.force_tolerance;
-    try {
-      tightened_ = tighten(experiment_, scene_, state->x, observer);
-    } catch (const std::exception& error) {
-      entry.update({{"status", failed}, {"message", error.what()}});
-      log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
-      return &state->x;
-    }
-    entry.update({{"status", to_string(tightened_->outcome)},
-                  {"message", tightened_->message},
-                  {"force_residual", finite_or_null(tightened_->force_residual)},
-                  {"newton_iterations", tightened_->iterations},
-                  {"seconds", tightened_->seconds}});
-    log({{"event", "reference_solved"}, {"status", to_string(tightened_->outcome)}});
-    return &tightened_->x;
+  const RecordedState* state = reference_state();
+  if (!state) return nullptr;
+  Json& entry = results_["reference"];
+  entry = {{"method", state->method}, {"mesh", "reference.ply"}};
+  if (p.method != state->method) entry["chosen"] = p.method;
+  if (p.force_tolerance == 0 || cancelled) return &state->x;
+  entry["force_tolerance"] = p.force_tolerance;
+  try {
+    tightened_ = tighten(experiment_, scene_, state->x, observer);
+  } catch (const std::exception& error) {
+    entry.update({{"status", failed}, {"message", error.what()}});
+    log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
+    return &state->x;
   }
-  return nullptr;
+  entry.update({{"status", to_string(tightened_->outcome)},
+                {"message", tightened_->message},
+                {"force_residual", finite_or_null(tightened_->force_residual)},
+                {"newton_iterations", tightened_->iterations},
+                {"seconds", tightened_->seconds}});
+  log({{"event", "reference_solved"}, {"status", to_string(tightened_->outcome)}});
+  return &tightened_->x;
 }
 
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {
@@ -377,7 +393,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
       if (&state->x != reference) {
         method_ = state->method;
         Json row = compare(finest, *reference, state->x, "");
-        row["against"] = p.method.empty() ? p.file : p.method;
+        row["against"] = results_["reference"].value("method", p.file);
         method_entry()["reference"] = row;
       }
   }

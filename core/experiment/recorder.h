@@ -96,6 +96,8 @@ class Recorder : public Observer {
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
   /// The finest states that methods have reached.
   std::vector<const RecordedState*> finest_states() const;
+  /// The finest state that the experiment names as reference; null where there is none.
+  const RecordedState* reference_state() const;
   /// The state that errors are measured against, also as reference.ply; null where there is none.
   const Positions* find_reference(Observer& observer, bool cancelled);
   void log(Json entry);

@@ -154,6 +154,7 @@ std::string reference_sentence(const RunData& run) {
   if (run.errors.empty()) return "No states were kept in this run (<code>frames: 0</code>).";
   if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
   std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
+  if (run.reference_is_lowest) text += ", the lowest in energy of all that have converged";
   if (run.reference_tolerance)
     text += ", solved on to a force residual of " + figure(run.reference_tolerance);
   return text + ".";

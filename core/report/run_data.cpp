@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "core/experiment/experiment.h"
 #include "core/experiment/json_file.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
@@ -269,6 +270,7 @@ RunData read_run(const std::filesystem::path& folder) {
   const Json& reference = at(json, "reference");
   for (const char* key : {"method", "file"})
     if (!text(at(reference, key)).empty()) run.reference = text(at(reference, key));
+  run.reference_is_lowest = text(at(reference, "chosen")) == ReferenceParameters::lowest;
   run.reference_tolerance = figure(at(reference, "force_tolerance"));
   run.force_tolerance = figure(at(at(json, "tolerance"), "force_residual"));
   const Json& methods = at(json, "methods");

@@ -111,6 +111,7 @@ struct RunData {
   std::vector<ErrorSeries> errors;          ///< likewise
   std::vector<ConditionSeries> changes;     ///< likewise; none without a schedule
   std::string reference;                    ///< the method, or file, that errors are measured against
+  bool reference_is_lowest = false;         ///< that method's was chosen as the lowest in energy
   Figure reference_tolerance;               ///< of the force residual, to which it was solved further
 
   /// Whether anything was kept apart, so that gaps and intersections mean something.

@@ -19,13 +19,19 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Takes the methods that are not chosen out of a resolved experiment.
+/// Takes the methods that are not chosen out of a resolved experiment, and the reference if it is of one of
+/// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
   const auto kept = [&](const std::string& name) {
     return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
   };
   for (auto& [key, value] : resolved.entries) {
-    if (key == "reference" && !kept(value.scalar)) value = ConfigNode::of("");
+    if (key == "reference") {
+      const ConfigNode* method = value.find("method");
+      if (method && !method->scalar.empty() && method->scalar != ReferenceParameters::lowest &&
+          !kept(method->scalar))
+        value = ConfigNode::of("");
+    }
     if (key != "methods") continue;
     ConfigNode methods;
     for (const auto& [name, method] : value.entries)

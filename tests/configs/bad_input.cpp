@@ -278,7 +278,11 @@ TEST_CASE("energies, methods and their names") {
         "newton: "
         "{}}\"\n");
   CHECK(said_of_edit("reference: newton", "reference: nwton") ==
-        "error: e.yaml:14:12: \"reference\" must be one of the methods, not \"nwton\"\n");
+        "error: e.yaml:14:12: \"reference\" must be one of the methods, or lowest, not \"nwton\"\n");
+  CHECK(said_of(replaced(replaced(small_experiment(), "reference: newton", "reference: lowest"),
+                         "  newton: {}", "  lowest: {type: newton}")) ==
+        "error: e.yaml:14:12: \"reference\" takes the word lowest for the lowest state of all methods; "
+        "give the method of that name another\n");
   CHECK(said_of_edit("reference: newton", "reference: {force_tolerance: 1e-5}") ==
         "error: e.yaml:14:12: \"reference\" needs the method whose finest state is solved further, as in "
         "{method: pcs, force_tolerance: 1e-5}\n");

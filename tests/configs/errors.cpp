@@ -212,6 +212,41 @@ TEST_CASE("every method's states are carried up by its own interpolation") {
   }
 }
 
+TEST_CASE("the lowest of the states that have converged may be the reference, whichever method's it is") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const auto run = [&](const std::string& options) {
+    const Ended ended =
+        drape_with("run e.yaml --overwrite --out out --threads 1 --quiet --set reference=lowest " + options,
+                   folder.path);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code <= 1);
+    return Json::parse(text_of(folder / "out/results.json"));
+  };
+  const Json all = run("--set reference.force_tolerance=1e-6");
+  std::string lowest;
+  double energy = 1e300;
+  for (const auto& [name, method] : all["methods"].items())
+    if (method["levels"][1]["energy"] < energy) energy = method["levels"][1]["energy"], lowest = name;
+  CHECK(all["reference"]["method"] == lowest);
+  CHECK(all["reference"]["chosen"] == "lowest");
+  CHECK(all["reference"]["force_residual"] <= 1e-6);
+  for (const auto& [name, method] : all["methods"].items()) {
+    CHECK(method["reference"]["against"] == lowest);
+    CHECK(method["reference"]["energy_above_end"] > 0);  // of the method's state, above the reference
+  }
+  CHECK(text_of(folder / "out/report.html")
+            .find("The reference is <b>" + lowest +
+                  "</b>'s finest state, the lowest in energy of all that have converged, solved on to") !=
+        std::string::npos);
+
+  // One that has not converged is none, however low it lies; without any there is none.
+  const Json broken = run("--set methods." + lowest + ".newton.max_steps=2");
+  REQUIRE(broken["methods"][lowest]["status"] != "converged");
+  CHECK(broken["reference"]["method"] != lowest);
+  CHECK_FALSE(run("--set newton.max_steps=1").contains("reference"));
+}
+
 TEST_CASE("without frames there are no errors and no files of them") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());

@@ -193,6 +193,25 @@ TEST_CASE("--most-levels keeps experiments from having more, and leaves those th
   CHECK_THAT(text_of(folder / "out/runs/many/seed_1/config.yaml"), Contains("\nlevels: 2\n"));
 }
 
+TEST_CASE("runs of chosen methods keep the reference unless it is of another method") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write("s.yaml",
+               "name: s\nbase: e.yaml\nmethods: [cascadic]\nablation:\n"
+               "  - name: its own\n    set: {reference: {method: cascadic, force_tolerance: 1e-4}}\n"
+               "  - name: lowest\n    set: {reference: lowest}\n"
+               "  - name: another\n    set: {reference: newton}\n");
+  CHECK(drape_with("sweep s.yaml --out out", folder.path).exit_code == 0);
+  const auto reference = [&](const std::string& variation) {
+    const auto json =
+        nlohmann::json::parse(text_of(folder / ("out/runs/" + variation + "/seed_1/results.json")));
+    return json.contains("reference") ? json["reference"].value("method", "") : std::string("none");
+  };
+  CHECK(reference("its_own") == "cascadic");
+  CHECK(reference("lowest") == "cascadic");
+  CHECK(reference("another") == "none");
+}
+
 TEST_CASE("a setting may be a whole map or list, and its files are relative to the sweep's own") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
