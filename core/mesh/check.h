@@ -18,8 +18,8 @@ namespace drape {
 /// Connectivity is looked at only once all indices are in range.
 std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 
-/// Of those, the faults of the coordinates: one that is not finite or larger than can be computed with, a mesh
-/// with no extent, and one so far from the origin that rounding changes its shape.
+/// Of those, the faults of the coordinates: one that is not finite or larger than can be computed with, a
+/// mesh with no extent, and one so far from the origin that rounding changes its shape.
 std::vector<std::string> check_coordinates(const Positions& x);
 
 /// The smallest angle of all triangles [degrees]; 0 for a mesh without triangles.
