@@ -162,8 +162,10 @@ TEST_CASE("a run writes frames and errors, against its own end and a tighter ref
 }
 
 TEST_CASE("every method's states are carried up by its own interpolation") {
-  const Overrides changed = {
-      {"levels", "3"}, {"methods.smooth", "{type: cascadic, prolongation: refiner}"}, {"frames", "1"}};
+  const Overrides changed = {{"levels", "3"},
+                             {"methods.smooth", "{type: cascadic, prolongation: refiner}"},
+                             {"methods.smooth_pcs", "{type: pcs, interpolation: {state: refiner}}"},
+                             {"frames", "1"}};
   const Loaded small(changed);
   const Hierarchy& hierarchy = small.scene->hierarchy;
   const Scratch folder;
@@ -182,8 +184,8 @@ TEST_CASE("every method's states are carried up by its own interpolation") {
     FAIL(name);
     return 0.0;
   };
-  for (const auto& [method, smooth] :
-       std::map<std::string, bool>{{"pcs", true}, {"cascadic", false}, {"newton", false}, {"smooth", true}}) {
+  for (const auto& [method, smooth] : std::map<std::string, bool>{
+           {"pcs", false}, {"smooth_pcs", true}, {"cascadic", false}, {"newton", false}, {"smooth", true}}) {
     INFO(method);
     const auto& weights = smooth ? hierarchy.prolongations : hierarchy.midpoints;
     const auto& others = smooth ? hierarchy.midpoints : hierarchy.prolongations;
