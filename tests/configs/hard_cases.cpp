@@ -69,11 +69,21 @@ TEST_CASE("hard cases end as they should") {
 }
 
 TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
-  const Json levels = huge_beside_tiny("pcs", "");
+  const Json levels = huge_beside_tiny("pcs",
+                                       " --set 'methods.pcs.interpolation={membrane: refiner, bending: "
+                                       "refiner, external: refiner, state: refiner}'");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
   CHECK(levels[1]["message"] == "");
   CHECK(levels[1]["largest_stretch"] < 1.0608);
+}
+
+TEST_CASE("where Loop moves the rest shape too far for midpoints the next level begins anew, and says so") {
+  const Json levels = huge_beside_tiny("pcs", "");
+  REQUIRE(levels.size() == 2);
+  CHECK(levels[1]["status"] == "converged");
+  CHECK_THAT(levels[1]["message"].get<std::string>(),
+             Catch::Contains("begun from the scene's start instead"));
 }
 
 TEST_CASE("a triangle that is a hair from its strain limit is drawn back from it, not slid along it") {
