@@ -16,7 +16,7 @@ namespace {
 using Projected = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  // n×2 on the picture plane
 
 /// States that reach over more than so many pixels are seen in larger ones: pictures stay small.
-constexpr double most_pixels_a_side = 4096;
+constexpr double max_pixels_a_side = 4096;
 
 /// Which side of the line through a and b the point p is on. The same rounding whichever end is named first,
 /// so that no pixel falls between two triangles that share the edge.
@@ -72,7 +72,7 @@ double overlap(const Positions& x, const Positions& other, const Triangles& tria
   Projected a = x * plane, b = other * plane;
   const Eigen::RowVector2d lower = a.colwise().minCoeff().cwiseMin(b.colwise().minCoeff());
   const Eigen::RowVector2d extent = a.colwise().maxCoeff().cwiseMax(b.colwise().maxCoeff()) - lower;
-  pixel = std::max(pixel, extent.maxCoeff() / most_pixels_a_side);
+  pixel = std::max(pixel, extent.maxCoeff() / max_pixels_a_side);
   for (Projected* p : {&a, &b}) *p = ((p->rowwise() - lower) / pixel).array() - 0.5;
   Picture picture(std::max(1, static_cast<int>(std::ceil(extent.x() / pixel))),
                   std::max(1, static_cast<int>(std::ceil(extent.y() / pixel))));

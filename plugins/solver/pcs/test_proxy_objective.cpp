@@ -9,7 +9,17 @@ using namespace drape;
 
 namespace {
 
-/// Three levels without pins, and a bent, stretched state of the coarsest.
+/// A bent, stretched state of a flat level.
+Positions bent(const Level& level) {
+  Positions x = level.rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
+    x(i, 0) *= 1.1 + 0.3 * x(i, 1);
+  }
+  return x;
+}
+
+/// Three levels without pins.
 struct Fixture {
   Solved s = scene_from(R"(
 name: proxy
@@ -21,14 +31,7 @@ methods: {pcs: {}}
 )");
   Problem problem = s.scene->problem();
 
-  Positions state(int level) const {
-    Positions x = s.scene->hierarchy.levels[level].rest.vertices;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
-      x(i, 0) *= 1.1 + 0.3 * x(i, 1);
-    }
-    return x;
-  }
+  Positions state(int level) const { return bent(s.scene->hierarchy.levels[level]); }
 };
 
 constexpr ProxyInterpolation by_refiner{Interpolation::refiner, Interpolation::refiner,
@@ -75,13 +78,8 @@ methods: {pcs: {}}
 )");
   const Problem problem = s.scene->problem();
   for (int level : {0, 1}) {
-    Positions x = s.scene->hierarchy.levels[level].rest.vertices;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      x(i, 2) = 0.1 * std::sin(9 * x(i, 0)) + 0.2 * x(i, 1) * x(i, 1);
-      x(i, 0) *= 1.1 + 0.3 * x(i, 1);
-    }
-    Positions fine = x;
-    for (int l = level; l < 2; ++l) fine = (problem.hierarchy.midpoints[l] * fine).eval();
+    const Positions x = bent(s.scene->hierarchy.levels[level]);
+    const Positions fine = problem.hierarchy.prolong(x, level, 2, problem.hierarchy.midpoints);
     ProxyObjective proxy = proxy_of(problem, level, 1, by_midpoints);
     const double expected = s.model().value(fine);
     REQUIRE(std::abs(expected - problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
