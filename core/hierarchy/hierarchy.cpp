@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/hierarchy/midpoint.h"
+#include "core/hierarchy/rest_interpolation.h"
 #include "core/mesh/check.h"
 
 namespace drape {
@@ -31,6 +32,7 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
     Refinement finer = refiner.refine(coarse);
     TriangleMesh rest{finer.weights * coarse.rest.vertices, std::move(finer.triangles)};
     hierarchy.midpoints.push_back(midpoint_refinement(coarse).weights);
+    hierarchy.linear.push_back(rest_interpolation(coarse, rest.vertices));
     hierarchy.prolongations.push_back(std::move(finer.weights));
     hierarchy.levels.push_back(checked_level(l, std::move(rest)));
   }

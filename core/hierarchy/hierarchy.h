@@ -8,7 +8,7 @@ namespace drape {
 
 /// How the vertices of a finer level follow from a coarse one's.
 enum class Interpolation {
-  midpoint,  ///< the surface stays where it is: new vertices lie in the middle of its edges
+  midpoint,  ///< linear in the rest shape: new vertices lie in the middle of edges, if they rest there
   refiner    ///< by the hierarchy's refiner
 };
 
@@ -17,6 +17,7 @@ struct Hierarchy {
   std::vector<Level> levels;                      ///< at least one
   std::vector<ProlongationMatrix> prolongations;  ///< [l]: P_{l→l+1} of the chosen refiner
   std::vector<ProlongationMatrix> midpoints;      ///< [l]: U_{l→l+1}, which leaves the surface in place
+  std::vector<ProlongationMatrix> linear;  ///< [l]: as midpoints, but where the refiner moves rest vertices
 
   /// Refines `coarsest` level_count - 1 times. Rest positions follow the same operator, X_{l+1} = P X_l,
   /// so that the rest shape is free of stress on every level. Throws std::runtime_error with the first
@@ -24,7 +25,7 @@ struct Hierarchy {
   static Hierarchy of(TriangleMesh coarsest, const Refiner& refiner, int level_count);
 
   const std::vector<ProlongationMatrix>& weights(Interpolation interpolation) const {
-    return interpolation == Interpolation::midpoint ? midpoints : prolongations;
+    return interpolation == Interpolation::midpoint ? linear : prolongations;
   }
   int level_count() const { return static_cast<int>(levels.size()); }
 

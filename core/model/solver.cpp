@@ -11,7 +11,7 @@ Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const 
 }
 
 std::vector<ProlongationMatrix> Solver::interpolation(const Hierarchy& hierarchy) const {
-  return hierarchy.midpoints;
+  return hierarchy.linear;
 }
 
 std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer& observer) const {

@@ -55,6 +55,8 @@ constexpr double strained = 1e3, relaxed = 10, slowing = 16;
 constexpr int most_strained = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
+/// The residual on the next level costs about a tenth of a step there: it is computed every so many steps.
+constexpr int steps_between_looks = 4;
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
 constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
@@ -264,8 +266,10 @@ class Newton {
   /// A start is no preview, pins have to be in their places, and the last of changing conditions is followed
   /// by equilibrium.
   bool hands_on() const {
-    return result_.force_residual < p_.refine_at && result_.steps > 0 && !conditions_ && hard_.settled() &&
-           !hard_.given_up();
+    if (result_.steps == 0 || conditions_ || !hard_.settled() || hard_.given_up()) return false;
+    if (result_.force_residual < p_.refine_at) return true;
+    return p_.refine_ratio > 0 && result_.steps % steps_between_looks == 0 &&
+           result_.force_residual < p_.refine_ratio * run_.residual_above(result_.x);
   }
 
   LevelResult finish_settled(bool in_tolerance) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "core/model/objective.h"
 #include "core/model/solver.h"
 #include "core/numerics/newton_parameters.h"
@@ -11,11 +13,13 @@ namespace drape {
 struct LevelRun {
   const Stopwatch& clock;  ///< the method's, for the rows that the observer gets
   Observer& observer;
-  bool finer_follows = false;  ///< the level may be left early: as the observer asks, or for `refine_at`
+  bool finer_follows = false;  ///< the level may be refined early, as the observer or the parameters ask
   std::map<std::string, double> spent = {};  ///< on the level before this, by phase [s]
   const NewtonState* from = nullptr;  ///< where an earlier minimisation of the same was, to go on there
   Conditions* conditions = nullptr;   ///< that change meanwhile
   std::string remark = {};            ///< what the result's message begins with
+  /// The force residual that a state of this level leaves on the next one; 0 where it is not allowed there.
+  std::function<double(const Positions& x)> residual_above = {};
 };
 
 /// Minimises the objective from x, where fixed vertices stay, step by implicit step

@@ -49,6 +49,14 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
           "a level whose state a finer one goes on from is left once its force residual is below this; "
           "0 waits for equilibrium, and so does a schedule")
       .source("PCS section 4: a level may be refined before it has converged");
+  d.add("refine_ratio", &NewtonParameters::refine_ratio)
+      .at_least(0)
+      .at_most(1e3)
+      .meaning(
+          "a level whose state a finer one goes on from is left once its force residual is below this part "
+          "of "
+          "the residual that the state leaves there; 0 waits for equilibrium, and so does a schedule")
+      .source("nested iteration: Hackbusch 1985, chapter 5; a departure from the paper");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
       .meaning("what becomes of negative eigenvalues of an element's Hessian")

@@ -25,6 +25,7 @@ struct NewtonParameters {
   double force_tolerance = 1e-3;
   double decrement_tolerance = 0;
   double refine_at = 0;
+  double refine_ratio = 0;
   Projection::Kind projection = Projection::clamp;
   ProjectionShare projection_share = ProjectionShare::least;
   int refresh = 1;

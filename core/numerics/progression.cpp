@@ -1,9 +1,23 @@
 #include "core/numerics/progression.h"
 
+#include <cmath>
+
 #include "core/numerics/newton_state.h"
 #include "core/numerics/safe_refinement.h"
 
 namespace drape {
+namespace {
+
+/// The force residual of the state y; 0 where it is not allowed.
+double residual_at(Objective& objective, const Positions& y) {
+  Positions g;
+  objective.contacts().begin_step(y);
+  if (!std::isfinite(objective.gradient(y, g))) return 0;
+  const double residual = free_norm(g, objective.model().fixed()) / objective.residual_scale(y, g);
+  return std::isfinite(residual) ? residual : 0;
+}
+
+}  // namespace
 
 std::vector<LevelResult> solve_progressively(
     const Problem& problem, const std::vector<ProlongationMatrix>& weights,
@@ -40,8 +54,13 @@ std::vector<LevelResult> solve_progressively(
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
     } else {
-      result = minimise(*objective(l), std::move(start.x), newton,
-                        {clock, observer, l < problem.finest(), spent, state, problem.conditions, remark});
+      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.conditions, remark};
+      std::unique_ptr<Objective> next;
+      run.residual_above = [&](const Positions& x) {
+        if (!next) next = objective(l + 1);
+        return residual_at(*next, problem.carry_up(weights[l], l, x));
+      };
+      result = minimise(*objective(l), std::move(start.x), newton, run);
     }
     result.afresh = l == first;
     results.push_back(std::move(result));

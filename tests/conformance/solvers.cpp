@@ -106,6 +106,25 @@ TEST_CASE("A level that a finer one goes on from is handed on at the force resid
   }
 }
 
+TEST_CASE("A level is handed on at a part of the residual that its state leaves on the next one",
+          "[conformance]") {
+  std::string yaml = hanging_square("cascadic");
+  yaml.replace(yaml.find("force_tolerance"), 0, "refine_ratio: 0.05, ");
+  const Solved s = solve_yaml(yaml);
+  REQUIRE(s.levels.size() == 3);
+  const Problem problem = s.scene->problem();
+  const auto weights = s.experiment.methods[0].second->interpolation(problem.hierarchy);
+  for (int l = 0; l < 2; ++l) {
+    const Positions above = problem.carry_up(weights[l], l, s.levels[l].x);
+    INFO("level " << l << ": " << s.levels[l].message);
+    CHECK(s.levels[l].outcome == Outcome::handed_on);
+    CHECK(s.levels[l].force_residual < 0.05 * problem.models[l + 1]->force_residual(above));
+    CHECK(s.levels[l].force_residual > tolerance);
+  }
+  CHECK(s.levels[2].outcome == Outcome::converged);
+  CHECK(s.model().force_residual(s.x()) <= tolerance * (1 + 1e-9));
+}
+
 TEST_CASE("Every solver goes on when asked to refine early, on every level but the finest", "[conformance]") {
   struct Impatient : Observer {
     int asked = 0;

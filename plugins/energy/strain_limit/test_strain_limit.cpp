@@ -181,7 +181,7 @@ TEST_CASE("strain_limit: a stretched sheet has the energy of its volume, and +in
     return x;
   };
   CHECK(energy->value(stretched(1.03)) == Approx(1e3 * material.thickness * law(1.03)).epsilon(1e-10));
-  CHECK(energy->value(stretched(0.7)) == 0);
+  CHECK(energy->value(0.7 * level.rest.vertices) == 0);
   for (const double s : {limit + 1e-12, 1.2, 50.0}) {
     const Positions x = stretched(s);
     Positions g = Positions::Zero(x.rows(), 3);
@@ -197,7 +197,7 @@ TEST_CASE("strain_limit: a step ends where a tenth of the room is left, and neve
   REQUIRE(largest_stretch(level, x0) > 1.005);
   REQUIRE(largest_stretch(level, x0) < limit);
   for (unsigned seed = 2; seed <= 60; ++seed) {
-    const Positions x1 = moved(x0, std::pow(10.0, -2 + seed % 6), seed);
+    const Positions x1 = moved(x0, std::pow(10.0, static_cast<int>(seed % 6) - 2), seed);
     if (largest_stretch(level, x1) < 1.01) continue;
     const StepLimit step = filter(*energy).max_step(x0, x1);
     REQUIRE(step.fraction > 0);

@@ -20,7 +20,7 @@ class NewtonSolver : public ResumableSolver {
                                   Observer& observer) const override {
     const Stopwatch clock(from.seconds);
     NewtonParameters parameters = p_.newton;
-    parameters.refine_at = 0;  // no level goes on from another's state
+    parameters.refine_at = parameters.refine_ratio = 0;  // no level goes on from another's state
     std::vector<LevelResult> results = from.finished;
     restore_conditions(problem, from);
     for (int l = from.level; l <= problem.finest(); ++l) {

@@ -104,7 +104,7 @@ methods: {pcs: {}}
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
   CHECK(parts[1].above == 2);
-  CHECK(parts[1].interpolation == &problem.hierarchy.midpoints);
+  CHECK(parts[1].interpolation == &problem.hierarchy.linear);
   CHECK(parts[1].roles.has(EnergyRole::bending));
   CHECK_FALSE(parts[1].roles.has(EnergyRole::membrane));
 }
