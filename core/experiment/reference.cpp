@@ -1,6 +1,7 @@
 #include "core/experiment/reference.h"
 
 #include "core/mesh/io.h"
+#include "core/mesh/same_triangles.h"
 #include "core/numerics/newton.h"
 
 namespace drape {
@@ -27,7 +28,7 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
       return refuse(file.string() + " has " + std::to_string(mesh.vertices.rows()) +
                     " vertices, but the finest level has " + std::to_string(finest.vertex_count()) +
                     "; take a state of that level");
-    if (mesh.triangles != finest.rest.triangles)
+    if (!same_triangles(mesh.triangles, finest.rest.triangles))
       return refuse(file.string() + " has other triangles than the finest level; take a state of that level");
     return mesh.vertices;
   } catch (const std::exception& problem) {

@@ -11,6 +11,7 @@
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "core/mesh/message_text.h"
+#include "core/mesh/same_triangles.h"
 
 namespace drape {
 
@@ -77,7 +78,7 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
     const TriangleMesh mesh = read_mesh(file);
     for (const std::string& fault : check_coordinates(mesh.vertices))
       errors.push_back({e.place_of("start"), file + ": " + fault});
-    if (mesh.vertices.rows() == coarsest.vertex_count() && mesh.triangles == coarsest.rest.triangles)
+    if (mesh.vertices.rows() == coarsest.vertex_count() && same_triangles(mesh.triangles, coarsest.rest.triangles))
       return mesh.vertices;
     errors.push_back(
         {e.place_of("start"), "\"start\": " + file +

@@ -150,6 +150,11 @@ void move_pins(const LevelModel& model, Positions& y) {
   y = limit.fraction == 1 ? placed : Positions(y + limit.fraction * (placed - y));
 }
 
+/// Whether the cloth meets nothing on the straight way from x to y.
+bool is_free_way(const LevelModel& model, const Positions& x, const Positions& y) {
+  return x == y || ActiveContacts(model.contacts()).max_step(x, y).fraction == 1;
+}
+
 }  // namespace
 
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
@@ -165,8 +170,10 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
   refined.x = problem.hierarchy.midpoints[level] * x;
   move_pins(model, refined.x);
   Positions target = problem.carry_up(weights, level, x);
-  const bool there = target == refined.x && beyond_limits(model.limits(), target, 1).empty();
-  if (!there) {
+  const bool allowed = beyond_limits(model.limits(), target, 1).empty();
+  if (allowed && is_free_way(model, refined.x, target)) {
+    refined.x = std::move(target);
+  } else {
     PullToTarget objective(model, refined.x, std::move(target));
     NewtonParameters newton;
     newton.form = NewtonForm::statics;

@@ -78,7 +78,7 @@ TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
   CHECK(levels[1]["largest_stretch"] < 1.0608);
 }
 
-TEST_CASE("where Loop moves the rest shape too far for midpoints the next level begins anew, and says so") {
+TEST_CASE("where Loop moves the rest shape too far the next level begins anew, and says so") {
   const Json levels = huge_beside_tiny("pcs", "");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");

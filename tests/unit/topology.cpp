@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/mesh/generate.h"
+#include "core/mesh/same_triangles.h"
 #include "tests/support/time_limit.h"
 
 using namespace drape;
@@ -38,6 +39,14 @@ TEST_CASE("the topology of two triangles", "[topology]") {
   CHECK(row(topology.vertex_vertices, 3) == std::vector<int>{1, 2});
   CHECK(row(topology.vertex_triangles, 2) == std::vector<int>{0, 1});
   CHECK(row(topology.vertex_triangles, 4).empty());
+}
+
+TEST_CASE("meshes with another number of triangles have other triangles", "[topology]") {
+  const Triangles two = grid({1, 1}, 2, 2, Diagonals::one_way).triangles, one = two.topRows(1);
+  CHECK(same_triangles(two, Triangles(two)));
+  CHECK_FALSE(same_triangles(one, two));
+  CHECK_FALSE(same_triangles(two, one));
+  CHECK_FALSE(same_triangles(two, two.colwise().reverse()));
 }
 
 TEST_CASE("hinges keep the mesh's orientation", "[topology]") {

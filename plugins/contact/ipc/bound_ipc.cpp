@@ -8,6 +8,7 @@
 #include "core/contact/mean_moves.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
+#include "core/mesh/same_triangles.h"
 #include "plugins/contact/ipc/kept.h"
 #include "plugins/contact/ipc/obstacle_way.h"
 #include "plugins/contact/ipc/surface_contacts.h"
@@ -129,9 +130,8 @@ std::shared_ptr<const RestingCloth> RestingCloth::of(const Level& level, double 
   return all.find_or_make(
       [&](const RestingCloth& cloth) {
         return cloth.range == range && cloth.self_contact == self_contact &&
-               cloth.rest.vertices.rows() == rest.vertices.rows() &&
-               cloth.rest.triangles.rows() == rest.triangles.rows() && cloth.rest.vertices == rest.vertices &&
-               cloth.rest.triangles == rest.triangles;
+               cloth.rest.vertices.rows() == rest.vertices.rows() && cloth.rest.vertices == rest.vertices &&
+               same_triangles(cloth.rest.triangles, rest.triangles);
       },
       [&] {
         RestingCloth cloth{rest, range, self_contact, Surface::of(rest, level.topology), {}};

@@ -6,6 +6,7 @@
 
 #include "core/contact/bent_advance.h"
 #include "core/contact/pair_geometry.h"
+#include "core/mesh/same_triangles.h"
 #include "core/mesh/turn.h"
 #include "core/numerics/parallel.h"
 
@@ -141,7 +142,7 @@ ObstacleWay::ObstacleWay(const Obstacles& before, const Obstacles& after) : befo
     throw std::runtime_error("obstacles cannot appear or vanish during a run");
   for (std::size_t i = 0; i < after.bodies.size(); ++i) {
     const Obstacle &from = before.bodies[i], &to = after.bodies[i];
-    if (from.mesh.triangles != to.mesh.triangles)
+    if (!same_triangles(from.mesh.triangles, to.mesh.triangles))
       throw std::runtime_error("obstacle \"" + to.name + "\": its mesh has become another one, of " +
                                std::to_string(to.mesh.triangles.rows()) + " triangles and not " +
                                std::to_string(from.mesh.triangles.rows()) +
