@@ -78,7 +78,8 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
     const TriangleMesh mesh = read_mesh(file);
     for (const std::string& fault : check_coordinates(mesh.vertices))
       errors.push_back({e.place_of("start"), file + ": " + fault});
-    if (mesh.vertices.rows() == coarsest.vertex_count() && same_triangles(mesh.triangles, coarsest.rest.triangles))
+    if (mesh.vertices.rows() == coarsest.vertex_count() &&
+        same_triangles(mesh.triangles, coarsest.rest.triangles))
       return mesh.vertices;
     errors.push_back(
         {e.place_of("start"), "\"start\": " + file +
