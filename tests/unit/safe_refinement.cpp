@@ -127,6 +127,19 @@ TEST_CASE("Where nothing is to be kept, the refined state is the prolonged one, 
   CHECK(refined.x == expected);
 }
 
+TEST_CASE("Where contact and limits are not in the way, the refined state is the prolonged one") {
+  const TwoLevels cloth(grid({0.6, 0.6}, 5, 5, Diagonals::one_way), {ball, "ipc"},
+                        {"{type: strain_limit, limit: 1.5}"});
+  Positions x = cloth.starts[0];
+  for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.5 + 0.02 * std::sin(3.0 * i);  // over the ball
+  REQUIRE(largest_distance(cloth.target(x), cloth.midpoint(x)) > 1e-3);
+  REQUIRE(cloth.beyond_limit(1, cloth.target(x)) == 0);
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.fault.empty());
+  CHECK(refined.iterations == 0);
+  CHECK(refined.x == cloth.target(x));
+}
+
 TEST_CASE("A sheet around a ball is refined without touching it") {
   const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {ball});
   const Positions x = over_the_ball(cloth), target = cloth.target(x);
