@@ -55,7 +55,7 @@ constexpr double strained = 1e3, relaxed = 10, slowing = 16;
 constexpr int most_strained = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
-/// The residual on the next level costs about a tenth of a step there: it is computed every so many steps.
+/// The residual on the next level takes its contacts and its forces: it is computed every so many steps.
 constexpr int steps_between_looks = 4;
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
 constexpr double lost_after = 100;

@@ -54,8 +54,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e3)
       .meaning(
           "a level whose state a finer one goes on from is left once its force residual is below this part "
-          "of "
-          "the residual that the state leaves there; 0 waits for equilibrium, and so does a schedule")
+          "of the residual that the state leaves there; 0 waits for equilibrium, and so does a schedule")
       .source("nested iteration: Hackbusch 1985, chapter 5; a departure from the paper");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
