@@ -55,8 +55,8 @@ constexpr double strained = 1e3, relaxed = 10, slowing = 16;
 constexpr int most_strained = 20;
 constexpr double smallest_step_size = 1e-8;
 constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
-/// The residual on the next level takes its contacts and its forces: it is computed every so many steps.
-constexpr int steps_between_looks = 4;
+/// In steps: the residual on the next level costs an evaluation of its contacts and forces.
+constexpr int residual_check_interval = 4;
 /// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
 constexpr double lost_after = 100;
 /// Shares of the projection that `least` tries, in turn.
@@ -268,7 +268,7 @@ class Newton {
   bool hands_on() const {
     if (result_.steps == 0 || conditions_ || !hard_.settled() || hard_.given_up()) return false;
     if (result_.force_residual < p_.refine_at) return true;
-    return p_.refine_ratio > 0 && result_.steps % steps_between_looks == 0 &&
+    return p_.refine_ratio > 0 && result_.steps % residual_check_interval == 0 &&
            result_.force_residual < p_.refine_ratio * run_.residual_above(result_.x);
   }
 

@@ -150,8 +150,8 @@ void move_pins(const LevelModel& model, Positions& y) {
   y = limit.fraction == 1 ? placed : Positions(y + limit.fraction * (placed - y));
 }
 
-/// Whether the cloth meets nothing on the straight way from x to y.
-bool is_free_way(const LevelModel& model, const Positions& x, const Positions& y) {
+/// Whether straight motion from x to y meets no contact.
+bool is_collision_free(const LevelModel& model, const Positions& x, const Positions& y) {
   return x == y || ActiveContacts(model.contacts()).max_step(x, y).fraction == 1;
 }
 
@@ -171,7 +171,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
   move_pins(model, refined.x);
   Positions target = problem.carry_up(weights, level, x);
   const bool allowed = beyond_limits(model.limits(), target, 1).empty();
-  if (allowed && is_free_way(model, refined.x, target)) {
+  if (allowed && is_collision_free(model, refined.x, target)) {
     refined.x = std::move(target);
   } else {
     PullToTarget objective(model, refined.x, std::move(target));
