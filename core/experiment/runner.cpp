@@ -11,6 +11,7 @@
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
 #include "core/mesh/message_text.h"
+#include "core/numerics/stopwatch.h"
 #include "core/plugin/words.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
@@ -167,11 +168,19 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Work&
                           : "run the experiment anew: there is no checkpoint of it"));
 }
 
+/// How long a run that has been told to stop still draws its report's pictures [s].
+constexpr double seconds_for_pictures = 2;
+
 /// The results are there whatever becomes of their report.
-void report_on(const RunFolder& folder) {
+void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   const std::string name = folder.path().string();
+  std::optional<Stopwatch> since_stop;
+  const auto leave = [&] {
+    if (!since_stop && stopped()) since_stop.emplace();
+    return since_stop && since_stop->seconds() > seconds_for_pictures;
+  };
   try {
-    write_report(folder.path());
+    write_report(folder.path(), leave);
   } catch (const std::exception& error) {
     throw RunBrokenOff(reason_of(error) + "; the results in " + name +
                        " are there without their report; write it with drape report " + name);
@@ -228,7 +237,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   const bool complete = !cancelled && measured;
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
-  if (options.report) report_on(folder);
+  if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
   const bool good = all_converged && recorder.sound();
   if (options.view)
     options.view->run_finished((cancelled ? "stopped on request"

@@ -60,15 +60,20 @@ Positions near_cloth(const Positions& obstacle, const std::vector<const Position
 
 class PictureMaker {
  public:
-  explicit PictureMaker(const RunData& run) : run_(run) {}
+  PictureMaker(const RunData& run, const std::function<bool()>& leave) : run_(run), leave_(leave) {}
 
   PictureSet make() {
     make_folder(run_.folder / "pictures");
-    read_states();
-    draw_states();
-    read_fields();
-    draw_H_differences();
-    draw_folds();
+    try {
+      read_states();
+      draw_states();
+      read_fields();
+      draw_H_differences();
+      draw_folds();
+    } catch (const PictureLeft&) {
+      set_.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
+                           run_.folder.string() + " draws them.");
+    }
     return std::move(set_);
   }
 
@@ -162,7 +167,7 @@ class PictureMaker {
       const std::string name = H_difference_picture(method, *pair);
       if (rest && rest->vertices.rows() == f->mesh.vertices.rows()) {
         set_.maps_on_rest = true;
-        if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size);
+        if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, leave_);
         keep(name, map_renderer_->draw({*rest, nullptr, &colours, false, false}, Camera::facing(*rest, 1)));
       } else {
         keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
@@ -195,6 +200,8 @@ class PictureMaker {
       for (const LevelRecord& level : method.levels) {
         try {
           draw_fold(method, level.level);
+        } catch (const PictureLeft&) {
+          throw;
         } catch (const std::exception& error) {
           set_.notes.push_back(fold_picture(method, level.level) + ": " + reason_of(error));
         }
@@ -258,7 +265,7 @@ class PictureMaker {
   const TriangleMesh* obstacle() const { return obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr; }
 
   Renderer& renderer() {
-    if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height);
+    if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height, leave_);
     return *renderer_;
   }
 
@@ -269,6 +276,7 @@ class PictureMaker {
   }
 
   const RunData& run_;
+  const std::function<bool()>& leave_;
   PictureSet set_;
   std::map<StateKey, TriangleMesh> states_;
   std::map<PairKey, PairFields> fields_;
@@ -307,6 +315,8 @@ const ConsistencyRecord* widest_pair(const MethodRecord& method) {
   return widest;
 }
 
-PictureSet draw_pictures(const RunData& run) { return PictureMaker(run).make(); }
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave) {
+  return PictureMaker(run, leave).make();
+}
 
 }  // namespace drape

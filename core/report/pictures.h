@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -40,7 +41,8 @@ std::string H_difference_picture(const MethodRecord& method, const ConsistencyRe
 const ConsistencyRecord* widest_pair(const MethodRecord& method);
 
 /// Draws everything there is data for and writes it to DIR/pictures. A mesh that is missing or cannot be
-/// read becomes a note. Throws std::runtime_error if the folder cannot be written.
-PictureSet draw_pictures(const RunData& run);
+/// read becomes a note. Once `leave` (it may be empty) says so, what is left is not drawn, and a note says
+/// how to draw it. Throws std::runtime_error if the folder cannot be written.
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave = {});
 
 }  // namespace drape

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "core/report/embedded.h"
 
@@ -148,12 +149,13 @@ TriangleMesh merged(const std::vector<TriangleMesh>& meshes) {
 
 struct Renderer::Context {
   int width, height;
+  std::function<bool()> leave;
   OSMesaContext mesa = nullptr;
   std::vector<unsigned char> canvas;  // RGBA, supersampled
   GLuint program = 0, depth_program = 0, array = 0, buffers[5] = {}, depth_texture[2] = {},
          depth_target[2] = {};
 
-  Context(int w, int h) : width(w), height(h) {
+  Context(int w, int h, std::function<bool()> asked) : width(w), height(h), leave(std::move(asked)) {
     // clang-format off
     const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 24,
                               OSMESA_PROFILE, OSMESA_CORE_PROFILE,
@@ -236,6 +238,7 @@ struct Renderer::Context {
     SkyLight weight = SkyLight::Constant(x.rows(), 2, 1e-6f), light = SkyLight::Zero(x.rows(), 2);
     std::vector<float> depth(static_cast<std::size_t>(sky_size) * sky_size);
     for (int k = 0; k < sky_directions; ++k) {
+      if (leave && leave()) throw PictureLeft();
       const Eigen::Vector3d towards = spread_direction(k, sky_directions);
       const Eigen::Matrix4f matrix = light_matrix(towards, radius);
       draw_depth(1, sky_size, matrix, index_count);
@@ -275,7 +278,8 @@ struct Renderer::Context {
   }
 };
 
-Renderer::Renderer(int width, int height) : context_(std::make_unique<Context>(width, height)) {}
+Renderer::Renderer(int width, int height, std::function<bool()> leave)
+    : context_(std::make_unique<Context>(width, height, std::move(leave))) {}
 Renderer::~Renderer() = default;
 
 Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {

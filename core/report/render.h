@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "core/mesh/triangle_mesh.h"
@@ -40,14 +42,21 @@ TriangleMesh merged(const std::vector<TriangleMesh>& meshes);
 /// n×3 unit normals, area-weighted; zero where undefined.
 Positions smooth_normals(const TriangleMesh& mesh);
 
+/// A picture that its Renderer was told to leave unfinished.
+struct PictureLeft : std::runtime_error {
+  PictureLeft() : std::runtime_error("the picture was left unfinished") {}
+};
+
 /// Draws cloth off screen, in software (OSMesa): a warm key light with its shadow, a fill, and sky light
 /// with occlusion. No display is needed. One at a time, on one thread.
 class Renderer {
  public:
-  /// Size of the pictures [pixels]. Throws std::runtime_error if OSMesa gives no context.
-  Renderer(int width, int height);
+  /// Size of the pictures [pixels]. `leave`, which may be empty, is asked all along. Throws
+  /// std::runtime_error if OSMesa gives no context.
+  Renderer(int width, int height, std::function<bool()> leave = {});
   ~Renderer();
 
+  /// Throws PictureLeft once `leave` says so.
   Image draw(const Drawing& drawing, const Camera& camera) const;
 
  private:

@@ -211,6 +211,18 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(fs::file_size(run.folder / "report.html") < 25'000'000);
 }
 
+TEST_CASE("a report leaves out the pictures that it is told to leave, in the midst of one, and says so") {
+  const SampleRun run;
+  write_file(run.folder / "results.json", run.results.dump());
+  int asked = 0;
+  const auto leave = [&] { return ++asked > 100; };  // a lit picture asks 64 times
+  const PictureSet set = draw_pictures(read_run(run.folder), leave);
+  CHECK(set.pictures.size() == 1);
+  CHECK(asked == 101);
+  REQUIRE(set.notes.size() == 1);
+  CHECK_THAT(set.notes.front(), Catch::Contains("drape report " + run.folder.string()));
+}
+
 TEST_CASE("the pictures of a report are drawn, stored and inlined") {
   const SampleRun run;
   const std::string page = run.page();
