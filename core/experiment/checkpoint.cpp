@@ -64,8 +64,9 @@ void fields(A& a, IdleSteps::Memory& m) {
 template <class A>
 void fields(A& a, NewtonState& s) {
   a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.positions, s.changed_at, s.response, s.times_held_up, s.iterations_of_step, s.strained_for, s.slowed,
-    s.idle, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift, s.factor_values);
+    s.relaxed, s.positions, s.changed_at, s.response, s.times_held_up, s.iterations_of_step, s.strained_for,
+    s.slowed, s.idle, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift,
+    s.factor_values);
 }
 
 template <class A>
@@ -118,7 +119,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 9;
+constexpr std::uint32_t format = 10;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

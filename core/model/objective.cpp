@@ -50,6 +50,11 @@ void Objective::forget_room() {
   sum_ = SumMatrix();
 }
 
+void Objective::smooth_pattern_changed() {
+  gone_ = true;
+  sum_ = SumMatrix();
+}
+
 void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   smooth_changed();
   set_limits(model_.limits());

@@ -66,6 +66,9 @@ class Objective {
   }
   /// Whether the smooth part is something else than the plain energy of the level.
   virtual bool is_proxy() const = 0;
+  /// Makes the smooth part of a proxy at its minimum the plain energy of the level, for what may still relax.
+  /// False where nothing changes.
+  virtual bool relax() { return false; }
 
  protected:
   /// A function of x alone until smooth_changed() or model_changed() is called: it is kept where x stays.
@@ -76,6 +79,9 @@ class Objective {
 
   /// The smooth part is another function from now on.
   void smooth_changed() { evaluated_at_.resize(0, 3); }
+
+  /// The pattern of the smooth part's matrix is another one from now on.
+  void smooth_pattern_changed();
 
   /// Restricts or replaces the limits of the model.
   void set_limits(std::vector<const BoundEnergy*> limits) {

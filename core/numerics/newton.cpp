@@ -104,7 +104,10 @@ class Newton {
         const bool in_tolerance = !hard_.pulling() && converged();
         const bool settled = in_tolerance || at_floor;
         const bool changing = conditions_ && !conditions_->finished();
-        if (settled && !changing) return finish_settled(in_tolerance);
+        if (settled && !changing) {
+          if (relax()) continue;
+          return finish_settled(in_tolerance);
+        }
         if (run_.finer_follows && hands_on()) return finish(Outcome::handed_on, "");
         // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
         // widens them twofold.
@@ -167,6 +170,7 @@ class Newton {
     s.projection_share = share_;
     std::copy_n(decrements_, 3, s.decrements.begin());
     s.held_by = limit_.by;
+    s.relaxed = relaxed_;
     s.positions = hard_.memory();
     if (conditions_) s.so_far.conditions = conditions_->state();
     s.changed_at = changed_at_;
@@ -198,6 +202,8 @@ class Newton {
     limit_.by = s.held_by;
     age_ = s.factor_age;
     origin_ = result_.x;
+    relaxed_ = s.relaxed;
+    if (relaxed_) f_.relax();
     hard_.restore(s.positions);
     take_positions();
     changed_at_ = s.changed_at;
@@ -270,6 +276,21 @@ class Newton {
     if (result_.force_residual < p_.refine_at) return true;
     return p_.refine_ratio > 0 && result_.steps % residual_check_interval == 0 &&
            result_.force_residual < p_.refine_ratio * run_.residual_above(result_.x);
+  }
+
+  /// At the equilibrium of a proxy: whether its plain energy is to be minimised from here, as if begun anew.
+  bool relax() {
+    if (hard_.given_up() || !f_.relax()) return false;
+    relaxed_ = true;
+    changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
+    h_ = p_.step_size;
+    age_ = p_.refresh;
+    strained_for_ = 0;
+    slowed_ = false;
+    idle_.restart();
+    evaluate();
+    update_residual();
+    return true;
   }
 
   LevelResult finish_settled(bool in_tolerance) {
@@ -745,6 +766,7 @@ class Newton {
   ChangeBegun changed_at_;   // when the change under way was begun
   ChangeResponse response_;  // to the part of it that was made last
   int times_held_up_ = 0;
+  bool relaxed_ = false;  // what was a proxy is the plain energy
   IdleSteps idle_;
   double rounding_residual_ = 0;  // that rounding may make, where that was found out last
   int strained_for_ = 0;          // steps in turn

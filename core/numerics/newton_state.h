@@ -39,7 +39,8 @@ struct NewtonState {
   double residual_scale = 1;  ///< of the force residual [N]
   int projection_share = 0;   ///< which of the shares of the projection worked last
   std::array<double, 3> decrements{};
-  std::string held_by;  ///< what kept the last step short, in words
+  std::string held_by;   ///< what kept the last step short, in words
+  bool relaxed = false;  ///< the objective was a proxy and is the plain energy now
   HardPositions::Memory positions;
   ChangeBegun changed_at;
   ChangeResponse response;

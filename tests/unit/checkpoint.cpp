@@ -38,6 +38,7 @@ Checkpoint full() {
   s.so_far.force_residual = std::nan("");
   s.decrements = {1, 2, 3};
   s.held_by = "ball";
+  s.relaxed = true;
   s.positions = {{3}, 1e4, 0.5, 2, false, true, "post"};
   s.changed_at = {4, 5, 6};
   s.idle = {3, -0.5, 1e-6};
@@ -147,7 +148,7 @@ TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 9; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 10; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

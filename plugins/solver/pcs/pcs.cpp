@@ -7,6 +7,12 @@
 
 namespace drape {
 
+/// What becomes of a coarse level that is at the equilibrium of its proxy.
+enum class Relaxation {
+  plain,  ///< on to the equilibrium of the level's own plain energy
+  none    ///< the proxy's equilibrium is the level's state
+};
+
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
 /// plain Newton (Zhang et al. 2022; docs/method.md, section 3).
 class PcsSolver : public ResumableSolver {
@@ -16,6 +22,7 @@ class PcsSolver : public ResumableSolver {
     int target = 0;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
+    Relaxation relaxation = Relaxation::plain;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
       d.add_section("interpolation", &Parameters::interpolation)
@@ -37,6 +44,12 @@ class PcsSolver : public ResumableSolver {
           .meaning(
               "levels up to the model whose matrix galerkin carries down, of energies that the refiner's "
               "mesh is needed for, where there are so many");
+      d.add_choice("relaxation", &Parameters::relaxation,
+                   {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
+          .meaning(
+              "what follows the proxy's equilibrium on a coarse level: that of the level's own plain energy "
+              "from there, in which folds are as sharp as the level can have them, or nothing")
+          .source("PCS section 4 for none; plain is a departure (docs/locking.md)");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }
   };
@@ -52,8 +65,9 @@ class PcsSolver : public ResumableSolver {
       const int to_finest = problem.finest() - level;
       if (to_finest == 0) return std::make_unique<PlainObjective>(*problem.models[level]);
       const int above = p_.target == 0 ? to_finest : std::min(p_.target, to_finest);
-      return std::make_unique<ProxyObjective>(
-          problem, level, proxy_parts(problem, level, above, p_.depth, p_.interpolation), p_.hessian);
+      return std::make_unique<ProxyObjective>(problem, level,
+                                              proxy_parts(problem, level, above, p_.depth, p_.interpolation),
+                                              p_.hessian, p_.relaxation == Relaxation::plain);
     };
     return solve_progressively(problem, problem.hierarchy.weights(p_.interpolation.state), objective,
                                p_.newton, from, observer);

@@ -42,12 +42,13 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& place, double f
 }  // namespace
 
 ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
-                               ProxyMatrix matrix)
+                               ProxyMatrix matrix, bool relaxes)
     : Objective(*problem.models[level]),
       problem_(problem),
       plain_(*problem.models[level]),
       level_(level),
-      kind_(matrix) {
+      kind_(matrix),
+      relaxes_(relaxes) {
   std::vector<std::shared_ptr<const BlockPattern>> patterns;
   for (const ProxyPart& part : parts) {
     if (part.above == 0) {
@@ -71,6 +72,17 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
   lay_out(patterns);
 }
 
+bool ProxyObjective::relax() {
+  if (!relaxes_ || relaxed_) return false;
+  relaxed_ = true;
+  smooth_changed();
+  if (matrix_.pattern != plain_.pattern()) {
+    matrix_ = BlockMatrix(plain_.pattern());
+    smooth_pattern_changed();
+  }
+  return true;
+}
+
 void ProxyObjective::lay_out(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
   matrix_ = BlockMatrix(united(patterns));
   for (FinerPart& finer : finer_)
@@ -90,6 +102,7 @@ const Positions& ProxyObjective::FinerPart::carry(const Positions& x, int count)
 }
 
 double ProxyObjective::smooth_value(const Positions& x) {
+  if (relaxed_) return plain_.value(x);
   double sum = 0;
   for (const ProxyPart& own : own_) sum += own.factor * plain_.value(x, own.roles);
   for (FinerPart& finer : finer_) {
@@ -100,6 +113,7 @@ double ProxyObjective::smooth_value(const Positions& x) {
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
+  if (relaxed_) return plain_.gradient(x, g);
   g.resize(x.rows(), 3);
   double sum = 0;
   bool first = true;
@@ -131,7 +145,7 @@ void ProxyObjective::add_own_hessians(const Positions& x, Projection projection,
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
-  if (kind_ == ProxyMatrix::coarse) {
+  if (relaxed_ || kind_ == ProxyMatrix::coarse) {
     plain_.hessian(x, projection, matrix_);
     return matrix_;
   }

@@ -32,8 +32,11 @@ enum class ProxyMatrix {
 /// vertices of level l, with that level's own contact and limits (PCS, section 4). The gradient is exact.
 class ProxyObjective : public Objective {
  public:
-  ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts, ProxyMatrix matrix);
-  bool is_proxy() const override { return true; }
+  /// With `relaxes`, relax() makes it the plain energy.
+  ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts, ProxyMatrix matrix,
+                 bool relaxes = false);
+  bool is_proxy() const override { return !relaxed_; }
+  bool relax() override;
 
  protected:
   double smooth_value(const Positions& x) override;
@@ -60,6 +63,7 @@ class ProxyObjective : public Objective {
   const LevelModel& plain_;
   int level_;
   ProxyMatrix kind_;
+  bool relaxes_, relaxed_ = false;
   std::vector<ProxyPart> own_;  // parts that the level's own model gives
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_ where the sum has another pattern; the sum

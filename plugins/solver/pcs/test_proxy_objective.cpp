@@ -153,6 +153,32 @@ TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
   REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - dense(plain)).norm() > 1e-3 * dense(plain).norm());
 }
 
+TEST_CASE("A proxy that relaxes becomes the plain energy of its level, once", "[proxy_objective]") {
+  const Fixture f;
+  const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
+  const auto parts = proxy_parts(f.problem, 0, 2, 1, interpolation);
+  const Positions x = f.state(0);
+  ProxyObjective never(f.problem, 0, parts, ProxyMatrix::galerkin);
+  CHECK_FALSE(never.relax());
+  CHECK(never.is_proxy());
+  ProxyObjective proxy(f.problem, 0, parts, ProxyMatrix::galerkin, true);
+  PlainObjective plain(*f.problem.models[0]);
+  Positions g, expected;
+  plain.gradient(x, expected);
+  proxy.gradient(x, g);
+  REQUIRE((g - expected).norm() > 1e-3 * expected.norm());
+  proxy.matrix(x, Projection::clamp);
+  REQUIRE(proxy.relax());
+  CHECK_FALSE(proxy.relax());
+  CHECK_FALSE(proxy.is_proxy());
+  CHECK(proxy.gradient(x, g) == plain.gradient(x, expected));
+  CHECK(g == expected);
+  CHECK(proxy.value(x) == plain.value(x));
+  const BlockMatrix& matrix = proxy.matrix(x, Projection::clamp);
+  CHECK(matrix.pattern == f.problem.models[0]->pattern());
+  CHECK(matrix.values == plain.matrix(x, Projection::clamp).values);
+}
+
 TEST_CASE("The proxy has the contact and the limits of its own level", "[proxy_objective]") {
   Solved s = scene_from(R"(
 name: proxy
