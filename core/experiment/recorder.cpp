@@ -295,8 +295,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   const int finest = static_cast<int>(scene_.models.size()) - 1;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
-    const bool to_rounding = r.outcome == Outcome::converged_to_rounding && worst == Outcome::converged;
-    if (!ended_as_asked(r.outcome) || to_rounding) worst = r.outcome;
+    worst = worse_of(worst, r.outcome);
     Json& state = entry["levels"][i];
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)

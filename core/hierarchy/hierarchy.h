@@ -17,7 +17,9 @@ struct Hierarchy {
   std::vector<Level> levels;                      ///< at least one
   std::vector<ProlongationMatrix> prolongations;  ///< [l]: P_{l→l+1} of the chosen refiner
   std::vector<ProlongationMatrix> midpoints;      ///< [l]: U_{l→l+1}, which leaves the surface in place
-  std::vector<ProlongationMatrix> linear;  ///< [l]: as midpoints, but where the refiner moves rest vertices
+  /// [l]: linear interpolation over the rest shape: a fine vertex follows the coarse triangle that it rests
+  /// in. The midpoints where the refiner leaves rest positions in place.
+  std::vector<ProlongationMatrix> linear;
 
   /// Refines `coarsest` level_count - 1 times. Rest positions follow the same operator, X_{l+1} = P X_l,
   /// so that the rest shape is free of stress on every level. Throws std::runtime_error with the first
@@ -33,10 +35,6 @@ struct Hierarchy {
   /// 0 ≤ from ≤ to < level_count().
   Positions prolong(const Positions& x, int from, int to,
                     const std::vector<ProlongationMatrix>& weights) const;
-  /// The same by the refiner's prolongations.
-  Positions prolong(const Positions& x, int from, int to) const {
-    return prolong(x, from, to, prolongations);
-  }
 };
 
 }  // namespace drape

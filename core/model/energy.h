@@ -51,7 +51,6 @@ class Roles {
   }
 
   constexpr bool has(EnergyRole role) const { return (bits_ & bit(role)) != 0; }
-  constexpr bool empty() const { return bits_ == 0; }
   constexpr void add(EnergyRole role) { bits_ |= bit(role); }
 
  private:

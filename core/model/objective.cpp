@@ -27,13 +27,6 @@ double Objective::plain_energy(const Positions& x) {
   return sum;
 }
 
-double Objective::value(const Positions& x) {
-  double sum = smooth_value(x);
-  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
-  if (penalty_) sum += penalty_->value(x);
-  return std::isfinite(sum) ? sum + contacts_.barrier(x) + contacts_.friction(x) : sum;
-}
-
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
   std::vector<const BoundEnergy*> local = contacts_.energies(x);

@@ -25,8 +25,6 @@ class Objective {
   double gradient(const Positions& x, Positions& g);
   /// The plain energy E_l(x) of the level, without friction, whatever is minimised [J].
   double plain_energy(const Positions& x);
-  /// F(x) alone.
-  double value(const Positions& x);
   /// The matrix at x [N/m]; valid until the next call. Its pattern object stays the same as long as
   /// its sparsity does.
   const BlockMatrix& matrix(const Positions& x, Projection projection);
@@ -73,7 +71,6 @@ class Objective {
  protected:
   /// A function of x alone until smooth_changed() or model_changed() is called: it is kept where x stays.
   virtual double smooth_gradient(const Positions& x, Positions& g) = 0;
-  virtual double smooth_value(const Positions& x) = 0;
   /// To which the rest is added in place, where its pattern has room for it.
   virtual BlockMatrix& smooth_matrix(const Positions& x, Projection projection) = 0;
 
@@ -113,7 +110,6 @@ class PlainObjective : public Objective {
 
  protected:
   double smooth_gradient(const Positions& x, Positions& g) override { return model().gradient(x, g); }
-  double smooth_value(const Positions& x) override { return model().value(x); }
   BlockMatrix& smooth_matrix(const Positions& x, Projection projection) override {
     model().hessian(x, projection, matrix_);
     return matrix_;

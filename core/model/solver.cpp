@@ -18,6 +18,19 @@ std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer
   return resume(problem, MethodState(), observer);
 }
 
+Outcome worse_of(Outcome a, Outcome b) {
+  constexpr Outcome rising[] = {Outcome::converged_to_rounding,
+                                Outcome::refined_early,
+                                Outcome::out_of_steps,
+                                Outcome::stalled,
+                                Outcome::infeasible,
+                                Outcome::cancelled};
+  Outcome worst = Outcome::converged;
+  for (const Outcome outcome : rising)
+    if (a == outcome || b == outcome) worst = outcome;
+  return worst;
+}
+
 bool has_converged(const std::string& outcome) {
   return outcome == to_string(Outcome::converged) || outcome == to_string(Outcome::converged_to_rounding);
 }

@@ -47,7 +47,10 @@ inline bool has_converged(Outcome outcome) {
 inline bool ended_as_asked(Outcome outcome) {
   return has_converged(outcome) || outcome == Outcome::handed_on;
 }
-/// The same of outcomes in words, as results have them.
+/// The one that says more of what went wrong: in rising order converged, converged_to_rounding,
+/// refined_early, out_of_steps, stalled, infeasible, cancelled; handed_on counts as converged.
+Outcome worse_of(Outcome a, Outcome b);
+/// As above, of outcomes in words, as results have them.
 bool has_converged(const std::string& outcome);
 bool ended_as_asked(const std::string& outcome);
 

@@ -74,12 +74,6 @@ class PullToTarget : public Objective {
   bool brings_held_vertices() const override { return false; }
 
  protected:
-  double smooth_value(const Positions& y) override {
-    double sum = 0;
-    for (Eigen::Index i = 0; i < y.rows(); ++i)
-      sum += 0.5 * weight(i) * (y.row(i) - target_.row(i)).squaredNorm();
-    return penalty_ ? sum + penalty_->value(y) : sum;
-  }
   double smooth_gradient(const Positions& y, Positions& g) override {
     g.resize(y.rows(), 3);
     double sum = 0;

@@ -1,12 +1,18 @@
 #pragma once
 
 #include "core/model/energy.h"
+#include "core/model/objective.h"
 #include "tests/support/dense_matrix.h"
 
 inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drape::Positions& x) {
   drape::Positions g = drape::Positions::Zero(x.rows(), 3);
   energy.add_gradient(x, g);
   return g;
+}
+
+inline double value_of(drape::Objective& objective, const drape::Positions& x) {
+  drape::Positions g;
+  return objective.gradient(x, g);
 }
 
 inline drape::BlockMatrix hessian_of(const drape::BoundEnergy& energy, const drape::Positions& x,

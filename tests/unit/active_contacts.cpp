@@ -497,12 +497,12 @@ methods: {newton: {}}
 
   const auto value = [&](const Positions& y) {
     REQUIRE(objective.max_step(x, y).fraction == 1);
-    return objective.value(y);
+    return value_of(objective, y);
   };
   const auto gradient = [&](const Positions& y) {
     REQUIRE(objective.max_step(x, y).fraction == 1);
     Positions g;
-    CHECK(objective.gradient(y, g) == Approx(objective.value(y)).epsilon(1e-12));
+    objective.gradient(y, g);
     return g;
   };
   const Positions g = gradient(x);
@@ -511,7 +511,7 @@ methods: {newton: {}}
   CHECK((differences(value, x, 1e-6) - flat(g).transpose()).norm() <= 1e-6 * g.norm());
   CHECK((differences(gradient, x, 1e-6) - h).norm() <= 1e-5 * h.norm());
   // All parts are in it: leaving one out is noticed.
-  CHECK(objective.plain_energy(x) == Approx(objective.value(x) - objective.contacts().friction(x)));
+  CHECK(objective.plain_energy(x) == Approx(value_of(objective, x) - objective.contacts().friction(x)));
   BlockMatrix smooth(model.pattern());
   model.hessian(x, Projection::none, smooth);
   CHECK((dense(smooth) - h).norm() > 1e-2 * h.norm());

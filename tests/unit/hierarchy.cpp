@@ -71,19 +71,22 @@ TEST_CASE("levels grow 32², 63², 125², 249²", "[hierarchy]") {
 TEST_CASE("rest shapes and positions follow the same operators", "[hierarchy]") {
   const Hierarchy hierarchy = Hierarchy::of(grid({1, 2}, 4, 5, Diagonals::criss_cross), Shrinking(), 3);
   const Positions& coarsest = hierarchy.levels[0].rest.vertices;
-  for (int l = 0; l < 3; ++l) CHECK(hierarchy.prolong(coarsest, 0, l) == hierarchy.levels[l].rest.vertices);
+  for (int l = 0; l < 3; ++l)
+    CHECK(hierarchy.prolong(coarsest, 0, l, hierarchy.prolongations) == hierarchy.levels[l].rest.vertices);
 
   const Positions x = Positions::Random(hierarchy.levels[1].vertex_count(), 3);
-  CHECK(hierarchy.prolong(x, 1, 1) == x);
-  CHECK(hierarchy.prolong(x, 1, 2) == Positions(hierarchy.prolongations[1] * x));
+  CHECK(hierarchy.prolong(x, 1, 1, hierarchy.prolongations) == x);
+  CHECK(hierarchy.prolong(x, 1, 2, hierarchy.prolongations) == Positions(hierarchy.prolongations[1] * x));
   CHECK(hierarchy.midpoints[1].isApprox(midpoint_refinement(hierarchy.levels[1]).weights));
   CHECK_FALSE(hierarchy.midpoints[1].isApprox(hierarchy.prolongations[1]));
   CHECK(hierarchy.prolong(coarsest, 0, 2, hierarchy.midpoints) ==
         Positions(hierarchy.midpoints[1] * Positions(hierarchy.midpoints[0] * coarsest)));
 
-  CHECK_THROWS_WITH(hierarchy.prolong(x, 1, 3), "prolong: levels 1 to 3 of a hierarchy of 3");
-  CHECK_THROWS_WITH(hierarchy.prolong(x, 2, 1), "prolong: levels 2 to 1 of a hierarchy of 3");
-  CHECK_THROWS_WITH(hierarchy.prolong(coarsest, 1, 2),
+  CHECK_THROWS_WITH(hierarchy.prolong(x, 1, 3, hierarchy.prolongations),
+                    "prolong: levels 1 to 3 of a hierarchy of 3");
+  CHECK_THROWS_WITH(hierarchy.prolong(x, 2, 1, hierarchy.prolongations),
+                    "prolong: levels 2 to 1 of a hierarchy of 3");
+  CHECK_THROWS_WITH(hierarchy.prolong(coarsest, 1, 2, hierarchy.prolongations),
                     "prolong: 20 positions for the 63 vertices of level 1");
 }
 

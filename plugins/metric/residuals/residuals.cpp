@@ -12,7 +12,7 @@ namespace drape {
 class Residuals : public Metric {
  public:
   struct Parameters {
-    double step_size = 0.5;
+    double step_size = 0.1;
     static void declare(Declaration<Parameters>& d) {
       d.add("step_size", &Parameters::step_size)
           .unit("s")

@@ -101,17 +101,6 @@ const Positions& ProxyObjective::FinerPart::carry(const Positions& x, int count)
   return *from;
 }
 
-double ProxyObjective::smooth_value(const Positions& x) {
-  if (relaxed_) return plain_.value(x);
-  double sum = 0;
-  for (const ProxyPart& own : own_) sum += own.factor * plain_.value(x, own.roles);
-  for (FinerPart& finer : finer_) {
-    const ProxyPart& part = finer.part;
-    sum += part.factor * problem_.models[level_ + part.above]->value(finer.carry(x, part.above), part.roles);
-  }
-  return sum;
-}
-
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
   if (relaxed_) return plain_.gradient(x, g);
   g.resize(x.rows(), 3);

@@ -39,7 +39,6 @@ class ProxyObjective : public Objective {
   bool relax() override;
 
  protected:
-  double smooth_value(const Positions& x) override;
   double smooth_gradient(const Positions& x, Positions& g) override;
   BlockMatrix& smooth_matrix(const Positions& x, Projection projection) override;
 
