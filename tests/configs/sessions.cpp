@@ -269,12 +269,15 @@ const std::string sheets_run =
     "--set start.translate=[-0.2,-0.2,0.1015]";
 const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
 
+long rows_in(const fs::path& file) {
+  const std::string rows = fs::exists(file) ? text_of(file) : "";
+  return std::count(rows.begin(), rows.end(), '\n');
+}
+
 /// Waits until the run has made some steps.
 void wait_for_steps(Command& command, const fs::path& out, int steps) {
-  command.wait_until(out.string() + " has " + std::to_string(steps) + " steps", [&] {
-    const std::string rows = fs::exists(out / "steps.csv") ? text_of(out / "steps.csv") : "";
-    return std::count(rows.begin(), rows.end(), '\n') > steps;
-  });
+  command.wait_until(out.string() + " has " + std::to_string(steps) + " steps",
+                     [&] { return rows_in(out / "steps.csv") > steps; });
 }
 
 /// What a run of the sheets leaves that was interrupted in the middle.
@@ -304,7 +307,7 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
   REQUIRE(drape_with("check e.yaml", folder.path).exit_code == 0);
   const double to_begin = watch.seconds();
   REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
-  const double whole = watch.seconds() - 2 * to_begin;
+  const long all_steps = rows_in(folder / "whole/steps.csv");
 
   std::mt19937 random(5);
   int cut = 0, resumed = 0;
@@ -313,10 +316,13 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
     resumed += begun;
     Command command("exec " + drape_command + " " + (begun ? go_on : sheets_run + " --overwrite"),
                     folder.path);
-    // Half of them while it begins, half in what is a tenth of its work.
+    // Half of them while it begins, half after some steps more than it had, at most a twentieth of all.
     const double part = static_cast<double>(random() % 1000) / 1000;
-    std::this_thread::sleep_for(
-        std::chrono::duration<double>(kill % 2 ? part * to_begin : to_begin + part * whole / 10));
+    if (kill % 2)
+      std::this_thread::sleep_for(std::chrono::duration<double>(part * to_begin));
+    else
+      wait_for_steps(command, folder / "out",
+                     static_cast<int>(rows_in(folder / "out/steps.csv") + part * all_steps / 20));
     command.send(SIGKILL);
     cut += command.wait().exit_code == 128 + SIGKILL;
   }

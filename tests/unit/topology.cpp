@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <ctime>
 #include <set>
 #include <utility>
 
 #include "core/mesh/generate.h"
 #include "core/mesh/same_triangles.h"
-#include "tests/support/time_limit.h"
 
 using namespace drape;
 
@@ -106,14 +104,11 @@ TEST_CASE("topology refuses what it cannot represent", "[topology]") {
   CHECK_THROWS_WITH(Topology::of(t, 5), "topology: triangle 1 repeats a vertex");
 }
 
-TEST_CASE("a fan of a hundred thousand triangles takes no quadratic time", "[topology]") {
-  const int count = 100000;
+TEST_CASE("a fan of a million triangles takes no quadratic time", "[topology]") {
+  const int count = 1000000;  // linear: tenths of a second; quadratic: hours, which the test's limit ends
   Triangles fan(count, 3);
   for (int t = 0; t < count; ++t) fan.row(t) << 0, 1 + t, 1 + (t + 1) % count;
-  const std::clock_t start = std::clock();  // of the processor, so that a busy machine does not fail it
   const Topology topology = Topology::of(fan, count + 1);
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   CHECK(topology.vertex_vertices.size(0) == count);
   CHECK_FALSE(topology.on_border[0]);
-  CHECK(seconds < 2 * test_slowdown());  // linear: hundredths of a second; quadratic: minutes
 }
