@@ -282,7 +282,6 @@ class Newton {
   bool relax() {
     if (hard_.given_up() || !f_.relax()) return false;
     relaxed_ = true;
-    changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     h_ = p_.step_size;
     age_ = p_.refresh;
     strained_for_ = 0;

@@ -119,8 +119,9 @@ RunOptions silent(const fs::path& out) {
 }
 
 /// Runs an experiment in one go and again in as many parts as it can be cut into: every part is stopped the
-/// second time that anything asks, which is after one step, or if that leads nowhere, later. How many parts.
-int check_in_parts(const Experiment& experiment, const fs::path& folder) {
+/// second time that anything asks, which is after one step, or if that leads nowhere, later. How many parts;
+/// `relaxing`, if it is given, counts those that began on a level which relaxes.
+int check_in_parts(const Experiment& experiment, const fs::path& folder, int* relaxing = nullptr) {
   run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
   REQUIRE(Json::parse(text_of(folder / "whole/results.json"))["complete"] == true);
 
@@ -136,6 +137,7 @@ int check_in_parts(const Experiment& experiment, const fs::path& folder) {
     const MethodState& state = checkpoint.state;
     const std::string now = std::to_string(checkpoint.method) + " " + std::to_string(state.level) + " " +
                             (state.under_way ? std::to_string(state.under_way->so_far.steps) : "begins");
+    if (relaxing) *relaxing += state.under_way && state.under_way->relaxed;
     patience = now == before ? 2 * patience : 2;
     before = now;
     asked = 0;
@@ -168,6 +170,28 @@ TEST_CASE("So has one whose iterations share a matrix, and one of several of the
     const Overrides shared =
         some_steps({{"newton.refresh", "3"}, {"newton.iterations_per_step", iterations}});
     CHECK(check_in_parts(experiment_in(folder / "e.yaml", shared), folder.path) > 60);
+  }
+}
+
+TEST_CASE(
+    "So has one of PCS whose levels relax, into a matrix of the same pattern, of another, with contact") {
+  const fs::path data = fs::path(folders::source()) / "tests/configs/data";
+  const std::string interpolation = "interpolation: {membrane: refiner, bending: refiner, external: refiner}";
+  const Overrides small = {
+      {"levels", "2"}, {"cloth.columns", "5"}, {"cloth.rows", "5"}, {"reference", "pcs"}};
+  for (const auto& [file, pcs] : {std::pair("golden.yaml", std::string()),
+                                  {"golden.yaml", interpolation},
+                                  {"contact.yaml", std::string()},
+                                  {"contact.yaml", interpolation}}) {
+    INFO(file << ": " << pcs);
+    const Scratch folder;
+    folder.write("e.yaml", text_of(data / file));
+    Overrides overrides = small;
+    overrides.emplace_back("methods", "{pcs: {" + pcs + "}}");
+    overrides.emplace_back("newton.force_tolerance", "1e-2");
+    int relaxing = 0;
+    CHECK(check_in_parts(experiment_in(folder / "e.yaml", overrides), folder.path, &relaxing) > 15);
+    CHECK(relaxing > 3);
   }
 }
 
