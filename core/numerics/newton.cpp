@@ -253,7 +253,7 @@ class Newton {
   /// Equilibrium is a fixed point of the lag: with the normal forces of here, not of where the step began.
   void renew_friction() {
     if (!f_.contacts().has_friction()) return;
-    f_.contacts().renew_lag(result_.x);
+    f_.contacts().update_lagging(result_.x);
     evaluate();
     update_residual();
   }
@@ -483,7 +483,7 @@ class Newton {
   void begin_step() {
     origin_ = result_.x;
     iterations_of_step_ = p_.iterations_per_step;
-    if (f_.contacts().carried() && f_.contacts().has_friction())
+    if (f_.contacts().advected() && f_.contacts().has_friction())
       iterations_of_step_ = std::max(iterations_of_step_, carried_iterations);
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);

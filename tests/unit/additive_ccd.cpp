@@ -26,7 +26,7 @@ namespace {
 struct Query {
   PairKind kind = PairKind::point_triangle;
   PairPositions x0, x1;
-  double offset = 0, keep = 0.1;
+  double offset = 0, min_gap_fraction = 0.1;
 
   double time(int* blocking = nullptr) const {
     ContactPair pair;
@@ -34,7 +34,8 @@ struct Query {
     pair.kind = kind;
     pair.offset = offset;
     int ended_by = -2;
-    const double t = additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, keep, ended_by);
+    const double t =
+        additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, min_gap_fraction, ended_by);
     CHECK((ended_by == -1) == (t == 1));
     if (blocking) *blocking = ended_by;
     return t;
@@ -70,7 +71,7 @@ template <class Number>
 bool separates(const Query& q, const Triple<Number>& n, double tau) {
   Number along[4];
   for (int k = 0; k < 4; ++k) along[k] = dot(n, position<Number>(q, k, tau));
-  const int first = first_side(q.kind);
+  const int first = first_primitive_size(q.kind);
   for (int a = 0; a < first; ++a)
     for (int b = first; b < 4; ++b) {
       const Number apart = along[a] - along[b], offset(q.offset);
@@ -161,7 +162,7 @@ Query random_query(std::mt19937& random, int family) {
   };
   const auto push = [&](const Vector3d& p) {
     q.x1 = q.x0;
-    q.x1.leftCols(first_side(q.kind)).colwise() += p;
+    q.x1.leftCols(first_primitive_size(q.kind)).colwise() += p;
   };
   switch (family) {
     case 0:  // anything
@@ -221,15 +222,16 @@ Query random_query(std::mt19937& random, int family) {
     }
     case 10: {  // sides that turn about each other
       touching(size(1e-6, 1e-1));
-      q.x1.leftCols(first_side(q.kind)) = -q.x0.leftCols(first_side(q.kind));
-      q.x1.rightCols(4 - first_side(q.kind)) =
-          q.x0.rightCols(4 - first_side(q.kind)) + size(1e-6, 1) * any().rightCols(4 - first_side(q.kind));
+      q.x1.leftCols(first_primitive_size(q.kind)) = -q.x0.leftCols(first_primitive_size(q.kind));
+      q.x1.rightCols(4 - first_primitive_size(q.kind)) =
+          q.x0.rightCols(4 - first_primitive_size(q.kind)) +
+          size(1e-6, 1) * any().rightCols(4 - first_primitive_size(q.kind));
       break;
     }
     default:  // towards a shared place: vertex on vertex, edge on vertex
-      q.x1.col(random() % first_side(q.kind)) = q.x1.col(3);
+      q.x1.col(random() % first_primitive_size(q.kind)) = q.x1.col(3);
   }
-  if (random() % 4 == 0) q.keep = random() % 2 ? 0.5 : 0;
+  if (random() % 4 == 0) q.min_gap_fraction = random() % 2 ? 0.5 : 0;
   if (random() % 4 == 0) q.offset = unit(random) * std::max(q.gap(0), 0.0);
   return q;
 }
@@ -238,7 +240,7 @@ Query random_query(std::mt19937& random, int family) {
 struct Tally {
   int ended[families] = {};  ///< before their motion's end
   int unsafe = 0;
-  int early = 0;  ///< ended while more of the gap than `keep` and the documented slack was left
+  int early = 0;  ///< ended while more of the gap than `min_gap_fraction` and the documented slack was left
 };
 
 Tally check_queries(int count, unsigned seed) {
@@ -251,14 +253,14 @@ Tally check_queries(int count, unsigned seed) {
     if (t == 1) continue;
     ++tally.ended[i % families];
     const double rounding = 1e-14 * std::max(q.x0.cwiseAbs().maxCoeff(), q.x1.cwiseAbs().maxCoeff());
-    if (q.gap(t) > (q.keep + 0.02) * q.gap(0) + rounding) ++tally.early;
+    if (q.gap(t) > (q.min_gap_fraction + 0.02) * q.gap(0) + rounding) ++tally.early;
   }
   return tally;
 }
 
 /// The time of impact from below, to nine digits; 1 without an impact.
 double impact(Query q) {
-  q.keep = 0;
+  q.min_gap_fraction = 0;
   const PairPositions x0 = q.x0;
   double time = 0;
   for (int i = 0; i < 100 && time < 1; ++i) {
@@ -307,7 +309,7 @@ TEST_CASE("how near to the impact it gets") {
   int straight = 0;
   for (int i = 0; i < 12000; ++i) {
     Query q = random_query(random, i % families);
-    q.keep = 0.1;
+    q.min_gap_fraction = 0.1;
     const double t = q.time();
     if (t == 0 || t == 1) continue;
     const double end = impact(q);
@@ -341,7 +343,7 @@ TEST_CASE("fractions that can be said beforehand") {
   rounded.offset = 0.3;
   CHECK(rounded.time() == Approx(0.18).epsilon(0.03));
   Query half = point_over_triangle(0.5, {0, 0, -1});
-  half.keep = 0.5;
+  half.min_gap_fraction = 0.5;
   CHECK(half.time() == Approx(0.25).epsilon(0.05));
   CHECK(half.time() <= 0.25);
   // Everything moves by the same: nothing comes nearer.
