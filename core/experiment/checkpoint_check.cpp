@@ -107,7 +107,8 @@ class Check {
     if (models.empty()) return;
     for (const Positions* x : {&memory.reference, &memory.candidates_begin, &memory.candidates_end})
       positions(*x, level, "the contacts");
-    require(memory.tangential_displacements.size() == models.size(), "the contacts' tangential displacements");
+    require(memory.tangential_displacements.size() == models.size(),
+            "the contacts' tangential displacements");
     for (const TangentialDisplacements& displacements : memory.tangential_displacements)
       require(ascends(displacements, [](const TangentialDisplacement& d) { return d.contact; }),
               "the contacts' tangential displacements");
