@@ -24,7 +24,7 @@ constexpr int halvings = 5;
 struct Standing {
   std::vector<Intersection> touches;  ///< of the first level that has any; nothing else is known then
   int level = 0;                      ///< that level
-  int contacts = 0;                   ///< pairs within range, on all levels
+  int contacts = 0;                   ///< pairs within d̂, on all levels
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
@@ -124,7 +124,7 @@ class Search {
         const double distance = std::min(part, 1.0) * places_.diagonal();
         if (is_better(distance * direction)) {
           shorten(direction, before, distance);
-          // What is still within range then is the cloth itself, or there may be a better place.
+          // What is still within d̂ then is the cloth itself, or there may be a better place.
           if (best_contacts_ == 0) return;
         }
         before = distance;

@@ -391,7 +391,7 @@ class Newton {
 
   /// Contacts were `before`, with the cloth at `from`.
   void model_changed(const BoundContacts& before, const Positions& from) {
-    PhaseTimer t(result_.seconds_by_phase, "gradient");  // contact sets are built
+    PhaseTimer t(result_.seconds_by_phase, "gradient");  // builds collisions
     f_.model_changed(before, from, result_.x);
   }
 
@@ -747,8 +747,8 @@ class Newton {
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
-      // Contact sets are built where energies are evaluated.
-      result_.seconds_by_phase["contact set"] = f_.contacts().seconds_building();
+      // Collisions are built where energies are evaluated.
+      result_.seconds_by_phase["collisions"] = f_.contacts().seconds_building();
       result_.seconds_by_phase["gradient"] -= f_.contacts().seconds_building();
     }
     return std::move(result_);

@@ -175,7 +175,7 @@ Query random_query(std::mt19937& random, int family) {
       push(size(1e-9, 1e3) * (any().col(0) - n));
       break;
     }
-    case 3: {  // tiny gaps, everything moves
+    case 3: {  // tiny gaps, all vertices move
       touching(size(1e-9, 1e-3));
       q.x1 = q.x0 + size(1e-9, 10) * any();
       break;
@@ -228,7 +228,7 @@ Query random_query(std::mt19937& random, int family) {
           size(1e-6, 1) * any().rightCols(4 - first_primitive_size(q.kind));
       break;
     }
-    default:  // towards a shared place: vertex on vertex, edge on vertex
+    default:  // towards a common point: vertex on vertex, edge on vertex
       q.x1.col(random() % first_primitive_size(q.kind)) = q.x1.col(3);
   }
   if (random() % 4 == 0) q.min_gap_fraction = random() % 2 ? 0.5 : 0;
@@ -283,7 +283,7 @@ Query point_over_triangle(double height, const Vector3d& motion) {
 
 }  // namespace
 
-TEST_CASE("no motion is let through, by exact arithmetic") {
+TEST_CASE("no motion leads to an intersection, by exact arithmetic") {
   const char* wanted = std::getenv("DRAPE_CCD_QUERIES");  // a million take about a minute
   const int count = wanted ? std::atoi(wanted) : 120000;
   const Tally tally = check_queries(count, 1);
@@ -292,7 +292,7 @@ TEST_CASE("no motion is let through, by exact arithmetic") {
   for (const int ended : tally.ended) CHECK(ended > count / families / 100);
 }
 
-TEST_CASE("the check finds what goes through") {
+TEST_CASE("the exact check detects intersections") {
   const Query q = point_over_triangle(0.5, {0, 0, -1});
   CHECK(safe(q, 0.49));
   CHECK_FALSE(safe(q, 0.5));
@@ -303,7 +303,7 @@ TEST_CASE("the check finds what goes through") {
   CHECK_FALSE(safe(rounded, 0.251));
 }
 
-TEST_CASE("how near to the impact it gets") {
+TEST_CASE("how close to the impact the step ends") {
   std::mt19937 random(2);
   std::vector<double> all;
   int straight = 0;
@@ -328,7 +328,7 @@ TEST_CASE("how near to the impact it gets") {
   CHECK(all[all.size() / 100] > 0.5);
 }
 
-TEST_CASE("fractions that can be said beforehand") {
+TEST_CASE("fractions that are known in closed form") {
   int blocking = 0;
   CHECK(point_over_triangle(0.5, {0, 0, -1}).time(&blocking) == Approx(0.45).epsilon(0.03));
   CHECK(blocking == 0);
@@ -338,7 +338,7 @@ TEST_CASE("fractions that can be said beforehand") {
   CHECK(point_over_triangle(0.5, {3, 4, 0}).time() == 1);
   CHECK(point_over_triangle(1e-9, {3, 4, 0}).time() == 1);
   CHECK(point_over_triangle(1e-9, {0, 0, 5}).time() == 1);
-  CHECK(point_over_triangle(0, {0, 0, 1}).time() == 0);  // it touches already
+  CHECK(point_over_triangle(0, {0, 0, 1}).time() == 0);  // touching
   Query rounded = point_over_triangle(0.5, {0, 0, -1});
   rounded.offset = 0.3;
   CHECK(rounded.time() == Approx(0.18).epsilon(0.03));
@@ -346,13 +346,13 @@ TEST_CASE("fractions that can be said beforehand") {
   half.min_gap_fraction = 0.5;
   CHECK(half.time() == Approx(0.25).epsilon(0.05));
   CHECK(half.time() <= 0.25);
-  // Everything moves by the same: nothing comes nearer.
+  // A common translation: no gap changes.
   Query together = point_over_triangle(1e-6, {0, 0, 0});
   together.x1.colwise() += Vector3d(1, -2, 1000);
   CHECK(together.time() == 1);
 }
 
-TEST_CASE("the first of many pairs ends the motion, whatever the number of threads") {
+TEST_CASE("the first of many pairs limits the motion, with any number of threads") {
   const int points = 5000;
   Positions obstacle(3, 3), x0(points, 3), x1(points, 3);
   obstacle << -100, -100, 0, 100, -100, 0, 0, 100, 0;
@@ -384,7 +384,7 @@ TEST_CASE("the first of many pairs ends the motion, whatever the number of threa
   set_thread_count(0);
   CHECK(additive_ccd(x0, x1, obstacle, {}, 0.1, ended) == 1);
   CHECK(ended == -1);
-  // Every gap keeps its tenth, and the one that ended it no more than the slack.
+  // Every gap keeps a tenth, and the blocking one no more than the tolerance above that.
   const Positions x = x0 + first * (x1 - x0);
   for (int i = 0; i < points; ++i) {
     const double part = (x(i, 2) - pairs[i].offset) / (x0(i, 2) - pairs[i].offset);

@@ -76,7 +76,7 @@ PairPositions random_positions(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("no other points of a random pair are nearer") {
+TEST_CASE("no other points of a random pair are closer") {
   std::mt19937 random(1);
   for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge, PairKind::point_plane}) {
     std::set<std::vector<bool>> regions;

@@ -144,7 +144,7 @@ TEST_CASE("derivatives and projections of random pairs") {
   for (const auto& [what, count] : seen) CHECK(count >= 5);
 }
 
-TEST_CASE("derivatives just beside where the nearest features change, and a continuous gradient across") {
+TEST_CASE("derivatives next to changes of the nearest features, and a continuous gradient across them") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e2(0, 0.01, 0), e3(0, 0, 0.002);
   const Vector3d edge = 0.4 * e1, vertex = o, diagonal = 0.3 * e1 + 0.7 * e2;
   for (const Vector3d& foot : {edge, vertex, diagonal})
@@ -198,7 +198,7 @@ TEST_CASE("derivatives at gaps of 1e-8 m") {
   }
 }
 
-TEST_CASE("edges that are parallel, and nearly") {
+TEST_CASE("parallel and nearly parallel edges") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e3(0, 0, 0.0005), shift(0.003, 0, 0);
   const double epsilon = 1e-3 * 1e-8;
   double before = -1;
@@ -253,7 +253,7 @@ TEST_CASE("the mollifier's threshold") {
   CHECK(checked > 20);
 }
 
-TEST_CASE("the force is -κ weight b'(s), along the connection, and sums to zero") {
+TEST_CASE("the force is -κ weight b'(s), along the shortest vector, and sums to zero") {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(0.02, 0.98);
   for (int i = 0; i < 200; ++i) {
@@ -347,7 +347,7 @@ TEST_CASE("collisions are the sum over the pairs within dhat, in their order") {
   CHECK(std::vector<int>(stencils.data(), stencils.data() + stencils.size()) == order);
 }
 
-TEST_CASE("contacts have the same bits with any number of threads") {
+TEST_CASE("contacts are bit for bit the same with any number of threads") {
   const ManyPairs many(200, 50, 60000, 8);
   std::vector<double> values;
   for (const int threads : {1, 2, 3}) {
@@ -377,7 +377,7 @@ TEST_CASE("the barrier is zero beyond dhat and infinite at contact") {
   CHECK(one.set()->smallest_gap() == Approx(-1e-3));
 }
 
-TEST_CASE("a contact's friction is bounded by μ times its force, and against the motion") {
+TEST_CASE("a contact's friction is at most μ times its force and opposes the motion") {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
   int checked = 0;

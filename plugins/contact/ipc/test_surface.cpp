@@ -31,7 +31,7 @@ struct Random {
 struct Scene {
   Obstacles obstacles;
   OperatorCoefficients coefficients;
-  std::vector<VertexTriangleCandidate> near;
+  std::vector<VertexTriangleCandidate> candidates;
   Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
   BarrierParameters parameters;
 
@@ -39,10 +39,10 @@ struct Scene {
     parameters.dhat = dhat;
     parameters.stiffness = 1 / dhat;  // E = Σ coefficient b
     coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);
-    for (int t = 0; t < mesh.triangles.rows(); ++t) near.push_back({0, t});
+    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
   }
   SurfaceContacts contacts(const Vector& p) const {
-    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, near, area, 0, dhat);
+    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
   }
   std::unique_ptr<Collisions> set(const Vector& p) const {
     return make_surface_contacts(contacts(p), parameters);
@@ -88,7 +88,7 @@ Vector near_middle(const Scene& scene, Random& random) {
 
 }  // namespace
 
-TEST_CASE("surface: a flat sheet is its plane, whatever its triangles") {
+TEST_CASE("surface: a flat sheet acts as its plane, for any triangulation") {
   Random random;
   std::vector<TriangleMesh> sheets = {grid({0.05, 0.05}, 2, 2, Diagonals::one_way),
                                       random_triangulation({0.05, 0.05}, 300, 1)};
@@ -129,23 +129,24 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
       const Vector p = from + k * step;
       const SurfaceContacts contacts = scene.contacts(p);
       std::vector<std::array<int, 3>> features;
-      double slope = 0, bend = 0;  // bounds of the first and second derivative
+      double slope = 0, curvature = 0;  // bounds of the first and second derivative
       for (const NearestFeature& f : contacts.features) {
         features.push_back(f.vertices);
         negative += f.coefficient < 0;
         const Derivatives b = barrier(std::max(f.distance - h, 1e-3 * f.distance) / dhat);
         slope += std::abs(f.coefficient * b.first) / dhat;
-        bend += std::abs(f.coefficient) *
-                (b.second / dhat - b.first / std::max(f.distance - h, 1e-3 * f.distance)) / dhat;
+        curvature += std::abs(f.coefficient) *
+                     (b.second / dhat - b.first / std::max(f.distance - h, 1e-3 * f.distance)) / dhat;
       }
       const double value = scene.value(p);
       const Vector gradient = scene.gradient(p);
       if (k > 0 && contacts.features.size() > 0 && scene.distance(p) > 0.1 * dhat) {
         if (features != before) ++changes;
         CAPTURE(round, k, p.transpose(), features.size(), before.size());
-        CHECK((gradient - force).norm() <= 2 * bend * h + 1e-3 * slope * h / dhat + 20 * h / dhat / dhat);
+        CHECK((gradient - force).norm() <=
+              2 * curvature * h + 1e-3 * slope * h / dhat + 20 * h / dhat / dhat);
         CHECK(std::abs(value - energy - 0.5 * step.dot(gradient + force)) <=
-              2 * (bend + 20 / dhat / dhat) * h * h);
+              2 * (curvature + 20 / dhat / dhat) * h * h);
       }
       before = features;
       energy = value;
@@ -156,7 +157,7 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
   CHECK(negative > 300);
 }
 
-TEST_CASE("surface: derivatives, and projections as a whole") {
+TEST_CASE("surface: derivatives and projections") {
   Random random;
   int negative = 0, indefinite = 0;
   for (int round = 0; round < 10; ++round) {
@@ -194,7 +195,7 @@ TEST_CASE("surface: derivatives, and projections as a whole") {
   CHECK(indefinite > 100);
 }
 
-TEST_CASE("surface: what is nearest is never weighed less than once, however rough the surface") {
+TEST_CASE("surface: the nearest feature's coefficient is at least 1, on any rough surface") {
   Random random;
   // From hills that are wide against d̂ to pits that are a tenth of it.
   for (const auto& [columns, height, wave] :
@@ -226,7 +227,7 @@ TEST_CASE("surface: what is nearest is never weighed less than once, however rou
   }
 }
 
-TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
+TEST_CASE("surface: the barrier is unbounded at every point of a surface") {
   Random random;
   for (const double height : {0.0, 2e-3, 5e-3}) {
     const Scene scene(hills(12, height, 0.02, random));
@@ -236,10 +237,10 @@ TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
           static_cast<int>(random(0.3, 0.7) * scene.obstacles.surface.triangle_count()));
       const double s = i % 3 > 0 ? 0 : random(0, 0.5), r = i % 3 > 1 ? 0 : random(0, 0.5);
       const Vector foot = (1 - s - r) * v.row(t[0]) + s * v.row(t[1]) + r * v.row(t[2]);
-      const Vector way(random(-1, 1), random(-1, 1), random(-1, 1));
+      const Vector direction(random(-1, 1), random(-1, 1), random(-1, 1));
       double before = 0;
       for (double part = 1e-2; part > 1e-9; part *= 0.1) {
-        const Vector p = foot + part * dhat * way.normalized();
+        const Vector p = foot + part * dhat * direction.normalized();
         const double value = scene.value(p), nearest = barrier(scene.distance(p) / dhat).value;
         CAPTURE(height, i, part);
         CHECK(value > before);
@@ -251,7 +252,7 @@ TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
   }
 }
 
-TEST_CASE("surface: friction is that of the net normal force") {
+TEST_CASE("surface: friction uses the net normal force") {
   Random random;
   int negative = 0;
   for (int round = 0; round < 6; ++round) {

@@ -227,7 +227,7 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
   }
 }
 
-TEST_CASE("shapes: a solid's support and its drawing") {
+TEST_CASE("shapes: a solid's support function and its mesh") {
   const double volumes[] = {4.0 / 3 * M_PI * std::pow(0.06, 3), 0.1 * 0.14 * 0.08,
                             4.0 / 3 * M_PI * std::pow(0.06, 3) + M_PI * 0.06 * 0.06 * 0.1,
                             M_PI * 0.06 * 0.06 * 0.1};
@@ -256,14 +256,14 @@ TEST_CASE("shapes: a solid's support and its drawing") {
   }
 }
 
-TEST_CASE("shapes: the distance of a triangle is the widest slab") {
+TEST_CASE("shapes: the distance of a triangle is the largest separation") {
   for (const SolidKind kind : kinds) {
     const Solid s = solid_of(some(kind));
     int small = 0;
     for (int i = 0; i < 300; ++i) {
       const Corners c = some_triangle(s, i % 2 ? 0.02 : 0.3);
       const double d = searched_distance(s, c), gap = separate(s, c).gap;
-      INFO(to_string(kind) << " " << i << " distance " << d << " slab " << gap);
+      INFO(to_string(kind) << " " << i << " distance " << d << " separation " << gap);
       CHECK(gap <= d * (1 + 1e-9) + 1e-14);
       CHECK(gap >= d * (1 - 1e-4) - 1e-10);
       small += d < dhat;
@@ -289,9 +289,9 @@ TEST_CASE("shapes: derivatives of the barrier") {
           differences([&](const Positions& y) { return energy_at(*bound, y); }, x, 1e-8);
       CHECK((slope.transpose() - flat(g)).norm() <= 1e-5 * g.norm());
       const Eigen::MatrixXd h = dense(hessian_of(*set, x, Projection::none));
-      const Eigen::MatrixXd bend =
+      const Eigen::MatrixXd difference =
           differences([&](const Positions& y) { return gradient_at(*bound, y); }, x, 1e-8);
-      CHECK((bend - h).norm() <= 1e-4 * h.norm());
+      CHECK((difference - h).norm() <= 1e-4 * h.norm());
       const Eigen::MatrixXd clamped = dense(hessian_of(*set, x, Projection::clamp));
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(clamped);
       CHECK(eigen.eigenvalues()[0] >= -1e-10 * clamped.norm());
@@ -299,7 +299,7 @@ TEST_CASE("shapes: derivatives of the barrier") {
   }
 }
 
-TEST_CASE("shapes: the barrier sees the cloth's distance") {
+TEST_CASE("shapes: the smallest gap is the cloth's distance") {
   const Level level = square(3, 0.02), big = square(2, 0.2);
   for (const SolidKind kind : kinds) {
     const ShapeParameters p = some(kind);
@@ -318,7 +318,7 @@ TEST_CASE("shapes: the barrier sees the cloth's distance") {
   }
 }
 
-TEST_CASE("shapes: flat cloth on a face is carried by κ |b'| of its area") {
+TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
   const Level level = square(5, 0.04);
   for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
     const auto bound = Shapes(with({level_with(kind)})).bind(level, Material());
@@ -339,7 +339,7 @@ TEST_CASE("shapes: flat cloth on a face is carried by κ |b'| of its area") {
   }
 }
 
-TEST_CASE("shapes: sliding changes forces without jumps") {
+TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square(4, 0.03);
   for (const SolidKind kind : kinds) {
     ShapeParameters p = level_with(kind);
@@ -354,8 +354,8 @@ TEST_CASE("shapes: sliding changes forces without jumps") {
         double jump = 0, force = 0;
         Positions last;
         for (int i = 0; i <= steps; ++i) {
-          const double way = 0.12 * i / steps;
-          const Positions g = gradient_at(*bound, lifted(level, 0.4 * dhat, way, 0.31 * way));
+          const double shift = 0.12 * i / steps;
+          const Positions g = gradient_at(*bound, lifted(level, 0.4 * dhat, shift, 0.31 * shift));
           if (i > 0) jump = std::max(jump, (g - last).norm());
           force = std::max(force, g.norm());
           last = g;
@@ -371,7 +371,7 @@ TEST_CASE("shapes: sliding changes forces without jumps") {
   }
 }
 
-TEST_CASE("shapes: a step never lets a triangle touch") {
+TEST_CASE("shapes: a step never leads to an intersection") {
   int cut = 0, free = 0, loose = 0;
   for (const SolidKind kind : kinds) {
     ShapeParameters p = some(kind);
@@ -393,7 +393,7 @@ TEST_CASE("shapes: a step never lets a triangle touch") {
         for (int c = 0; c < 3; ++c) now[c] = from[c] + part * k / 20 * (to[c] - from[c]);
         CHECK(searched_distance(s, now) >= min_gap_fraction * start * (1 - 1e-3) - 1e-11);
       }
-      // Not more careful than needed, unless it rolls a long way about an edge.
+      // Not overly conservative, except for long rolling motions about an edge.
       if (part < 1) {
         Corners now;
         for (int c = 0; c < 3; ++c) now[c] = from[c] + part * (to[c] - from[c]);
@@ -487,8 +487,8 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     // The normal forces themselves: on a sphere they lean by up to 0.14 rad, d̂ over its curvature.
     const double all = normal * (kind == SolidKind::sphere ? 1.01 : 1 + 1e-12);
     double last = 0;
-    for (const double slip : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
-      const auto friction = set->friction(lifted(level, 0.4 * dhat, -slip), {});
+    for (const double u : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
+      const auto friction = set->friction(lifted(level, 0.4 * dhat, -u), {});
       REQUIRE(friction);
       const Positions g = gradient_of(*friction, x);
       const double force = g.col(0).sum();  // the gradient is against the motion's force
@@ -522,7 +522,7 @@ TEST_CASE("shapes: parameters") {
   CHECK(contact_stiffness(Material()) == Approx(10 * 472.6 * 3.18e-4 * 9.81));
 }
 
-TEST_CASE("shapes: gaps as small as doubles have them are told at edges and rims") {
+TEST_CASE("shapes: gaps near round-off are resolved at edges and rims") {
   for (const SolidKind kind : {SolidKind::box, SolidKind::cylinder}) {
     const ShapeParameters p = some(kind);
     const Solid s = solid_of(p);
@@ -537,7 +537,7 @@ TEST_CASE("shapes: gaps as small as doubles have them are told at edges and rims
         const Vector3d near = on + gap * up;
         const Corners c{s.to_world(near - 0.3 * edge), s.to_world(near + 0.7 * edge),
                         s.to_world(near + 0.02 * up)};
-        INFO(to_string(kind) << " " << i << ", gap " << gap << ", slab " << separate(s, c).gap);
+        INFO(to_string(kind) << " " << i << ", gap " << gap << ", separation " << separate(s, c).gap);
         CHECK(separate(s, c).gap == Approx(gap).epsilon(1e-3).margin(2e-16));
         CHECK(!intersects(s, c));
       }
