@@ -160,7 +160,7 @@ void draped_level(const Experiment& e, const Scene& scene, Table& table) {
   std::printf("%s%d contacts\n", size.c_str(), static_cast<int>(some.contacts));
   table.add(size + "Newton iteration with contact", (whole - phase["analyse"]) / n,
             "its factorisation + solve", (phase["factorise"] + phase["solve"]) / n, 1.6);
-  table.add(size + "broad + narrow phase + CCD", (phase["step filter"] + phase["contact set"]) / n,
+  table.add(size + "broad + narrow phase + CCD", (phase["step filter"] + phase["collisions"]) / n,
             "whole iteration", (whole - phase["analyse"]) / n, 0.2);
   table.add(size + "analyses of changed patterns", phase["analyse"], "whole run of the level", whole, 0.1);
   std::printf("  by phase, ms an iteration:");

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 1024, max_rounds = 256;
-constexpr double slack = 0.02;  // part of the first gap that need not be used up
+constexpr int grain = 1024, max_iterations = 256;
+constexpr double tolerance = 0.02;  // fraction of the initial gap that may remain unused
 
-/// A pair and its motion, in coordinates that keep few digits busy: relative to vertex 0, and less the mean
-/// displacement, which changes no distance.
+/// A pair and its linear motion, relative to vertex 0 and without the mean displacement: both leave distances
+/// unchanged and reduce round-off.
 struct Motion {
   PairKind kind;
   double offset, rounding;
@@ -30,17 +30,17 @@ struct Motion {
     if (kind != PairKind::point_plane) p.colwise() -= Vector3d(p.rowwise().mean());
   }
 
-  /// Vertices [0, first_end) against [first_end, end); a plane is known by one of its points.
-  int first_end() const { return first_side(kind); }
+  /// Vertices [0, first_end) against [first_end, end); a plane is represented by one of its points.
+  int first_end() const { return first_primitive_size(kind); }
   int end() const { return kind == PairKind::point_plane ? 2 : 4; }
 
-  /// Whether it cannot come nearer than `keep` of the gap, from its boxes alone.
-  bool stays_away(double keep) const {
-    const double apart = box_distance(kind, x);
-    return (apart - offset - rounding) * (1 - keep) > speed();
+  /// Whether the bounding boxes alone guarantee `min_gap_fraction` of the gap.
+  bool stays_apart(double min_gap_fraction) const {
+    const double distance = box_distance(kind, x);
+    return (distance - offset - rounding) * (1 - min_gap_fraction) > speed();
   }
 
-  /// Bounds how fast the distance changes.
+  /// An upper bound of the distance's rate.
   double speed() const {
     double a = 0, b = 0;
     for (int k = 0; k < end(); ++k) {
@@ -50,8 +50,8 @@ struct Motion {
     return std::sqrt(a) + std::sqrt(b);
   }
 
-  /// For how long the two sides are sure to stay `distance` apart along the direction n.
-  double separated(const PairPositions& now, const Vector3d& n, double distance) const {
+  /// The time for which the two primitives stay at least `distance` apart along n.
+  double separation_time(const PairPositions& now, const Vector3d& n, double distance) const {
     double time = std::numeric_limits<double>::infinity();
     for (int a = 0; a < first_end(); ++a)
       for (int b = first_end(); b < end(); ++b) {
@@ -63,20 +63,20 @@ struct Motion {
   }
 };
 
-/// Part of the motion after which `keep` of the gap is left, or `limit` if that is less.
-double safe_time(const Motion& motion, double keep, double limit) {
+/// The part of the motion that keeps `min_gap_fraction` of the gap, at most `limit`.
+double safe_time(const Motion& motion, double min_gap_fraction, double limit) {
   const double speed = motion.speed();
-  if (speed == 0 || motion.stays_away(keep)) return limit;
-  double time = 0, first_gap = 0;
-  for (int round = 0; round < max_rounds; ++round) {
+  if (speed == 0 || motion.stays_apart(min_gap_fraction)) return limit;
+  double time = 0, initial_gap = 0;
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const PairPositions now = motion.x + time * motion.p;
     const Closest nearest = closest(motion.kind, now);
     const double distance = connection(now, nearest).norm(), gap = distance - motion.offset - motion.rounding;
-    if (round == 0) first_gap = gap;
-    const double room = gap - keep * first_gap;
-    if (!(room > slack * first_gap)) return time;
-    time +=
-        std::max(room / speed, motion.separated(now, separating_direction(now, nearest), distance - room));
+    if (iteration == 0) initial_gap = gap;
+    const double room = gap - min_gap_fraction * initial_gap;
+    if (!(room > tolerance * initial_gap)) return time;
+    time += std::max(room / speed,
+                     motion.separation_time(now, separating_direction(now, nearest), distance - room));
     if (time >= limit) return limit;
   }
   return time;
@@ -85,7 +85,7 @@ double safe_time(const Motion& motion, double keep, double limit) {
 }  // namespace
 
 double additive_ccd(const Positions& x0, const Positions& x1, const Positions& obstacle_vertices,
-                    const std::vector<ContactPair>& pairs, double keep, int& blocking) {
+                    const std::vector<ContactPair>& pairs, double min_gap_fraction, int& blocking) {
   struct First {
     double time = 1;
     int pair = -1;
@@ -95,7 +95,8 @@ double additive_ccd(const Positions& x0, const Positions& x1, const Positions& o
   parallel_for(size, grain, [&](int begin, int end) {
     First& first = pieces[begin / grain];
     for (int i = begin; i < end; ++i) {
-      const double time = safe_time(Motion(pairs[i], x0, x1, obstacle_vertices), keep, first.time);
+      const double time =
+          safe_time(Motion(pairs[i], x0, x1, obstacle_vertices), min_gap_fraction, first.time);
       if (time < first.time) first = {time, i};
     }
   });

@@ -5,13 +5,13 @@
 
 namespace drape {
 
-/// A function's value and first two derivatives at one place.
+/// A function's value and first two derivatives.
 struct Derivatives {
   double value = 0, first = 0, second = 0;
 };
 
-/// b(s) = -(s - 1)² ln s of a gap of s ranges (Li et al. 2020, eq. 6, by s): +∞ for s ≤ 0, 0 from s = 1 on,
-/// twice differentiable there.
+/// b(s) = -(s - 1)² ln s with s = gap / d̂ (Li et al. 2020, eq. 6, made dimensionless). +∞ for s ≤ 0, 0 for
+/// s ≥ 1, and C² there.
 inline Derivatives barrier(double s) {
   if (s >= 1) return {};
   if (!(s > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
@@ -19,8 +19,8 @@ inline Derivatives barrier(double s) {
   return {-e * e * log, -2 * e * log - e * q, -2 * log - 4 * q + q * q};
 }
 
-/// m(z) = 2 z/ε - (z/ε)² below ε, 1 from there on (Li et al. 2020, eq. 18): takes out an edge-edge contact,
-/// whose distance is not smooth, as the edges become parallel; z = |u × v|² [m⁴].
+/// m(z) = 2 z/ε - (z/ε)² below ε, 1 above (Li et al. 2020, eq. 18), with z = |u × v|² [m⁴]. Fades an
+/// edge-edge contact as the edges become parallel, where their distance is not smooth.
 inline Derivatives mollifier(double z, double epsilon) {
   if (z >= epsilon) return {1, 0, 0};
   const double y = z / epsilon;

@@ -8,12 +8,13 @@
 namespace drape {
 namespace {
 
-constexpr int grain = 512;  // groups a piece of work
+constexpr int grain = 512;  // groups per task
 
-/// Orders the boxes so that every aligned run of 8, 64, 512, … of them is compact.
-class Halving {
+/// Orders the boxes by median splits; every aligned run of 8, 64, 512, … boxes becomes compact.
+class MedianSplit {
  public:
-  Halving(const std::vector<Box>& boxes, std::vector<int>& order) : centres_(boxes.size()), order_(order) {
+  MedianSplit(const std::vector<Box>& boxes, std::vector<int>& order)
+      : centres_(boxes.size()), order_(order) {
     for (std::size_t i = 0; i < boxes.size(); ++i)
       for (int k = 0; k < 3; ++k) centres_[i][k] = 0.5F * (boxes[i].lower[k] + boxes[i].upper[k]);
   }
@@ -83,7 +84,7 @@ Box BoxGroup::bounds() const {
 void BoxTree::build(const std::vector<Box>& boxes) {
   order_.resize(boxes.size());
   std::iota(order_.begin(), order_.end(), 0);
-  Halving(boxes, order_).sort(0, size());
+  MedianSplit(boxes, order_).sort(0, size());
   levels_.clear();
   for (int groups = leaf_groups(); groups > 0; groups = groups > 1 ? (groups + 7) / 8 : 0)
     levels_.emplace_back(groups);
@@ -102,7 +103,7 @@ void BoxTree::refit(const std::vector<Box>& boxes) {
   }
 }
 
-double BoxTree::looseness() const {
+double BoxTree::surface_area_cost() const {
   std::vector<double> area;
   for (const std::vector<BoxGroup>& groups : levels_)
     area.push_back(parallel_sum(static_cast<int>(groups.size()), grain, [&](int begin, int end) {

@@ -10,7 +10,7 @@
 
 namespace drape {
 
-/// Eight boxes side by side, so that one comparison serves all.
+/// Eight boxes in SIMD layout, compared with one instruction per bound.
 struct alignas(32) BoxGroup {
   float lower[3][8];
   float upper[3][8];
@@ -23,21 +23,22 @@ struct alignas(32) BoxGroup {
   unsigned overlaps(const Box& box) const;
 };
 
-/// A complete tree of eights over boxes: groups of eight leaves, eight groups to the next one up, and so on.
-/// Which box is where is decided once, by halving along the longest axis; after that it is refitted.
+/// A complete bounding volume hierarchy with eight children per node. Median splits along the longest axis
+/// assign boxes to leaves in build; refit only updates the bounds.
 class BoxTree {
  public:
-  /// Lays the tree out anew for these boxes.
+  /// Builds the tree for these boxes.
   void build(const std::vector<Box>& boxes);
-  /// Takes moved boxes, as many as it was built for.
+  /// Updates the bounds to moved boxes, as many as it was built for.
   void refit(const std::vector<Box>& boxes);
 
   int size() const { return static_cast<int>(order_.size()); }
   int leaf_groups() const { return (size() + 7) / 8; }
-  /// Surface of the inner boxes in units of the leaves': grows as neighbours in the tree move apart.
-  double looseness() const;
+  /// Surface area of the inner nodes over that of the leaves, the surface area heuristic's cost. It grows as
+  /// neighbouring leaves move apart.
+  double surface_area_cost() const;
 
-  /// Calls found(i, j) once for each overlapping pair of which one is in leaf group `group` and the other in
+  /// Calls found(i, j) once for each overlapping pair with one box in leaf group `group` and the other in
   /// that group or a later one.
   template <class Found>
   void overlaps(int group, const Found& found) const;
@@ -49,7 +50,7 @@ class BoxTree {
   template <class Found>
   void descend(const BoxTree& other, int group, int first_group, const Found& found) const;
 
-  std::vector<int> order_;                     // box number of each leaf
+  std::vector<int> order_;                     // box index of each leaf
   std::vector<std::vector<BoxGroup>> levels_;  // from the leaves up; the last has one group
 };
 
@@ -87,24 +88,24 @@ void BoxTree::descend(const BoxTree& other, int group, int first_group, const Fo
   if (other.order_.empty()) return;
   const BoxGroup& own = levels_[0][group];
   const Box bounds = own.bounds();
-  struct Place {
+  struct Node {
     int level, group;
   } stack[8 * 11];  // 8^11 exceeds any int
   int depth = 0;
   stack[depth++] = {static_cast<int>(other.levels_.size()) - 1, 0};
   while (depth > 0) {
-    const Place at = stack[--depth];
+    const Node at = stack[--depth];
     const BoxGroup& boxes = other.levels_[at.level][at.group];
     if (at.level > 0) {
-      for (unsigned left = boxes.overlaps(bounds); left != 0; left &= left - 1) {
-        const int child = 8 * at.group + __builtin_ctz(left);
+      for (unsigned bits = boxes.overlaps(bounds); bits != 0; bits &= bits - 1) {
+        const int child = 8 * at.group + __builtin_ctz(bits);
         if (((child + 1LL) << 3 * (at.level - 1)) > first_group) stack[depth++] = {at.level - 1, child};
       }
       continue;
     }
     for (int k = 0; k < 8 && 8 * group + k < size(); ++k)
-      for (unsigned left = boxes.overlaps(own.box(k)); left != 0; left &= left - 1)
-        found(8 * group + k, 8 * at.group + __builtin_ctz(left));
+      for (unsigned bits = boxes.overlaps(own.box(k)); bits != 0; bits &= bits - 1)
+        found(8 * group + k, 8 * at.group + __builtin_ctz(bits));
   }
 }
 

@@ -11,19 +11,19 @@
 namespace drape {
 namespace {
 
-/// Over how many of the tree's looseness at its building a new one is built.
-constexpr double rebuild_at = 2;
-constexpr int grain = 64;  // leaf groups a piece of work
+/// The tree is rebuilt once its cost exceeds this multiple of the cost after the last build.
+constexpr double rebuild_factor = 2;
+constexpr int grain = 64;  // leaf groups per task
 
 class BvhBroadPhase final : public BroadPhase {
  public:
   void update(const std::vector<Box>& boxes) override {
     if (static_cast<int>(boxes.size()) == tree_.size()) {
       tree_.refit(boxes);
-      if (!(tree_.looseness() > rebuild_at * looseness_when_built_)) return;
+      if (!(tree_.surface_area_cost() > rebuild_factor * cost_when_built_)) return;
     }
     tree_.build(boxes);
-    looseness_when_built_ = tree_.looseness();
+    cost_when_built_ = tree_.surface_area_cost();
   }
 
   bool overlaps(long limit, AdjacencyList& pairs) const override {
@@ -59,13 +59,13 @@ class BvhBroadPhase final : public BroadPhase {
   }
 
   BoxTree tree_;
-  double looseness_when_built_ = 0;
+  double cost_when_built_ = 0;
 };
 
 }  // namespace
 
 AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int column_count) {
-  // Put in order by column, then by row: no sorting.
+  // A counting sort by column, then by row.
   std::vector<int> column_end(column_count + 1, 0);
   AdjacencyList rows;
   rows.start.assign(row_count + 1, 0);
@@ -78,7 +78,7 @@ AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int c
   std::partial_sum(column_end.begin(), column_end.end(), column_end.begin());
   std::vector<int> by_column(rows.start[row_count]);
   for (const IndexPairs& list : lists)
-    for (const auto& [i, j] : list) by_column[column_end[j]++] = i;  // shifts the ends to where they belong
+    for (const auto& [i, j] : list) by_column[column_end[j]++] = i;  // turns starts into ends
   rows.items.resize(by_column.size());
   std::vector<int> row_end(rows.start.begin(), rows.start.end() - 1);
   for (int j = 0, k = 0; j < column_count; ++j)

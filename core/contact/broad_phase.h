@@ -8,28 +8,28 @@
 
 namespace drape {
 
-/// Ways to find overlapping boxes. All find the same pairs.
+/// Algorithms that find overlapping boxes. All find the same pairs.
 enum class BroadPhaseKind {
-  bvh,  ///< own tree of eights: laid out once, then refitted
-  fcl,  ///< FCL's BVHModel, refitted likewise
-  cgal  ///< CGAL's box_intersection_d: no memory between calls
+  bvh,  ///< own eight-wide BVH, built once and refitted
+  fcl,  ///< FCL's BVHModel, refitted too
+  cgal  ///< CGAL's box_intersection_d, without state between calls
 };
 
-/// Finds which of many boxes overlap, touching included.
+/// Finds the overlapping pairs of closed boxes.
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
 
-  /// Takes the boxes, none empty, by copy. Cheapest when there are as many as in the last call, and they are
-  /// still near to the same others.
+  /// Copies the boxes, none of which may be empty. Cheapest if their number is that of the last call and
+  /// their neighbours are the same.
   virtual void update(const std::vector<Box>& boxes) = 0;
 
-  /// Row i of `pairs`: the boxes j > i that overlap box i, ascending. False, and no rows, if there are more
-  /// than `limit` pairs.
+  /// Sets row i of `pairs` to the boxes j > i that overlap box i, ascending. Returns false, without rows, if
+  /// there are more than `limit` pairs.
   virtual bool overlaps(long limit, AdjacencyList& pairs) const = 0;
 
-  /// Row i of `pairs`: the other's boxes that overlap box i, ascending. `other` must be of the same kind,
-  /// else std::runtime_error.
+  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Throws std::runtime_error if
+  /// `other` is of another kind.
   virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
 };
 

@@ -7,7 +7,7 @@ namespace {
 
 using NumberedBox = CGAL::Box_intersection_d::Box_with_info_d<float, 3, int>;
 
-/// Thrown out of CGAL's search, which cannot be stopped otherwise.
+/// Thrown from the callback: the only way to stop CGAL's search.
 struct TooMany {};
 
 class CgalBroadPhase final : public BroadPhase {

@@ -11,7 +11,7 @@ using Model = fcl::BVHModel<fcl::AABBd>;
 class FclBroadPhase final : public BroadPhase {
  public:
   void update(const std::vector<Box>& boxes) override {
-    // A box as FCL can refit it: the triangle of its corners.
+    // FCL refits triangles only: a triangle with the box's corners has the same bounds.
     std::vector<fcl::Vector3d> corners(3 * boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i)
       for (int k = 0; k < 3; ++k) {
@@ -47,7 +47,8 @@ class FclBroadPhase final : public BroadPhase {
     return true;
   }
 
-  /// Both trees from the top down; a node against itself is its children against each other and themselves.
+  /// Traverses both trees top-down. A node against itself becomes its children against themselves and each
+  /// other.
   bool search(const Model& other, long limit, IndexPairs& list) const {
     const bool self = &other == model_.get();
     std::vector<std::pair<int, int>> stack{{0, 0}};

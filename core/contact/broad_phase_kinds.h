@@ -7,17 +7,17 @@
 
 namespace drape {
 
-// What the implementations of BroadPhase share.
+// Shared by the implementations of BroadPhase.
 
 std::unique_ptr<BroadPhase> make_fcl_broad_phase();
 std::unique_ptr<BroadPhase> make_cgal_broad_phase();
 
 using IndexPairs = std::vector<std::pair<int, int>>;
 
-/// Rows of ascending second indices from pairs in any order, in lists of any length.
+/// Rows of ascending second indices, from lists of pairs in any order.
 AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int column_count);
 
-/// The other as an object of one's own class.
+/// Downcasts `other` to the class Own.
 template <class Own>
 const Own& same_kind(const BroadPhase& other) {
   if (const Own* own = dynamic_cast<const Own*>(&other)) return *own;

@@ -11,8 +11,8 @@ namespace {
 using Eigen::Vector3d, Eigen::Vector4d;
 using Coordinates = Eigen::Matrix<double, 4, 3>;
 
-/// What both kinds of contact share, with n = r / d, free parameters turned so that the columns of t that
-/// belong to them are orthonormal, and rows of fixed vertices zero. The Hessian of d is then, over d,
+/// The distance's derivatives in an orthonormal frame n = r / d, t_0, t_1. Free parameters are transformed to
+/// make their t_m orthonormal, and rows of obstacle vertices are zero. The Hessian of d is then 1/d times
 ///   (c cᵀ)⊗(I - n nᵀ) - Σ_m (c⊗t_m + d p_m⊗n)(c⊗t_m + d p_m⊗n)ᵀ.
 struct Frame {
   Vector4d c;
@@ -22,14 +22,16 @@ struct Frame {
 
   Frame(const Contact& contact, int cloth_count) : c(contact.closest.c), free(contact.closest.free) {
     const Vector3d& n = contact.normal;
-    const auto moves = [&](int m) { return contact.difference * contact.closest.direction.col(m).tail<3>(); };
-    const Vector3d first = free > 0 ? Vector3d(moves(0)) : n.unitOrthogonal();
+    const auto tangent = [&](int m) {
+      return contact.difference * contact.closest.direction.col(m).tail<3>();
+    };
+    const Vector3d first = free > 0 ? Vector3d(tangent(0)) : n.unitOrthogonal();
     const double length = first.norm();
     t[0] = first / length;
     t[1] = n.cross(t[0]);
     if (free > 0) p.col(0) = contact.closest.direction.col(0) / length;
     if (free > 1) {
-      const Vector3d second = moves(1);
+      const Vector3d second = tangent(1);
       p.col(1) = (contact.closest.direction.col(1) - t[0].dot(second) * p.col(0)) / t[1].dot(second);
     }
     for (int k = 0; k < 4; ++k)
@@ -40,14 +42,16 @@ struct Frame {
   }
 };
 
-/// A Hessian as Σ_ij (column i)(column j)ᵀ m_ij of orthonormal columns, which projecting m projects.
-struct Plain {
+/// The Hessian of a contact without mollifier, as Σ_ij (column i)(column j)ᵀ m_ij of orthonormal columns.
+/// Projecting m therefore projects the Hessian.
+struct Unmollified {
   static constexpr int size = 5;
   Coordinates q = Coordinates::Zero();  ///< columns q_0⊗n, q_1⊗n, q_2⊗n, q_0⊗t_0, q_0⊗t_1
   Vector3d n, t[2];
   SymmetricMatrix<5, double> m{};
 
-  Plain(const Contact& contact, const BarrierParameters& parameters, int cloth_count) : n(contact.normal) {
+  Unmollified(const Contact& contact, const BarrierParameters& parameters, int cloth_count)
+      : n(contact.normal) {
     const Frame frame(contact, cloth_count);
     const double d = contact.distance, slope = contact.barrier.first / d, length = frame.c.norm();
     t[0] = frame.t[0], t[1] = frame.t[1];
@@ -69,7 +73,7 @@ struct Plain {
     const double weight = parameters.stiffness * contact.pair.weight;
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i <= j; ++i) m(i, j) = -weight * slope * (p(i, 0) * p(j, 0) + p(i, 1) * p(j, 1));
-    m(0, 0) += weight * contact.barrier.second / parameters.range * length * length;
+    m(0, 0) += weight * contact.barrier.second / parameters.dhat * length * length;
     for (int k = 0; k < 2; ++k) {
       for (int i = 0; i < 3; ++i) m(i, 3 + k) = -weight * slope * length * p(i, k);
       if (k >= frame.free) m(3 + k, 3 + k) = weight * slope * length * length;
@@ -89,20 +93,20 @@ struct Plain {
     const Eigen::Matrix<double, 4, 2> side = q * cross;
     Vector3d shear[4];
     for (int a = 0; a < 4; ++a) shear[a] = side(a, 0) * t[0] + side(a, 1) * t[1];
-    for (int b = 0, place = 0; b < 4; ++b)
-      for (int a = 0; a <= b; ++a, ++place) {
+    for (int b = 0, index = 0; b < 4; ++b)
+      for (int a = 0; a <= b; ++a, ++index) {
         const Vector3d right = normal.row(a).dot(q.row(b)) * n + q(b, 0) * shear[a];
         const Vector3d left = q(a, 0) * shear[b];
         const double both = q(a, 0) * q(b, 0);
         for (int i = 0; i < 3; ++i)
           for (int j = 0; j < 3; ++j)
-            blocks.block[place][3 * i + j] = n[i] * right[j] + left[i] * n[j] + both * across(i, j);
+            blocks.block[index][3 * i + j] = n[i] * right[j] + left[i] * n[j] + both * across(i, j);
       }
   }
 };
 
-/// The same for an edge-edge contact that the mollifier acts on: all 9 dimensions without the translations,
-/// or those of the one edge that moves.
+/// The Hessian of a mollified edge-edge contact, in the 9 dimensions left without translations. If only one
+/// edge belongs to the cloth, in that edge's 6.
 struct Mollified {
   static constexpr int size = 9;
   Coordinates q = Coordinates::Zero();
@@ -125,29 +129,30 @@ struct Mollified {
                           vv = 2 * (u.squaredNorm() * Eigen::Matrix3d::Identity() - u * u.transpose()),
                           uv = 4 * u * v.transpose() - 2 * v * u.transpose() -
                                2 * u.dot(v) * Eigen::Matrix3d::Identity();
-    Eigen::Matrix<double, 9, 1> gb, gz, turned[2];
+    Eigen::Matrix<double, 9, 1> gb, gz, tangents[2];
     for (int a = 0; a < 3; ++a) {
-      gb.segment<3>(3 * a) = contact.barrier.first / parameters.range * c[a] * n;
+      gb.segment<3>(3 * a) = contact.barrier.first / parameters.dhat * c[a] * n;
       gz.segment<3>(3 * a) = eu[a] * zu + ev[a] * zv;
       for (int k = 0; k < 2; ++k)
-        turned[k].segment<3>(3 * a) =
+        tangents[k].segment<3>(3 * a) =
             k < frame.free ? Vector3d(c[a] * frame.t[k] + contact.distance * q.col(a).dot(frame.p.col(k)) * n)
                            : Vector3d::Zero();
     }
-    const double slope = contact.barrier.first / (parameters.range * contact.distance),
-                 curvature = contact.barrier.second / (parameters.range * parameters.range);
-    const Derivatives& fade = contact.mollifier;
+    const double slope = contact.barrier.first / (parameters.dhat * contact.distance),
+                 curvature = contact.barrier.second / (parameters.dhat * parameters.dhat);
+    const Derivatives& mollifier = contact.mollifier;
     for (int b = 0; b < 9; ++b)
       for (int a = 0; a <= b; ++a) {
         const int i = a / 3, j = b / 3, r = a % 3, s = b % 3;
-        const double by_distance = curvature * c[i] * n[r] * c[j] * n[s] +
-                                   slope * (c[i] * c[j] * ((r == s) - n[r] * n[s]) -
-                                            turned[0][a] * turned[0][b] - turned[1][a] * turned[1][b]);
+        const double by_distance =
+            curvature * c[i] * n[r] * c[j] * n[s] +
+            slope * (c[i] * c[j] * ((r == s) - n[r] * n[s]) - tangents[0][a] * tangents[0][b] -
+                     tangents[1][a] * tangents[1][b]);
         const double by_z = eu[i] * eu[j] * uu(r, s) + ev[i] * ev[j] * vv(r, s) + eu[i] * ev[j] * uv(r, s) +
                             ev[i] * eu[j] * uv(s, r);
-        m(a, b) = parameters.stiffness * contact.pair.weight * parameters.range *
-                  (fade.value * by_distance + fade.first * (gz[a] * gb[b] + gb[a] * gz[b]) +
-                   contact.barrier.value * (fade.second * gz[a] * gz[b] + fade.first * by_z));
+        m(a, b) = parameters.stiffness * contact.pair.weight * parameters.dhat *
+                  (mollifier.value * by_distance + mollifier.first * (gz[a] * gb[b] + gb[a] * gz[b]) +
+                   contact.barrier.value * (mollifier.second * gz[a] * gz[b] + mollifier.first * by_z));
       }
   }
 
@@ -158,16 +163,16 @@ struct Mollified {
     Eigen::Matrix<double, 12, 9> left = Eigen::Matrix<double, 12, 9>::Zero();
     for (int k = 0; k < 4; ++k)
       for (int i = 0; i < 3; ++i) left.middleRows<3>(3 * k) += q(k, i) * full.middleRows<3>(3 * i);
-    for (int b = 0, place = 0; b < 4; ++b)
-      for (int a = 0; a <= b; ++a, ++place) {
-        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks.block[place]);
+    for (int b = 0, index = 0; b < 4; ++b)
+      for (int a = 0; a <= b; ++a, ++index) {
+        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(blocks.block[index]);
         block.setZero();
         for (int j = 0; j < 3; ++j) block += q(b, j) * left.block<3, 3>(3 * a, 3 * j);
       }
   }
 };
 
-/// Projects the matrices of up to native_pack_width contacts in step.
+/// Projects the matrices with SIMD, native_pack_width contacts at a time.
 template <class Kind>
 void project_all(std::vector<Kind>& kinds, Projection projection) {
   if (projection.is_exact()) return;
@@ -188,21 +193,21 @@ template <class Kind>
 void hessians_of_kind(const Contact* contacts, int count, bool mollified, const BarrierParameters& parameters,
                       int cloth_count, Projection projection, PairBlocks* blocks) {
   std::vector<Kind> kinds;
-  std::vector<int> place;
+  std::vector<int> indices;
   for (int i = 0; i < count; ++i) {
     if (contacts[i].mollified() != mollified) continue;
     kinds.emplace_back(contacts[i], parameters, cloth_count);
-    place.push_back(i);
+    indices.push_back(i);
   }
   project_all(kinds, projection);
-  for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].expand(blocks[place[k]]);
+  for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k].expand(blocks[indices[k]]);
 }
 
 }  // namespace
 
 void contact_hessians(const Contact* contacts, int count, const BarrierParameters& parameters,
                       int cloth_count, Projection projection, PairBlocks* blocks) {
-  hessians_of_kind<Plain>(contacts, count, false, parameters, cloth_count, projection, blocks);
+  hessians_of_kind<Unmollified>(contacts, count, false, parameters, cloth_count, projection, blocks);
   hessians_of_kind<Mollified>(contacts, count, true, parameters, cloth_count, projection, blocks);
 }
 

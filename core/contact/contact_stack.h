@@ -9,8 +9,7 @@
 
 namespace drape {
 
-/// Several energies as one: the elements of each part follow those of the part before. All stencils have four
-/// columns.
+/// The sum of several energies, with their elements concatenated. All stencils must have four columns.
 template <class Base, class Part = Base>
 class Stacked : public Base {
  public:
@@ -55,15 +54,18 @@ class FrictionStack final : public Stacked<FrictionEnergy> {
  public:
   using Stacked::Stacked;
 
-  void add_slips(const Positions& x, Slips& slips) const override {
-    for (const auto& part : parts_) part->add_slips(x, slips);
+  void append_tangential_displacements(const Positions& x,
+                                       TangentialDisplacements& displacements) const override {
+    for (const auto& part : parts_) part->append_tangential_displacements(x, displacements);
   }
-  void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const override {
-    for (const auto& part : parts_) part->add_slips_carried(x, carried, slips);
+  void append_advected_tangential_displacements(const Positions& x, const Positions& obstacle_motion,
+                                                TangentialDisplacements& displacements) const override {
+    for (const auto& part : parts_)
+      part->append_advected_tangential_displacements(x, obstacle_motion, displacements);
   }
 };
 
-class ContactStack final : public Stacked<ContactSet> {
+class CollisionStack final : public Stacked<Collisions> {
  public:
   using Stacked::Stacked;
 
@@ -77,10 +79,11 @@ class ContactStack final : public Stacked<ContactSet> {
     for (const auto& part : parts_) gap = std::min(gap, part->smallest_gap());
     return gap;
   }
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                           const TangentialDisplacements& displacements) const override {
     std::vector<std::unique_ptr<FrictionEnergy>> frictions;
     for (const auto& part : parts_)
-      if (auto own = part->friction(from, slips)) frictions.push_back(std::move(own));
+      if (auto own = part->friction(reference, displacements)) frictions.push_back(std::move(own));
     if (frictions.empty()) return nullptr;
     return std::make_unique<FrictionStack>(std::move(frictions));
   }

@@ -10,17 +10,17 @@
 namespace drape {
 namespace {
 
-constexpr int grain = 128,
-              run = 1024;  // contacts a piece; contacts whose blocks are kept before they are added
+constexpr int grain = 128;  // contacts per task
+constexpr int run = 1024;   // contacts whose blocks are computed before they are added
 
-class PairContacts final : public ContactSet {
+class PairCollisions final : public Collisions {
  public:
-  PairContacts(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
-               const BarrierParameters& parameters)
+  PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
+                 const BarrierParameters& parameters)
       : contacts_(std::move(contacts)), count_(count), cloth_count_(cloth_count), parameters_(parameters) {
     double sum = 0;
     for (int i = 0; i < count_; ++i) {
-      sum += contacts_[i].value(parameters_.range);
+      sum += contacts_[i].value(parameters_.dhat);
       smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
     }
     value_ = parameters_.stiffness * sum;
@@ -33,7 +33,7 @@ class PairContacts final : public ContactSet {
   double add_gradient(const Positions&, Positions& g) const override {
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
-      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact, parameters_.range);
+      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact, parameters_.dhat);
       for (int k = 0; k < 4; ++k)
         if (const int v = contact.pair.vertices[k]; v < cloth_count_) g.row(v) += by_vertex.col(k);
     }
@@ -47,7 +47,7 @@ class PairContacts final : public ContactSet {
     return result;
   }
 
-  // Blocks are made by all threads and added by one, in order.
+  // All threads compute blocks; one adds them in order, which makes results independent of the thread count.
   void add_hessian(const Positions&, Projection projection, BlockSink& sink) const override {
     const auto blocks = std::make_unique_for_overwrite<PairBlocks[]>(std::min(run, count_));
     for (int first = 0; first < count_; first += run) {
@@ -57,12 +57,13 @@ class PairContacts final : public ContactSet {
                          blocks.get() + begin);
       });
       for (int i = 0; i < size; ++i)
-        for (int b = 0, place = 0; b < 4; ++b)
-          for (int a = 0; a <= b; ++a, ++place) sink.add(first + i, a, b, blocks[i].block[place]);
+        for (int b = 0, index = 0; b < 4; ++b)
+          for (int a = 0; a <= b; ++a, ++index) sink.add(first + i, a, b, blocks[i].block[index]);
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                           const TangentialDisplacements& displacements) const override {
     std::vector<FrictionContact> result;
     result.reserve(count_);
     for (int i = 0; i < count_; ++i) {
@@ -76,7 +77,8 @@ class PairContacts final : public ContactSet {
                         contact.normal,
                         contact.pair.friction * parameters_.stiffness * contact.pressure()});
     }
-    return make_friction(std::move(result), from, slips, parameters_.slip_distance);
+    return make_friction(std::move(result), reference, displacements,
+                         parameters_.friction_smoothing_distance);
   }
 
  private:
@@ -93,18 +95,17 @@ class PairContacts final : public ContactSet {
 
 }  // namespace
 
-std::unique_ptr<ContactSet> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
+std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
                                                const std::vector<ContactPair>& pairs,
                                                const BarrierParameters& parameters) {
-  // First which, then all there are of them at their final place: it is much memory, and copying takes
-  // longest.
-  constexpr int pairs_a_piece = 2048;
+  // Collect indices first, then construct the contacts in place: they are large, and copying dominates.
+  constexpr int pairs_per_task = 2048;
   const int size = static_cast<int>(pairs.size());
-  std::vector<std::vector<int>> near((size + pairs_a_piece - 1) / pairs_a_piece);
-  parallel_for(size, pairs_a_piece, [&](int begin, int end) {
+  std::vector<std::vector<int>> near((size + pairs_per_task - 1) / pairs_per_task);
+  parallel_for(size, pairs_per_task, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      if (within_range(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.range))
-        near[begin / pairs_a_piece].push_back(i);
+      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat))
+        near[begin / pairs_per_task].push_back(i);
   });
   std::vector<int> start = {0};
   for (const auto& piece : near) start.push_back(start.back() + static_cast<int>(piece.size()));
@@ -112,10 +113,10 @@ std::unique_ptr<ContactSet> make_pair_contacts(const Positions& x, const Positio
   parallel_for(static_cast<int>(near.size()), 1, [&](int piece, int) {
     Contact* contact = contacts.get() + start[piece];
     for (const int i : near[piece])
-      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.range);
+      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat);
   });
-  return std::make_unique<PairContacts>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
-                                        parameters);
+  return std::make_unique<PairCollisions>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
+                                          parameters);
 }
 
 }  // namespace drape

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// The positions of a pair's vertices, one a column [m].
+/// The positions of a pair's vertices, as columns [m].
 using PairPositions = Eigen::Matrix<double, 3, 4>;
 
 inline PairPositions positions_of(const ContactPair& pair, const Positions& x, const Positions& obstacles) {
@@ -31,10 +31,10 @@ inline Closest closest(PairKind kind, const PairPositions& x) {
   return closest_point_plane(x0, x1, x2, x3);
 }
 
-/// Vertices [0, n) of a pair are its first side.
-inline int first_side(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
+/// The number of vertices of a pair's first primitive.
+inline int first_primitive_size(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
 
-/// A lower bound of the distance: that of the two sides' boxes; 0 for a plane [m].
+/// The distance of the two primitives' bounding boxes, a lower bound of theirs; 0 for a plane [m].
 inline double box_distance(PairKind kind, const PairPositions& x) {
   if (kind == PairKind::point_plane) return 0;
   Eigen::Vector3d low_a = x.col(0), high_a = low_a, low_b = x.col(3), high_b = low_b;
@@ -48,15 +48,15 @@ inline double box_distance(PairKind kind, const PairPositions& x) {
   return (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(0).norm();
 }
 
-/// r = Σ c_k x_k, by differences from vertex 0.
+/// r = Σ c_k x_k, computed relative to vertex 0.
 inline Eigen::Vector3d connection(const PairPositions& x, const Closest& closest) {
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   for (int k = 1; k < 4; ++k) r += closest.c[k] * (x.col(k) - x.col(0));
   return r;
 }
 
-/// r / |r|, at right angles to what is free to move along to the last digits: of a gap that is small against
-/// the pair, r itself has few digits left.
+/// r / |r|, orthogonalised against the free directions: r itself has few significant digits if the gap is
+/// small compared with the primitives.
 inline Eigen::Vector3d separating_direction(const PairPositions& x, const Closest& closest) {
   Eigen::Vector3d n = connection(x, closest).normalized();
   Eigen::Vector3d along[2];

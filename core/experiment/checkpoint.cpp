@@ -37,13 +37,13 @@ void fields(A& a, LevelResult& r) {
 }
 
 template <class A>
-void fields(A& a, Slip& s) {
-  a(s.contact, s.by.x(), s.by.y(), s.by.z());
+void fields(A& a, TangentialDisplacement& s) {
+  a(s.contact, s.displacement.x(), s.displacement.y(), s.displacement.z());
 }
 
 template <class A>
 void fields(A& a, ContactMemory& m) {
-  a(m.from, m.slips, m.sweep_begin, m.sweep_end, m.seconds_building);
+  a(m.reference, m.tangential_displacements, m.candidates_begin, m.candidates_end, m.seconds_building);
 }
 
 template <class A>

@@ -105,12 +105,13 @@ class Check {
   void contacts(const ContactMemory& memory, int level) const {
     const BoundContacts& models = scene_.models[level]->contacts();
     if (models.empty()) return;
-    for (const Positions* x : {&memory.from, &memory.sweep_begin, &memory.sweep_end})
+    for (const Positions* x : {&memory.reference, &memory.candidates_begin, &memory.candidates_end})
       positions(*x, level, "the contacts");
-    require(memory.slips.size() == models.size(), "the contacts that have slipped");
-    for (const Slips& slips : memory.slips)
-      require(ascends(slips, [](const Slip& slip) { return slip.contact; }),
-              "the contacts that have slipped");
+    require(memory.tangential_displacements.size() == models.size(),
+            "the contacts' tangential displacements");
+    for (const TangentialDisplacements& displacements : memory.tangential_displacements)
+      require(ascends(displacements, [](const TangentialDisplacement& d) { return d.contact; }),
+              "the contacts' tangential displacements");
   }
 
   void factor(const NewtonState& s, int n) const {

@@ -152,7 +152,7 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
   if (contacts.empty()) return nullptr;
   std::size_t count = 0;
   for (const auto& contact : contacts) {
-    const std::vector<Touch> touches = contact->intersections(x);
+    const std::vector<Intersection> touches = contact->intersections(x);
     for (std::size_t k = 0; k < std::min<std::size_t>(touches.size(), 10); ++k)
       log({{"event", "intersection"},
            {"method", method_},

@@ -129,7 +129,7 @@ void refuse_touching_start(const Experiment& e, const LevelModel& model, const P
                            ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
   for (const auto& contact : model.contacts()) {
-    const std::vector<Touch> touches = contact->intersections(start);
+    const std::vector<Intersection> touches = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
       errors.push_back({e.place_of("start"), "the start of level " + std::to_string(model.level().index) +
                                                  " touches: " + to_string(touches[k])});

@@ -82,8 +82,8 @@ StepLimit obstacles_way(const LevelModel& from, const LevelModel& to, const Posi
   StepLimit limit;
   for (std::size_t k = 0; k < to.contacts().size(); ++k) {
     if (to.contacts()[k] == from.contacts()[k]) continue;
-    if (const auto* movable = dynamic_cast<const MovableObstacles*>(to.contacts()[k].get())) {
-      StepLimit own = movable->max_move(*from.contacts()[k], x);
+    if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(to.contacts()[k].get())) {
+      StepLimit own = kinematic->max_step(*from.contacts()[k], x);
       if (own.fraction < limit.fraction) limit = std::move(own);
     }
   }

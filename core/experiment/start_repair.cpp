@@ -22,13 +22,15 @@ constexpr int halvings = 5;
 
 /// What a start is like at one place.
 struct Standing {
-  std::vector<Touch> touches;  ///< of the first level that has any; nothing else is known then
-  int level = 0;               ///< that level
-  int contacts = 0;            ///< pairs within range, on all levels
+  std::vector<Intersection> touches;  ///< of the first level that has any; nothing else is known then
+  int level = 0;                      ///< that level
+  int contacts = 0;                   ///< pairs within d̂, on all levels
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
-bool same_pair(const Touch& a, const Touch& b) { return a.first == b.first && a.second == b.second; }
+bool same_pair(const Intersection& a, const Intersection& b) {
+  return a.first == b.first && a.second == b.second;
+}
 
 /// One vertex of every piece of the cloth.
 std::vector<int> pieces_of(const Level& level) {
@@ -83,7 +85,7 @@ class Places {
       for (const auto& contact : scene_.models[l]->contacts()) {
         standing.touches = contact->intersections(x);
         if (!standing.touches.empty()) return standing;
-        const auto near = contact->sweep(x, x)->build(x);
+        const auto near = contact->build_candidates(x, x)->build_collisions(x);
         standing.contacts += near->contact_count();
         standing.smallest_gap = std::min(standing.smallest_gap, near->smallest_gap());
       }
@@ -122,7 +124,7 @@ class Search {
         const double distance = std::min(part, 1.0) * places_.diagonal();
         if (is_better(distance * direction)) {
           shorten(direction, before, distance);
-          // What is still within range then is the cloth itself, or there may be a better place.
+          // What is still within d̂ then is the cloth itself, or there may be a better place.
           if (best_contacts_ == 0) return;
         }
         before = distance;
@@ -133,7 +135,7 @@ class Search {
   bool found() const { return found_; }
   const Vector3d& way() const { return way_; }
   /// Of the pairs that touch at the start, those that did at every place.
-  const std::vector<Touch>& lasting() const { return lasting_.touches; }
+  const std::vector<Intersection>& lasting() const { return lasting_.touches; }
 
  private:
   /// Takes note of the place if it is free, with fewer contacts than any before.
@@ -160,9 +162,9 @@ class Search {
 
   void keep_lasting(const Standing& other) {
     if (other.level != lasting_.level) return;  // triangles of another level
-    std::erase_if(lasting_.touches, [&](const Touch& touch) {
+    std::erase_if(lasting_.touches, [&](const Intersection& touch) {
       return std::none_of(other.touches.begin(), other.touches.end(),
-                          [&](const Touch& now) { return same_pair(touch, now); });
+                          [&](const Intersection& now) { return same_pair(touch, now); });
     });
   }
 

@@ -5,44 +5,45 @@
 
 namespace drape {
 
-void ActiveContacts::sweep(const Positions& x0, const Positions& x1) {
-  sweeps_.clear();
-  for (const auto& model : models_) sweeps_.push_back(model->sweep(x0, x1));
-  swept_ = std::make_shared<const Way>(Way{x0, x1});
+void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
+  candidates_.clear();
+  for (const auto& model : models_) candidates_.push_back(model->build_candidates(x0, x1));
+  candidates_motion_ = std::make_shared<const LinearMotion>(LinearMotion{x0, x1});
 }
 
-void ActiveContacts::build(const Positions& x) {
+void ActiveContacts::build_collisions(const Positions& x) {
   if (state_.rows() == x.rows() && state_ == x) return;
-  if (sweeps_.empty()) sweep(x, x);
+  if (candidates_.empty()) build_candidates(x, x);
   const Stopwatch watch;
-  sets_.clear();
-  for (const auto& sweep : sweeps_) sets_.push_back(sweep->build(x));
+  collisions_.clear();
+  for (const auto& candidates : candidates_) collisions_.push_back(candidates->build_collisions(x));
   seconds_building_ += watch.seconds();
   state_ = x;
-  built_along_ = swept_;
+  collisions_motion_ = candidates_motion_;
 }
 
 void ActiveContacts::begin_step(const Positions& x) {
   if (models_.empty()) return;
-  build(x);
-  // What an obstacle has taken along is ahead of a cloth that has had no step to follow.
-  if (!carried_) remember_slips(x);
-  carried_ = false;
-  lag();
+  build_collisions(x);
+  // update_obstacles has stored displacements that include an obstacle motion the cloth has yet to follow.
+  if (!advected_) store_tangential_displacements(x);
+  advected_ = false;
+  lag_friction();
 }
 
-void ActiveContacts::remember_slips(const Positions& x, const Positions* carried) {
-  slips_.resize(models_.size());
-  for (Slips& slips : slips_) slips.clear();
+void ActiveContacts::store_tangential_displacements(const Positions& x, const Positions* obstacle_motion) {
+  tangential_displacements_.resize(models_.size());
+  for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
-    if (carried)
-      friction_[k]->add_slips_carried(x, *carried, slips_[k]);
+    if (obstacle_motion)
+      friction_[k]->append_advected_tangential_displacements(x, *obstacle_motion,
+                                                             tangential_displacements_[k]);
     else
-      friction_[k]->add_slips(x, slips_[k]);
-    std::ranges::sort(slips_[k], {}, &Slip::contact);
+      friction_[k]->append_tangential_displacements(x, tangential_displacements_[k]);
+    std::ranges::sort(tangential_displacements_[k], {}, &TangentialDisplacement::contact);
   }
-  from_ = x;
+  reference_ = x;
 }
 
 bool ActiveContacts::has_friction() const {
@@ -50,59 +51,62 @@ bool ActiveContacts::has_friction() const {
                      [](const auto& friction) { return friction != nullptr; });
 }
 
-void ActiveContacts::models_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
+void ActiveContacts::update_obstacles(const BoundContacts& before, const Positions& from,
+                                      const Positions& x) {
   if (models_ == before) return;
-  if (!carried_ && has_friction()) {
-    remember_slips(from);
-    renew_lag(from);
+  if (!advected_ && has_friction()) {
+    store_tangential_displacements(from);
+    update_lagging(from);
   }
-  Positions carried = Positions::Zero(x.rows(), 3);
+  Positions obstacle_motion = Positions::Zero(x.rows(), 3);
   for (std::size_t k = 0; k < models_.size(); ++k)
-    if (const auto* movable = dynamic_cast<const MovableObstacles*>(models_[k].get());
-        movable && models_[k] != before[k])
-      movable->carry(*before[k], from, carried);
-  remember_slips(x, &carried);
-  carried_ = true;
-  sweeps_.clear();
-  sets_.clear();
+    if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[k].get());
+        kinematic && models_[k] != before[k])
+      kinematic->advect(*before[k], from, obstacle_motion);
+  store_tangential_displacements(x, &obstacle_motion);
+  advected_ = true;
+  candidates_.clear();
+  collisions_.clear();
   friction_.clear();
   state_.resize(0, 3);
-  build(x);
-  lag();
+  build_collisions(x);
+  lag_friction();
 }
 
-void ActiveContacts::renew_lag(const Positions& x) {
-  build(x);
-  lag();
+void ActiveContacts::update_lagging(const Positions& x) {
+  build_collisions(x);
+  lag_friction();
 }
 
-void ActiveContacts::lag() {
+void ActiveContacts::lag_friction() {
   friction_.clear();
-  if (!with_friction_) return;
-  for (std::size_t k = 0; k < sets_.size(); ++k) friction_.push_back(sets_[k]->friction(from_, slips_[k]));
+  if (!friction_enabled_) return;
+  for (std::size_t k = 0; k < collisions_.size(); ++k)
+    friction_.push_back(collisions_[k]->friction(reference_, tangential_displacements_[k]));
 }
 
 ContactMemory ActiveContacts::memory() const {
   if (models_.empty()) return {};
-  return {from_, slips_, built_along_->begin, built_along_->end, seconds_building_};
+  return {reference_, tangential_displacements_, collisions_motion_->begin, collisions_motion_->end,
+          seconds_building_};
 }
 
 void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
   seconds_building_ = memory.seconds_building;
   if (models_.empty()) return;
-  sweep(memory.sweep_begin, memory.sweep_end);
+  build_candidates(memory.candidates_begin, memory.candidates_end);
   state_.resize(0, 3);
-  build(x);
-  from_ = memory.from;
-  slips_ = memory.slips;
-  lag();
+  build_collisions(x);
+  reference_ = memory.reference;
+  tangential_displacements_ = memory.tangential_displacements;
+  lag_friction();
 }
 
 StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {
   StepLimit limit;
-  sweep(x0, x1);
-  for (const auto& sweep : sweeps_) {
-    StepLimit own = sweep->max_step();
+  build_candidates(x0, x1);
+  for (const auto& candidates : candidates_) {
+    StepLimit own = candidates->max_step();
     if (own.fraction < limit.fraction) limit = std::move(own);
   }
   return limit;
@@ -110,9 +114,9 @@ StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {
 
 double ActiveContacts::barrier(const Positions& x) {
   if (models_.empty()) return 0;
-  build(x);
+  build_collisions(x);
   double sum = 0;
-  for (const auto& set : sets_) sum += set->value(x);
+  for (const auto& collisions : collisions_) sum += collisions->value(x);
   return sum;
 }
 
@@ -125,19 +129,19 @@ double ActiveContacts::friction(const Positions& x) const {
 
 double ActiveContacts::add_gradient(const Positions& x, Positions& g) {
   if (models_.empty()) return 0;
-  build(x);
+  build_collisions(x);
   double sum = 0;
-  for (const auto& set : sets_) sum += set->add_gradient(x, g);
+  for (const auto& collisions : collisions_) sum += collisions->add_gradient(x, g);
   for (const auto& friction : friction_)
     if (friction) sum += friction->add_gradient(x, g);
   return sum;
 }
 
 std::vector<const BoundEnergy*> ActiveContacts::energies(const Positions& x) {
-  if (!models_.empty()) build(x);
+  if (!models_.empty()) build_collisions(x);
   std::vector<const BoundEnergy*> all;
-  for (const auto& set : sets_)
-    if (set->contact_count() > 0) all.push_back(set.get());
+  for (const auto& collisions : collisions_)
+    if (collisions->contact_count() > 0) all.push_back(collisions.get());
   for (const auto& friction : friction_)
     if (friction) all.push_back(friction.get());
   return all;
@@ -145,13 +149,13 @@ std::vector<const BoundEnergy*> ActiveContacts::energies(const Positions& x) {
 
 int ActiveContacts::count() const {
   int sum = 0;
-  for (const auto& set : sets_) sum += set->contact_count();
+  for (const auto& collisions : collisions_) sum += collisions->contact_count();
   return sum;
 }
 
 double ActiveContacts::smallest_gap() const {
   double gap = std::numeric_limits<double>::infinity();
-  for (const auto& set : sets_) gap = std::min(gap, set->smallest_gap());
+  for (const auto& collisions : collisions_) gap = std::min(gap, collisions->smallest_gap());
   return gap;
 }
 

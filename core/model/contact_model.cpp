@@ -4,11 +4,11 @@
 
 namespace drape {
 
-std::string to_string(const Touch& touch) {
-  char place[100];
-  std::snprintf(place, sizeof place, " at (%.4g, %.4g, %.4g)", touch.where.x(), touch.where.y(),
-                touch.where.z());
-  return touch.first + " and " + touch.second + place;
+std::string to_string(const Intersection& intersection) {
+  char point[100];
+  std::snprintf(point, sizeof point, " at (%.4g, %.4g, %.4g)", intersection.where.x(), intersection.where.y(),
+                intersection.where.z());
+  return intersection.first + " and " + intersection.second + point;
 }
 
 }  // namespace drape

@@ -11,96 +11,103 @@
 
 namespace drape {
 
-/// Two primitives and how they stand to each other, in words that a person can act on.
-struct Touch {
+/// Two primitives that intersect, named for messages.
+struct Intersection {
   std::string first, second;                        ///< "cloth triangle 12", "ball: sphere"
-  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< a point near the intersection [m]
 };
 
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
-std::string to_string(const Touch& touch);
+std::string to_string(const Intersection& intersection);
 
-/// Numbers that a contact model knows a contact by, from one state to another.
+/// Identifies a contact of one contact model from one state to the next.
 using ContactKey = std::array<int, 5>;
 
-/// How far a contact has slipped since it stuck.
-struct Slip {
+/// Tangential displacement u of a contact's two sides since the contact began to stick (Li et al. 2020).
+struct TangentialDisplacement {
   ContactKey contact;
-  Eigen::Vector3d by;  ///< of one side relative to the other, along the surface [m]
+  Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
 };
 
-/// Ascending by contact, none twice.
-using Slips = std::vector<Slip>;
+/// Ascending by contact, without duplicates.
+using TangentialDisplacements = std::vector<TangentialDisplacement>;
 
-/// The friction potential D of lagged contacts.
+/// The lagged friction potential D of one set of collisions (Li et al. 2020, eq. 15).
 class FrictionEnergy : public BoundEnergy {
  public:
-  /// Appends, in any order, what each contact has slipped at x, by its slip distance at most: what sticks or
-  /// slides on is held by the same force in the next step.
-  virtual void add_slips(const Positions& x, Slips& slips) const = 0;
-  /// The same in full, where what the cloth's vertices touch of obstacles has moved by `carried` (n×3) [m].
-  virtual void add_slips_carried(const Positions& x, const Positions& carried, Slips& slips) const = 0;
+  /// Appends each contact's tangential displacement at x, in any order. Its length is limited to the friction
+  /// smoothing distance: the next step then starts with the same friction forces.
+  virtual void append_tangential_displacements(const Positions& x,
+                                               TangentialDisplacements& displacements) const = 0;
+  /// Appends the same without the limit, relative to obstacles that have moved: contacts with obstacles
+  /// subtract the tangential part of `obstacle_motion` (n×3) [m], the obstacle's motion at each vertex.
+  virtual void append_advected_tangential_displacements(const Positions& x, const Positions& obstacle_motion,
+                                                        TangentialDisplacements& displacements) const = 0;
 };
 
-/// The contacts within range at one state: a value that is built, evaluated and looked at. As an energy it
-/// is the barrier B over those contacts, and x is always the state that it was built for. Elements may
-/// have fewer vertices of the cloth than the stencil has columns: -1 stands for none.
-class ContactSet : public BoundEnergy {
+/// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
+/// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
+/// columns without a cloth vertex are -1.
+class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
 
-  /// The lagged friction potential D with this set's normal forces and tangents, of displacements from
-  /// `from` (n×3), added to what its contacts among `slips` had slipped there; null without friction. Its
-  /// stencils have -1 as above.
-  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const = 0;
+  /// The friction potential with the normal forces and tangents of this state. Displacements are measured
+  /// from `reference` (n×3), and `displacements` are added to those of the contacts that they name. Null
+  /// without friction.
+  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                                   const TangentialDisplacements& displacements) const = 0;
 };
 
-/// Everything that may come within range on the straight way from x0 to x1.
-class ContactSweep {
+/// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them.
+class CollisionCandidates {
  public:
-  virtual ~ContactSweep() = default;
-  /// How far along the way nothing touches, a part of every gap kept.
+  virtual ~CollisionCandidates() = default;
+  /// The largest collision-free step, by continuous collision detection. Every gap keeps a fraction of its
+  /// length.
   virtual StepLimit max_step() const = 0;
-  /// The contacts at x, a state on the way, no farther than max_step.
-  virtual std::unique_ptr<ContactSet> build(const Positions& x) const = 0;
+  /// The collisions at x, a state of this motion no farther than max_step.
+  virtual std::unique_ptr<Collisions> build_collisions(const Positions& x) const = 0;
 };
 
 /// A contact model bound to one level and its obstacles. Immutable.
 class BoundContact {
  public:
   virtual ~BoundContact() = default;
-  /// Looks for candidates between x0 and x1 (n×3, kept by copy), x0 being free of intersections.
-  virtual std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const = 0;
-  /// Pairs of primitives that intersect or touch at x, by exact predicates where the shapes are meshes.
-  virtual std::vector<Touch> intersections(const Positions& x) const = 0;
-  /// What is in the way, as meshes to be drawn.
+  /// Runs the broad phase for the motion from x0 to x1 (n×3, copied). x0 must be free of intersections.
+  virtual std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
+                                                                const Positions& x1) const = 0;
+  /// Pairs of primitives that intersect or touch at x. Meshes are tested with exact predicates.
+  virtual std::vector<Intersection> intersections(const Positions& x) const = 0;
+  /// The obstacles as meshes, for drawing.
   virtual std::vector<TriangleMesh> obstacles() const = 0;
 };
 
-/// An optional ability of a BoundContact whose obstacles may stand elsewhere than in the one before it.
-class MovableObstacles {
+/// Optional interface of a BoundContact whose obstacles move between load states (kinematic obstacles of
+/// IPC).
+class KinematicObstacles {
  public:
-  virtual ~MovableObstacles() = default;
-  /// How far the obstacles come from where `before`, of the same kind and level, has them to where this has
-  /// them, the cloth staying at x, touching nothing and keeping a part of every gap. The way is that of
-  /// parameters that change linearly, so that it is 1 where they are changed by this part only, and where
-  /// nothing has moved. Throws std::runtime_error naming an obstacle that is no longer made of the same
-  /// parts.
-  virtual StepLimit max_move(const BoundContact& before, const Positions& x) const = 0;
-  /// Moves the rows of `from` (n×3) of vertices that touch obstacles, with friction, at x along with what
-  /// they touch.
-  virtual void carry(const BoundContact& before, const Positions& x, Positions& from) const = 0;
+  virtual ~KinematicObstacles() = default;
+  /// The largest collision-free step of the obstacles from their placement in `before` to that in this, with
+  /// the cloth fixed at x. `before` must be of the same contact model and level. Obstacle parameters are
+  /// interpolated linearly, so obstacles rotate along arcs. Obstacles whose parameters are interpolated by
+  /// the returned fraction, or have not changed, get a fraction of 1. Throws std::runtime_error naming an
+  /// obstacle whose topology changed.
+  virtual StepLimit max_step(const BoundContact& before, const Positions& x) const = 0;
+  /// Advects the rows of `reference` (n×3) [m]: each vertex in frictional contact with obstacles at x is
+  /// displaced by their motion since `before`.
+  virtual void advect(const BoundContact& before, const Positions& x, Positions& reference) const = 0;
 };
 
-/// The contacts of one level, which may be shared by its models under different conditions.
+/// The contacts of one level. Models of the level under different loads may share them.
 using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
 
 /// A kind of contact, made by name from its parameters.
 class ContactModel {
  public:
   virtual ~ContactModel() = default;
-  /// Null when there is nothing to keep apart: then no contact code runs at all.
+  /// Null when there is nothing to collide with: no contact code runs then.
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
 };
 

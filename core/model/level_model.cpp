@@ -177,7 +177,8 @@ std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Posit
   for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
   if (!contacts_.empty()) {
     double barrier = 0;
-    for (const auto& contact : contacts_) barrier += contact->sweep(x, x)->build(x)->value(x);
+    for (const auto& contact : contacts_)
+      barrier += contact->build_candidates(x, x)->build_collisions(x)->value(x);
     parts.emplace_back("contact", barrier);
   }
   return parts;
@@ -219,7 +220,8 @@ double LevelModel::force_residual(const Positions& x) const {
   Positions g;
   gradient(x, g);
   for (const BoundEnergy* limit : limits_) limit->add_gradient(x, g);
-  for (const auto& contact : contacts_) contact->sweep(x, x)->build(x)->add_gradient(x, g);
+  for (const auto& contact : contacts_)
+    contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
   return free_norm(g, fixed_) / residual_scale(x, g);
 }
 

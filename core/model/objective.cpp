@@ -51,7 +51,7 @@ void Objective::smooth_pattern_changed() {
 void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
   smooth_changed();
   set_limits(model_.limits());
-  contacts_.models_changed(before, from, x);
+  contacts_.update_obstacles(before, from, x);
 }
 
 std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {

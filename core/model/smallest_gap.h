@@ -7,18 +7,18 @@
 
 namespace drape {
 
-/// The smallest gap of a state, and the barrier that keeps it open.
+/// The smallest gap of a state and the parameters of the barrier that acts on it.
 struct SmallestGap {
-  std::string between;  ///< "cloth triangle 12 and ball: sphere"; empty where nothing is within range
+  std::string between;  ///< "cloth triangle 12 and ball: sphere"; empty without a gap below d̂
   double gap = std::numeric_limits<double>::infinity();  ///< [m]
-  double range = 0;                                      ///< below which the barrier acts [m]
+  double dhat = 0;                                       ///< d̂, below which the barrier acts [m]
   double stiffness = 0;                                  ///< κ of the barrier [Pa]
 };
 
-/// An optional ability of a BoundContact whose barrier has a range and a stiffness.
-class NamesSmallestGap {
+/// Optional interface of a BoundContact whose barrier has a d̂ and a stiffness.
+class SmallestGapProvider {
  public:
-  virtual ~NamesSmallestGap() = default;
+  virtual ~SmallestGapProvider() = default;
   virtual SmallestGap smallest_gap(const Positions& x) const = 0;
 };
 

@@ -66,7 +66,7 @@ struct IterationRow {
   double force_residual = 0;           ///< of what is minimised, after the iteration [1]
   double step_length = 0;              ///< α of the line search
   double step_size = 0;                ///< h [s]; +∞ for the static form
-  std::optional<int> contacts;         ///< within range, where the level has a contact model
+  std::optional<int> contacts;         ///< closer than d̂; absent without a contact model
   std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
 };
 

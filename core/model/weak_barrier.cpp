@@ -9,14 +9,14 @@ namespace drape {
 
 namespace {
 
-/// Part of the range below which a gap is far below it.
-constexpr double far_below = 1e-3;
-/// A barrier as stiff as the load presses leaves half of the range for a gap, one ten times as stiff five
-/// sixths (core/contact/stiffness.h).
-constexpr double suitable = 10;
+/// Gaps below this fraction of d̂ indicate a weak barrier.
+constexpr double weak_gap_fraction = 1e-3;
+/// Stiffness over the load's pressure: a barrier with a ratio of 1 leaves a gap of d̂ / 2, with 10 of 5 d̂ / 6
+/// (core/contact/stiffness.h).
+constexpr double suitable_ratio = 10;
 
-/// The external forces a unit of area, root mean square over free vertices [Pa].
-double pressure_of_load(const LevelModel& model, const Positions& x) {
+/// Root mean square of the external forces per area over the free vertices [Pa].
+double load_pressure(const LevelModel& model, const Positions& x) {
   double square = 0;
   for (int i = 0; i < model.level().vertex_count(); ++i)
     if (!model.fixed()[i]) square += std::pow(model.level().vertex_area[i], 2);
@@ -27,17 +27,17 @@ double pressure_of_load(const LevelModel& model, const Positions& x) {
 
 std::string weak_barrier(const LevelModel& model, const Positions& x) {
   for (const auto& contact : model.contacts()) {
-    const auto* named = dynamic_cast<const NamesSmallestGap*>(contact.get());
-    if (!named) continue;
-    const SmallestGap smallest = named->smallest_gap(x);
-    if (!(smallest.gap < far_below * smallest.range)) continue;
-    const double pressure = pressure_of_load(model, x);
+    const auto* provider = dynamic_cast<const SmallestGapProvider*>(contact.get());
+    if (!provider) continue;
+    const SmallestGap smallest = provider->smallest_gap(x);
+    if (!(smallest.gap < weak_gap_fraction * smallest.dhat)) continue;
+    const double pressure = load_pressure(model, x);
     if (smallest.stiffness >= pressure) continue;
     return "the barrier is too weak for the load: its stiffness is " + three_digits(smallest.stiffness) +
-           " Pa where the load presses with " + three_digits(pressure) + " Pa, so that the gap between " +
+           " Pa but the load's pressure is " + three_digits(pressure) + " Pa, and the gap between " +
            smallest.between + " is " + three_digits(smallest.gap) + " m, " +
-           three_digits(smallest.gap / smallest.range) +
-           " of the contact's range; set its stiffness to about " + three_digits(suitable * pressure) +
+           three_digits(smallest.gap / smallest.dhat) +
+           " of the contact's dhat; set its stiffness to about " + three_digits(suitable_ratio * pressure) +
            " (null chooses it from the cloth's weight)";
   }
   return "";

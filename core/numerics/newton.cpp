@@ -253,7 +253,7 @@ class Newton {
   /// Equilibrium is a fixed point of the lag: with the normal forces of here, not of where the step began.
   void renew_friction() {
     if (!f_.contacts().has_friction()) return;
-    f_.contacts().renew_lag(result_.x);
+    f_.contacts().update_lagging(result_.x);
     evaluate();
     update_residual();
   }
@@ -390,7 +390,7 @@ class Newton {
 
   /// Contacts were `before`, with the cloth at `from`.
   void model_changed(const BoundContacts& before, const Positions& from) {
-    PhaseTimer t(result_.seconds_by_phase, "gradient");  // contact sets are built
+    PhaseTimer t(result_.seconds_by_phase, "gradient");  // builds collisions
     f_.model_changed(before, from, result_.x);
   }
 
@@ -482,7 +482,7 @@ class Newton {
   void begin_step() {
     origin_ = result_.x;
     iterations_of_step_ = p_.iterations_per_step;
-    if (f_.contacts().carried() && f_.contacts().has_friction())
+    if (f_.contacts().advected() && f_.contacts().has_friction())
       iterations_of_step_ = std::max(iterations_of_step_, carried_iterations);
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
@@ -746,8 +746,8 @@ class Newton {
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
-      // Contact sets are built where energies are evaluated.
-      result_.seconds_by_phase["contact set"] = f_.contacts().seconds_building();
+      // Collisions are built where energies are evaluated.
+      result_.seconds_by_phase["collisions"] = f_.contacts().seconds_building();
       result_.seconds_by_phase["gradient"] -= f_.contacts().seconds_building();
     }
     return std::move(result_);

@@ -25,7 +25,7 @@ class PullToTarget : public Objective {
  public:
   PullToTarget(const LevelModel& model, const Positions& from, Positions target)
       : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
-    contacts().leave_out_friction();
+    contacts().disable_friction();
     divide(from);
     take_scale(from);
   }

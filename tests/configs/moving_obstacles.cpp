@@ -93,7 +93,7 @@ schedule: {steps: 10, keys: [
 }
 
 TEST_CASE(
-    "what pushes or carries the cloth far takes it along, and not by a tenth of the contact's range at a "
+    "what pushes or carries the cloth far takes it along, and not by a tenth of the contact's dhat at a "
     "time") {
   const std::string draped = R"(name: pushed
 cloth: {shape: square, side: 0.4, columns: 14, rows: 14}

@@ -543,7 +543,8 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("the settings of the step", [&](auto& c) { under_way(c).projection_share = 7; });
   refused("the answer to a change", [&](auto& c) { under_way(c).response.to = Positions::Zero(1, 3); });
   refused("the contacts: ", [&](auto& c) { under_way(c).contacts.from.resize(0, 3); });
-  refused("the contacts that have slipped", [&](auto& c) { under_way(c).contacts.slips.clear(); });
+  refused("the contacts' tangential displacements",
+          [&](auto& c) { under_way(c).contacts.tangential_displacements.clear(); });
   refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1 << 20}}, {0}}; });
   refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1}}, {}}; });
   refused("the order of the factor", [&](auto& c) { under_way(c).analysis.order.at(0) = -1; });

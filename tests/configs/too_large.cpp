@@ -63,8 +63,8 @@ TEST_CASE("contact's numbers too") {
     const std::string text = refused(folder, "");
     return text.substr(text.find('"'));
   };
-  CHECK(said("ipc, range: 1e39") == "\"range\" must be at most 1000 m, not 1e39\n");
-  CHECK(said("shapes, shapes: [], range: 1e39") == "\"range\" must be at most 1000 m, not 1e39\n");
+  CHECK(said("ipc, dhat: 1e39") == "\"dhat\" must be at most 1000 m, not 1e39\n");
+  CHECK(said("shapes, shapes: [], dhat: 1e39") == "\"dhat\" must be at most 1000 m, not 1e39\n");
   const auto cages = [&](const std::string& text) {
     return said("ipc, obstacles: [{shape: sphere, translate: [0, 0, -3], cages: {count: 2, " + text + "}}]");
   };

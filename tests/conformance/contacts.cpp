@@ -17,23 +17,25 @@ using namespace drape;
 
 namespace {
 
-/// Something below the cloth of these tests for every contact model that needs to be told, ranges that are
-/// not small against its triangles, and friction.
+/// Settings of each contact model: obstacles below the cloth of these tests, a d̂ comparable to its triangles,
+/// and friction.
 const std::map<std::string, std::string> settings = {
-    {"ipc", R"({type: ipc, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3, obstacles: [
+    {"ipc",
+     R"({type: ipc, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3, obstacles: [
        {name: ball, shape: sphere, radius: 0.15, subdivisions: 2, translate: [0.12, 0.2, -0.165]},
        {name: table, shape: box, size: [0.2, 0.3, 0.1], rotate: [5, 0, 10],
         translate: [0.38, 0.2, -0.075]}]})"},
-    {"shapes", R"({type: shapes, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3, shapes: [
+    {"shapes",
+     R"({type: shapes, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3, shapes: [
        {shape: sphere, radius: 0.05, centre: [0.05, 0.1, -0.062]},
        {shape: box, size: [0.1, 0.1, 0.1], rotate: [0, 5, 20], centre: [0.2, 0.1, -0.07]},
        {shape: capsule, radius: 0.04, height: 0.1, rotate: [90, 0, 0], centre: [0.37, 0.12, -0.052]},
        {shape: cylinder, radius: 0.06, height: 0.05, rotate: [5, 0, 0], centre: [0.1, 0.3, -0.04]},
        {shape: half_space, centre: [0, 0, -0.12], normal: [0.05, 0.02, 1]}]})"}};
 
-/// The same without obstacles, for models that keep the cloth apart from itself.
+/// Without obstacles, for models with self-contact.
 const std::map<std::string, std::string> self_contact = {
-    {"ipc", "{type: ipc, range: 0.02, stiffness: 50, friction: 0.3, slip_distance: 1e-3}"}};
+    {"ipc", "{type: ipc, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3}"}};
 
 Positions noise(Eigen::Index vertices, double size, unsigned seed) {
   std::mt19937 random(seed);
@@ -66,31 +68,32 @@ Positions stacked(const Level& level, double gap, unsigned seed) {
   return x;
 }
 
-std::unique_ptr<ContactSet> contacts_at(const BoundContact& contact, const Positions& x) {
-  return contact.sweep(x, x)->build(x);
+std::unique_ptr<Collisions> contacts_at(const BoundContact& contact, const Positions& x) {
+  return contact.build_candidates(x, x)->build_collisions(x);
 }
 
-/// Pushes the cloth down with noise, as far as it goes without coming nearer than 3 mm to anything.
+/// Pushes the cloth down with noise, as far as gaps stay above 3 mm.
 Positions pressed(const BoundContact& contact, Positions x, unsigned seed) {
   for (unsigned step = 0; step < 12; ++step) {
     Positions to = x + noise(x.rows(), 0.01, 100 * seed + step);
     to.col(2).array() -= 0.01;
-    const auto sweep = contact.sweep(x, to);
-    double part = sweep->max_step().fraction;
-    while (part > 1e-3 && sweep->build(x + part * (to - x))->smallest_gap() < 3e-3) part *= 0.7;
+    const auto candidates = contact.build_candidates(x, to);
+    double part = candidates->max_step().fraction;
+    while (part > 1e-3 && candidates->build_collisions(x + part * (to - x))->smallest_gap() < 3e-3)
+      part *= 0.7;
     if (part > 1e-3) x += part * (to - x);
   }
   return x;
 }
 
-struct Candidate {
+struct NamedModel {
   std::string name;
   std::shared_ptr<ContactModel> model;
 };
 
-/// Every registered contact model that keeps anything apart.
-std::vector<Candidate> all_models() {
-  std::vector<Candidate> all;
+/// Every registered contact model except those without contact.
+std::vector<NamedModel> all_models() {
+  std::vector<NamedModel> all;
   for (const RegistryEntry* entry : test_registry().of_kind("contact")) {
     const auto own = settings.find(entry->name);
     auto model = make_plugin_from<ContactModel>(own == settings.end() ? entry->name : own->second);
@@ -100,20 +103,20 @@ std::vector<Candidate> all_models() {
   return all;
 }
 
-std::vector<Candidate> self_contact_models() {
-  std::vector<Candidate> all;
+std::vector<NamedModel> self_contact_models() {
+  std::vector<NamedModel> all;
   for (const auto& [name, yaml] : self_contact) all.push_back({name, make_plugin_from<ContactModel>(yaml)});
   return all;
 }
 
 /// Runs the body at random states of every model with many contacts.
 template <class Body>
-void for_each_state(const std::vector<Candidate>& models, const Body& body) {
+void for_each_state(const std::vector<NamedModel>& models, const Body& body) {
   const Level level = two_sheets(40);
-  for (const Candidate& candidate : models) {
-    const auto contact = candidate.model->bind(level, Material());
+  for (const NamedModel& named : models) {
+    const auto contact = named.model->bind(level, Material());
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      INFO(candidate.name << ", state " << seed);
+      INFO(named.name << ", state " << seed);
       const Positions x = pressed(*contact, stacked(level, 0.015, seed), seed);
       REQUIRE(contact->intersections(x).empty());
       REQUIRE(contacts_at(*contact, x)->contact_count() >= 20);
@@ -139,27 +142,27 @@ bool check_projections(const BoundEnergy& energy, const Positions& x) {
   return eigenvalues(exact).minCoeff() < -1e-6 * exact.norm();
 }
 
-/// Ways that contact has to stop, from x.
+/// End states of motions from x that contact has to limit.
 std::vector<Positions> adversarial(const Positions& x, unsigned seed) {
   const Eigen::RowVector3d middle = x.colwise().mean();
   const Eigen::Index n = x.rows(), lower = n / 2;
-  std::vector<Positions> ways;
-  for (const double size : {1e-4, 1e-2, 1.0, 100.0}) ways.push_back(x + noise(n, size, seed));
-  for (const double down : {0.02, 0.2, 50.0}) ways.push_back(x.rowwise() - Eigen::RowVector3d(0, 0, down));
-  ways.push_back(middle.replicate(n, 1));          // all to one point
-  ways.push_back(2 * middle.replicate(n, 1) - x);  // and out on the other side
+  std::vector<Positions> ends;
+  for (const double size : {1e-4, 1e-2, 1.0, 100.0}) ends.push_back(x + noise(n, size, seed));
+  for (const double down : {0.02, 0.2, 50.0}) ends.push_back(x.rowwise() - Eigen::RowVector3d(0, 0, down));
+  ends.push_back(middle.replicate(n, 1));          // all to one point
+  ends.push_back(2 * middle.replicate(n, 1) - x);  // and out on the other side
   Positions swapped = x;                           // each sheet to beyond the other
   swapped.topRows(lower).col(2).array() += 0.1;
   swapped.bottomRows(n - lower).col(2).array() -= 0.1;
-  ways.push_back(swapped);
+  ends.push_back(swapped);
   Positions flipped = x;  // a half turn, all of it through the axis
   flipped.col(1) = 2 * middle.y() - x.col(1).array();
   flipped.col(2) = 2 * middle.z() - x.col(2).array();
-  ways.push_back(flipped);
+  ends.push_back(flipped);
   Positions spike = x;  // a single vertex, far and through everything
   spike.row(seed % n) << 0.2, 0.2, -3;
-  ways.push_back(spike);
-  return ways;
+  ends.push_back(spike);
+  return ends;
 }
 
 }  // namespace
@@ -194,7 +197,7 @@ TEST_CASE("Projected Hessians of contacts are positive semidefinite", "[conforma
   REQUIRE(indefinite > 0);  // else nothing was projected
 }
 
-TEST_CASE("Contacts are those within range, and there is nothing beyond it", "[conformance]") {
+TEST_CASE("Contact acts within dhat and not beyond", "[conformance]") {
   for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
     const Eigen::Index n = x.rows();
     int with = 0, without = 0;
@@ -216,11 +219,11 @@ TEST_CASE("Contacts are those within range, and there is nothing beyond it", "[c
     far.col(2).array() += 10;
     far.bottomRows(n - n / 2).col(2).array() += 10;
     CHECK(contacts_at(contact, far)->contact_count() == 0);
-    CHECK(contact.sweep(far, far)->max_step().fraction == 1);
+    CHECK(contact.build_candidates(far, far)->max_step().fraction == 1);
   });
 }
 
-TEST_CASE("The cloth's contact with itself does not see rigid motions", "[conformance]") {
+TEST_CASE("Self-contact is invariant under rigid motions", "[conformance]") {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   for_each_state(self_contact_models(), [&](const BoundContact& contact, const Positions& x) {
@@ -237,19 +240,19 @@ TEST_CASE("The cloth's contact with itself does not see rigid motions", "[confor
 
 TEST_CASE("Contacts give the same bits with any number of threads", "[conformance]") {
   const Level level = two_sheets(2000);
-  for (const Candidate& candidate : all_models()) {
-    INFO(candidate.name);
+  for (const NamedModel& named : all_models()) {
+    INFO(named.name);
     Positions down = stacked(level, 0.012, 4);
     down.col(2).array() -= 0.004;
     std::vector<double> reference;
     for (const int threads : {1, 2, 3}) {
       set_thread_count(threads);
-      const auto contact = candidate.model->bind(level, Material());
+      const auto contact = named.model->bind(level, Material());
       const Positions above = down.rowwise() + Eigen::RowVector3d(0, 0, 0.02);
-      const auto sweep = contact->sweep(above, down);
-      const double part = sweep->max_step().fraction;
+      const auto candidates = contact->build_candidates(above, down);
+      const double part = candidates->max_step().fraction;
       const Positions x = above + 0.9 * part * (down - above);
-      const auto set = sweep->build(x);
+      const auto set = candidates->build_collisions(x);
       const auto friction = set->friction(above, {});
       REQUIRE(friction);
       const Positions g = gradient_of(*set, x), f = gradient_of(*friction, x);
@@ -279,15 +282,15 @@ TEST_CASE("No step of any motion lets an intersection through", "[conformance]")
   int shortened = 0, full = 0;
   const Level level = two_sheets(40);
   for (const auto& models : {all_models(), self_contact_models()})
-    for (const Candidate& candidate : models) {
-      const auto contact = candidate.model->bind(level, Material());
+    for (const NamedModel& named : models) {
+      const auto contact = named.model->bind(level, Material());
       Positions x = stacked(level, 0.015, 1);
       int crossing = 0;
       for (unsigned round = 1; round <= 12; ++round) {
         if (round % 4 == 0) x = stacked(level, 0.015, round);
         for (const Positions& to : adversarial(x, round)) {
-          INFO(candidate.name << ", round " << round);
-          const StepLimit limit = contact->sweep(x, to)->max_step();
+          INFO(named.name << ", round " << round);
+          const StepLimit limit = contact->build_candidates(x, to)->max_step();
           REQUIRE(limit.fraction >= 0);
           REQUIRE(limit.fraction <= 1);
           CHECK(limit.by.empty() == (limit.fraction == 1));
@@ -296,9 +299,9 @@ TEST_CASE("No step of any motion lets an intersection through", "[conformance]")
           for (const double part : {0.25, 0.5, 0.75, 1.0})
             REQUIRE(contact->intersections(x + part * limit.fraction * (to - x)).empty());
         }
-        // On from there, where gaps are smaller.
+        // Continue with smaller gaps.
         const Positions to = x + noise(x.rows(), 0.02, 1000 + round);
-        x += contact->sweep(x, to)->max_step().fraction * (to - x);
+        x += contact->build_candidates(x, to)->max_step().fraction * (to - x);
       }
       CHECK(crossing > 12);
     }
@@ -306,46 +309,46 @@ TEST_CASE("No step of any motion lets an intersection through", "[conformance]")
   CHECK(full > 10);
 }
 
-TEST_CASE("What touches is named, and lies where it is said to", "[conformance]") {
+TEST_CASE("Intersections are named, with a point near them", "[conformance]") {
   const Level level = two_sheets(40);
   for (const auto& models : {all_models(), self_contact_models()})
-    for (const Candidate& candidate : models) {
-      INFO(candidate.name);
-      const auto contact = candidate.model->bind(level, Material());
+    for (const NamedModel& named : models) {
+      INFO(named.name);
+      const auto contact = named.model->bind(level, Material());
       Positions x = stacked(level, 0.015, 1);
       CHECK(contact->intersections(x).empty());
       x.col(2) *= 20;  // noise of 3 cm, more than what is between
       x.col(2).array() -= 0.02;
       x.bottomRows(x.rows() - x.rows() / 2).col(2).array() -= 0.3;
-      const std::vector<Touch> touches = contact->intersections(x);
-      REQUIRE(!touches.empty());
-      for (const Touch& touch : touches) {
-        CHECK_THAT(touch.first, Catch::StartsWith("cloth "));
-        CHECK(!touch.second.empty());
-        CHECK((touch.where.transpose().array() >= x.colwise().minCoeff().array() - 1e-9).all());
-        CHECK((touch.where.transpose().array() <= x.colwise().maxCoeff().array() + 1e-9).all());
+      const std::vector<Intersection> found = contact->intersections(x);
+      REQUIRE(!found.empty());
+      for (const Intersection& intersection : found) {
+        CHECK_THAT(intersection.first, Catch::StartsWith("cloth "));
+        CHECK(!intersection.second.empty());
+        CHECK((intersection.where.transpose().array() >= x.colwise().minCoeff().array() - 1e-9).all());
+        CHECK((intersection.where.transpose().array() <= x.colwise().maxCoeff().array() + 1e-9).all());
       }
       for (const TriangleMesh& mesh : contact->obstacles()) CHECK(check_mesh(mesh).empty());
     }
 }
 
-TEST_CASE("Contacts are known again, each by a key of its own, and keep what they have slipped",
-          "[conformance]") {
+TEST_CASE("Contacts keep unique keys and their tangential displacements between states", "[conformance]") {
   for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
     const Positions from = x - noise(x.rows(), 1e-4, 3), above = x.rowwise() + Eigen::RowVector3d(0, 0, 1e-3);
     const auto before = contacts_at(contact, x)->friction(from, {});
-    Slips slips;
-    before->add_slips(x, slips);
-    std::ranges::sort(slips, {}, &Slip::contact);
-    CHECK(std::ranges::adjacent_find(slips, {}, &Slip::contact) == slips.end());
+    TangentialDisplacements displacements;
+    before->append_tangential_displacements(x, displacements);
+    std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
+    CHECK(std::ranges::adjacent_find(displacements, {}, &TangentialDisplacement::contact) ==
+          displacements.end());
     const Positions f = gradient_of(*before, x);
     REQUIRE(f.norm() > 0);
-    const auto again = contact.sweep(x, above)->build(x)->friction(x, slips);
+    const auto again = contact.build_candidates(x, above)->build_collisions(x)->friction(x, displacements);
     CHECK((gradient_of(*again, x) - f).norm() <= 1e-9 * f.norm());
   });
 }
 
-TEST_CASE("Friction opposes motion, and is nothing without it", "[conformance]") {
+TEST_CASE("Friction opposes motion and is zero without it", "[conformance]") {
   for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
     const auto set = contacts_at(contact, x);
     const auto friction = set->friction(x, {});

@@ -222,7 +222,7 @@ methods: {newton: {}}
   CHECK(changes.intersections == 0);
   const Eigen::RowVector3d middle = s.x().colwise().mean();
   CHECK(middle.z() == Approx(0.245).margin(1.5e-3));
-  // It is carried sideways too, by friction, but for what slipped while it was lifted off the start.
+  // Friction drags it sideways too, except for what slid while it was lifted off the start.
   CHECK(middle.x() > 0.03);
 
   Solved closing =

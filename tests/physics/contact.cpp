@@ -99,7 +99,7 @@ methods: {newton: {}}
 
 TEST_CASE("A cloth at rest keeps the gap at which the barrier carries its weight") {
   const Material cotton;
-  const double expected = resting_gap(cotton.area_density() * gravity, contact_stiffness(cotton), range);
+  const double expected = resting_gap(cotton.area_density() * gravity, contact_stiffness(cotton), dhat);
   REQUIRE(expected > 0.5e-3);
   for (const std::string& floor : {half_space, mesh_floor}) {
     Solved s = scene_from(on_a_slope(0, 0, floor, "force_tolerance: 1e-8"));
@@ -114,7 +114,7 @@ TEST_CASE("A cloth at rest keeps the gap at which the barrier carries its weight
 }
 
 TEST_CASE("On a slope cloth sticks below the angle of friction and slides above it") {
-  constexpr double slip = 1e-4;  // the default slip distance
+  constexpr double epsilon = 1e-4;  // the default friction smoothing distance
   for (const double mu : {0.1, 0.3})
     for (const std::string& floor : {half_space, mesh_floor}) {
       INFO("mu " << mu << " on " << floor);
@@ -123,13 +123,13 @@ TEST_CASE("On a slope cloth sticks below the angle of friction and slides above 
           solve_yaml(on_a_slope(0.99 * critical, mu, floor, "force_tolerance: 1e-4, max_steps: 500"));
       CHECK(stuck.levels.back().outcome == Outcome::converged);
       const Positions moved = stuck.x() - stuck.scene->starts.back();
-      CHECK(moved.col(0).maxCoeff() < 2 * slip);
+      CHECK(moved.col(0).maxCoeff() < 2 * epsilon);
       CHECK(moved.col(0).minCoeff() > 0);
       const Solved slid =
           solve_yaml(on_a_slope(1.01 * critical, mu, floor,
                                 "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: 0.05"));
       CHECK(slid.levels.back().outcome == Outcome::out_of_steps);
-      CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * slip);
+      CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * epsilon);
     }
 }
 

@@ -54,7 +54,7 @@ std::vector<Floor> floors(const Scratch& folder) {
 TEST_CASE("Cloth rests at the same gap on a plane of any triangles") {
   const Scratch folder;
   const Material cotton;
-  const double expected = resting_gap(cotton.area_density() * gravity, contact_stiffness(cotton), range);
+  const double expected = resting_gap(cotton.area_density() * gravity, contact_stiffness(cotton), dhat);
   for (const auto& [name, contact] : floors(folder)) {
     INFO(name);
     Solved s = scene_from(on_a_slope(0, 0, contact, "force_tolerance: 1e-6"));
@@ -85,18 +85,18 @@ TEST_CASE("Without friction cloth slides down a plane of any triangles at 0.05 d
 }
 
 TEST_CASE("On a plane of any triangles friction holds to within 0.5 % of its coefficient") {
-  constexpr double slip = 1e-4, mu = 0.4;  // the default slip distance
+  constexpr double epsilon = 1e-4, mu = 0.4;  // the default friction smoothing distance
   const Scratch folder;
   for (const auto& [name, contact] : floors(folder)) {
     INFO(name);
     const Solved stuck =
         solve_yaml(on_a_slope(std::atan(0.995 * mu), mu, contact, "force_tolerance: 1e-4, max_steps: 500"));
     CHECK(stuck.levels.back().outcome == Outcome::converged);
-    CHECK((stuck.x() - stuck.scene->starts.back()).col(0).maxCoeff() < 2 * slip);
+    CHECK((stuck.x() - stuck.scene->starts.back()).col(0).maxCoeff() < 2 * epsilon);
     const Solved slid =
         solve_yaml(on_a_slope(std::atan(1.005 * mu), mu, contact,
                               "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: 0.1"));
     CHECK(slid.levels.back().outcome == Outcome::out_of_steps);
-    CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * slip);
+    CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * epsilon);
   }
 }

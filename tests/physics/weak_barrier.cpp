@@ -31,7 +31,7 @@ std::string a_shape(const std::string& stiffness) {
 
 }  // namespace
 
-TEST_CASE("A barrier that is too weak for the load is named where a run fails, and what to set it to") {
+TEST_CASE("A failed run names a barrier that is too weak for the load, and a suitable stiffness") {
   for (auto* contact : {&a_mesh, &a_shape}) {
     const Solved s = solve_yaml(over_a_ball((*contact)("1.47e-4"), 60));
     const LevelResult& r = s.levels.back();
@@ -39,33 +39,33 @@ TEST_CASE("A barrier that is too weak for the load is named where a run fails, a
     REQUIRE(r.outcome == Outcome::out_of_steps);
     CHECK(*r.smallest_gap < 1e-6);
     CHECK_THAT(r.message,
-               Contains("; the barrier is too weak for the load: its stiffness is 0.000147 Pa where the "
-                        "load presses with 1.47 Pa, so that the gap between ") &&
+               Contains("; the barrier is too weak for the load: its stiffness is 0.000147 Pa but the "
+                        "load's pressure is 1.47 Pa, and the gap between ") &&
                    Contains("cloth triangle ") && Contains("ball") &&
-                   Contains(" of the contact's range; set its stiffness to about 14.7 (null chooses it "
+                   Contains(" of the contact's dhat; set its stiffness to about 14.7 (null chooses it "
                             "from the cloth's weight)"));
-    // It is not where nothing is near.
+    // Without contacts no barrier is named.
     CHECK(weak_barrier(s.model(), s.scene->starts.back()).empty());
   }
 }
 
-TEST_CASE("A barrier that suits the load is not blamed, however small a gap is") {
+TEST_CASE("A suitable barrier is not named, however small a gap is") {
   for (auto* contact : {&a_mesh, &a_shape})
     for (const char* stiffness : {"null", "1.5"}) {
       const Solved s = solve_yaml(over_a_ball((*contact)(stiffness), 1000));
       CAPTURE(stiffness, s.levels.back().message);
       REQUIRE(s.levels.back().outcome == Outcome::converged);
-      const auto* named = dynamic_cast<const NamesSmallestGap*>(s.model().contacts()[0].get());
-      REQUIRE(named);
-      CHECK(named->smallest_gap(s.x()).gap == Approx(*s.levels.back().smallest_gap));
+      const auto* provider = dynamic_cast<const SmallestGapProvider*>(s.model().contacts()[0].get());
+      REQUIRE(provider);
+      CHECK(provider->smallest_gap(s.x()).gap == Approx(*s.levels.back().smallest_gap));
       CHECK(weak_barrier(s.model(), s.x()).empty());
-      // Pressed onto the ball by something else than the load.
+      // Something other than the load presses the cloth onto the ball.
       Positions x = s.x();
       double step = 1e-4;
-      while (named->smallest_gap(x).gap > 1e-7) {
+      while (provider->smallest_gap(x).gap > 1e-7) {
         Positions lower = x;
         lower.col(2).array() -= step;
-        if (named->smallest_gap(lower).gap > 0 && s.model().contacts()[0]->intersections(lower).empty())
+        if (provider->smallest_gap(lower).gap > 0 && s.model().contacts()[0]->intersections(lower).empty())
           x = lower;
         else
           step /= 2;

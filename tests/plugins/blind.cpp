@@ -9,11 +9,12 @@ namespace {
 
 using drape::Positions;
 
-class NoContacts final : public drape::ContactSet {
+class NoContacts final : public drape::Collisions {
  public:
   int contact_count() const override { return 0; }
   double smallest_gap() const override { return std::numeric_limits<double>::infinity(); }
-  std::unique_ptr<drape::FrictionEnergy> friction(const Positions&, const drape::Slips&) const override {
+  std::unique_ptr<drape::FrictionEnergy> friction(const Positions&,
+                                                  const drape::TangentialDisplacements&) const override {
     return nullptr;
   }
   double value(const Positions&) const override { return 0; }
@@ -22,10 +23,10 @@ class NoContacts final : public drape::ContactSet {
   void add_hessian(const Positions&, drape::Projection, drape::BlockSink&) const override {}
 };
 
-class Anywhere final : public drape::ContactSweep {
+class Anywhere final : public drape::CollisionCandidates {
  public:
   drape::StepLimit max_step() const override { return {}; }
-  std::unique_ptr<drape::ContactSet> build(const Positions&) const override {
+  std::unique_ptr<drape::Collisions> build_collisions(const Positions&) const override {
     return std::make_unique<NoContacts>();
   }
 };
@@ -33,10 +34,11 @@ class Anywhere final : public drape::ContactSweep {
 class BoundBlind final : public drape::BoundContact {
  public:
   explicit BoundBlind(double height) : height_(height) {}
-  std::unique_ptr<drape::ContactSweep> sweep(const Positions&, const Positions&) const override {
+  std::unique_ptr<drape::CollisionCandidates> build_candidates(const Positions&,
+                                                               const Positions&) const override {
     return std::make_unique<Anywhere>();
   }
-  std::vector<drape::Touch> intersections(const Positions& x) const override {
+  std::vector<drape::Intersection> intersections(const Positions& x) const override {
     Eigen::Index lowest = 0;
     if (x.col(2).minCoeff(&lowest) > height_) return {};
     return {{"cloth vertex " + std::to_string(lowest), "floor: plane", x.row(lowest).transpose()}};

@@ -14,7 +14,7 @@ using namespace drape;
 
 namespace {
 
-constexpr double range = 1e-3, stiffness = 100, mu = 0.3, slip = 1e-4;
+constexpr double dhat = 1e-3, stiffness = 100, mu = 0.3, epsilon = 1e-4;
 
 /// The half-space below z = 0.
 std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double height = 0) {
@@ -44,37 +44,41 @@ Positions at(const Level& level, double x, double height) {
 }
 
 /// Normal force of the sheet of 0.1 m × 0.1 m at this height [N].
-double normal_force(double height) { return -stiffness * barrier(height / range).first * 0.01; }
+double normal_force(double height) { return -stiffness * barrier(height / dhat).first * 0.01; }
 
-/// Friction's potential after a slide, over the normal force [m].
-double potential(double slid) {
-  const double q = slid / slip;
-  return mu * (q < 1 ? slid * q * (1 - q / 3) : slid - slip / 3);
+/// The friction potential at a tangential displacement u, over the normal force [m].
+double potential(double u) {
+  const double q = u / epsilon;
+  return mu * (q < 1 ? u * q * (1 - q / 3) : u - epsilon / 3);
 }
 
-/// Passes everything on to a real model; how often it was asked, and for the last time along which way.
+/// Forwards to a real model; counts broad phases and stores the last motion.
 struct Counted : BoundContact {
   std::unique_ptr<BoundContact> real;
-  mutable int sweeps = 0;
+  mutable int searches = 0;
   mutable Positions begin, end;
 
   explicit Counted(std::unique_ptr<BoundContact> contact) : real(std::move(contact)) {}
-  std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override {
-    ++sweeps;
+  std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
+                                                        const Positions& x1) const override {
+    ++searches;
     begin = x0;
     end = x1;
-    return real->sweep(x0, x1);
+    return real->build_candidates(x0, x1);
   }
-  std::vector<Touch> intersections(const Positions& x) const override { return real->intersections(x); }
+  std::vector<Intersection> intersections(const Positions& x) const override {
+    return real->intersections(x);
+  }
   std::vector<TriangleMesh> obstacles() const override { return real->obstacles(); }
 };
 
-/// Contact that lets nothing move.
+/// Contact that allows no step.
 class Frozen : public ContactModel {
-  struct Set : ContactSet {
+  struct FrozenCollisions : Collisions {
     int contact_count() const override { return 1; }
     double smallest_gap() const override { return 1e-5; }
-    std::unique_ptr<FrictionEnergy> friction(const Positions&, const Slips&) const override {
+    std::unique_ptr<FrictionEnergy> friction(const Positions&,
+                                             const TangentialDisplacements&) const override {
       return nullptr;
     }
     double value(const Positions&) const override { return 0; }
@@ -82,15 +86,17 @@ class Frozen : public ContactModel {
     Stencils stencils() const override { return Stencils(0, 1); }
     void add_hessian(const Positions&, Projection, BlockSink&) const override {}
   };
-  struct Sweep : ContactSweep {
+  struct FrozenCandidates : CollisionCandidates {
     StepLimit max_step() const override { return {0, "cloth triangle 3 and ice"}; }
-    std::unique_ptr<ContactSet> build(const Positions&) const override { return std::make_unique<Set>(); }
+    std::unique_ptr<Collisions> build_collisions(const Positions&) const override {
+      return std::make_unique<FrozenCollisions>();
+    }
   };
   struct Bound : BoundContact {
-    std::unique_ptr<ContactSweep> sweep(const Positions&, const Positions&) const override {
-      return std::make_unique<Sweep>();
+    std::unique_ptr<CollisionCandidates> build_candidates(const Positions&, const Positions&) const override {
+      return std::make_unique<FrozenCandidates>();
     }
-    std::vector<Touch> intersections(const Positions&) const override { return {}; }
+    std::vector<Intersection> intersections(const Positions&) const override { return {}; }
     std::vector<TriangleMesh> obstacles() const override { return {}; }
   };
 
@@ -135,7 +141,7 @@ TEST_CASE("Without a contact model there is nothing") {
   ActiveContacts contacts(none);
   const Positions x = sheet().rest.vertices;
   contacts.begin_step(x);
-  contacts.renew_lag(x);
+  contacts.update_lagging(x);
   Positions g = Positions::Zero(x.rows(), 3);
   CHECK_FALSE(contacts.any());
   CHECK_FALSE(contacts.has_friction());
@@ -147,62 +153,62 @@ TEST_CASE("Without a contact model there is nothing") {
   CHECK(contacts.smallest_gap() == std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE("Friction has the normal forces of where the step began until they are renewed") {
+TEST_CASE("Friction keeps the normal forces of the step's start until update_lagging") {
   const Level level = sheet();
   const auto models = bound(level, {a_floor()});
   ActiveContacts contacts(models);
-  const Positions x0 = at(level, 0, 0.5 * range), x1 = at(level, 20 * slip, 0.3 * range);
-  REQUIRE(normal_force(0.3 * range) > 1.5 * normal_force(0.5 * range));
+  const Positions x0 = at(level, 0, 0.5 * dhat), x1 = at(level, 20 * epsilon, 0.3 * dhat);
+  REQUIRE(normal_force(0.3 * dhat) > 1.5 * normal_force(0.5 * dhat));
   contacts.begin_step(x0);
   CHECK(contacts.has_friction());
   CHECK(contacts.friction(x0) == 0);
   REQUIRE(contacts.max_step(x0, x1).fraction == 1);
-  CHECK(contacts.friction(x1) == Approx(normal_force(0.5 * range) * potential(20 * slip)));
-  contacts.renew_lag(x1);  // the displacement is that from x0 still
-  CHECK(contacts.friction(x1) == Approx(normal_force(0.3 * range) * potential(20 * slip)));
+  CHECK(contacts.friction(x1) == Approx(normal_force(0.5 * dhat) * potential(20 * epsilon)));
+  contacts.update_lagging(x1);  // the reference is still x0
+  CHECK(contacts.friction(x1) == Approx(normal_force(0.3 * dhat) * potential(20 * epsilon)));
   Positions g = Positions::Zero(x1.rows(), 3);
   const double sum = contacts.add_gradient(x1, g);
   CHECK(sum == Approx(contacts.barrier(x1) + contacts.friction(x1)));
-  CHECK(g.col(0).sum() == Approx(mu * normal_force(0.3 * range)));
-  CHECK(-g.col(2).sum() == Approx(normal_force(0.3 * range)));
+  CHECK(g.col(0).sum() == Approx(mu * normal_force(0.3 * dhat)));
+  CHECK(-g.col(2).sum() == Approx(normal_force(0.3 * dhat)));
 }
 
-TEST_CASE("Friction keeps what contacts have slipped, by the slip distance at most") {
+TEST_CASE("Tangential displacements persist between steps, limited to the smoothing distance") {
   const Level level = sheet();
   const auto models = bound(level, {a_floor()});
   ActiveContacts contacts(models);
-  const double height = 0.4 * range, force = normal_force(height);
+  const double height = 0.4 * dhat, force = normal_force(height);
   const auto step_to = [&](double from, double to) {
     REQUIRE(contacts.max_step(at(level, from, height), at(level, to, height)).fraction == 1);
     contacts.begin_step(at(level, to, height));
     return contacts.friction(at(level, to, height)) / force;
   };
   contacts.begin_step(at(level, 0, height));
-  // Creeping: three steps of 0.3 slip distances add up.
-  CHECK(step_to(0, 0.3 * slip) == Approx(potential(0.3 * slip)));
-  CHECK(step_to(0.3 * slip, 0.6 * slip) == Approx(potential(0.6 * slip)));
-  CHECK(step_to(0.6 * slip, 0.9 * slip) == Approx(potential(0.9 * slip)));
-  // Sliding: a slip distance is kept, where friction is at its largest.
-  CHECK(step_to(0.9 * slip, 7 * slip) == Approx(potential(slip)));
+  // Sticking: three steps of 0.3 ε add up.
+  CHECK(step_to(0, 0.3 * epsilon) == Approx(potential(0.3 * epsilon)));
+  CHECK(step_to(0.3 * epsilon, 0.6 * epsilon) == Approx(potential(0.6 * epsilon)));
+  CHECK(step_to(0.6 * epsilon, 0.9 * epsilon) == Approx(potential(0.9 * epsilon)));
+  // Sliding: a displacement of ε is kept, where friction is at its maximum.
+  CHECK(step_to(0.9 * epsilon, 7 * epsilon) == Approx(potential(epsilon)));
   Positions g = Positions::Zero(level.vertex_count(), 3);
-  contacts.add_gradient(at(level, 7 * slip, height), g);
+  contacts.add_gradient(at(level, 7 * epsilon, height), g);
   CHECK(g.col(0).sum() == Approx(mu * force));
-  // Back by half of that: what is left of the displacement.
-  CHECK(step_to(7 * slip, 6.5 * slip) == Approx(potential(0.5 * slip)));
-  // Up and away, and down elsewhere: nothing is remembered.
-  const Positions up = at(level, 6.5 * slip, 5 * range), elsewhere = at(level, 50 * slip, 5 * range);
-  contacts.max_step(at(level, 6.5 * slip, height), up);
+  // Back by ε / 2.
+  CHECK(step_to(7 * epsilon, 6.5 * epsilon) == Approx(potential(0.5 * epsilon)));
+  // After a loss of contact nothing is kept.
+  const Positions up = at(level, 6.5 * epsilon, 5 * dhat), elsewhere = at(level, 50 * epsilon, 5 * dhat);
+  contacts.max_step(at(level, 6.5 * epsilon, height), up);
   contacts.begin_step(up);
   contacts.max_step(up, elsewhere);
   contacts.begin_step(elsewhere);
   CHECK_FALSE(contacts.has_friction());
-  contacts.max_step(elsewhere, at(level, 50 * slip, height));
-  contacts.begin_step(at(level, 50 * slip, height));
+  contacts.max_step(elsewhere, at(level, 50 * epsilon, height));
+  contacts.begin_step(at(level, 50 * epsilon, height));
   CHECK(contacts.has_friction());
-  CHECK(contacts.friction(at(level, 50 * slip, height)) == Approx(0).margin(1e-12));
+  CHECK(contacts.friction(at(level, 50 * epsilon, height)) == Approx(0).margin(1e-12));
 }
 
-TEST_CASE("Ten layers that hang together by friction do not creep") {
+TEST_CASE("Ten layers that stick to each other do not creep") {
   constexpr int layers = 10, columns = 4, n = columns * columns;
   TriangleMesh rest;
   rest.vertices.resize(layers * n, 3);
@@ -210,8 +216,8 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
   rest.triangles.resize(layers * one.triangles.rows(), 3);
   Positions x0(layers * n, 3), x1(layers * n, 3);
   for (int i = 0; i < layers; ++i) {
-    const Eigen::RowVector3d apart(i, 0, 0), above(1e-3 * i, 2e-3 * i, 0.3 * range * i),
-        slid(0.4 * slip * i, 0.1 * slip * (i % 3), 0);
+    const Eigen::RowVector3d apart(i, 0, 0), above(1e-3 * i, 2e-3 * i, 0.3 * dhat * i),
+        slid(0.4 * epsilon * i, 0.1 * epsilon * (i % 3), 0);
     rest.vertices.middleRows(i * n, n) = one.vertices.rowwise() + apart;
     rest.triangles.middleRows(i * one.triangles.rows(), one.triangles.rows()) = one.triangles.array() + i * n;
     x0.middleRows(i * n, n) = one.vertices.rowwise() + above;
@@ -228,11 +234,11 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
   ActiveContacts contacts(models);
   contacts.begin_step(x0);
   REQUIRE(contacts.max_step(x0, x1).fraction == 1);
-  contacts.renew_lag(x1);
+  contacts.update_lagging(x1);
   const auto friction = [&](const Positions& x) {
     Positions both = Positions::Zero(x.rows(), 3), barrier = both;
     contacts.add_gradient(x, both);
-    models[0]->sweep(x, x)->build(x)->add_gradient(x, barrier);
+    models[0]->build_candidates(x, x)->build_collisions(x)->add_gradient(x, barrier);
     return Positions(both - barrier);
   };
   const Positions f = friction(x1);
@@ -240,64 +246,65 @@ TEST_CASE("Ten layers that hang together by friction do not creep") {
   for (int step = 0; step < 20; ++step) {
     contacts.max_step(x1, x0);
     contacts.barrier(x0);
-    contacts.begin_step(x1);  // found along another way than those before
+    contacts.begin_step(x1);  // its candidates come from another motion than before
     CHECK((friction(x1) - f).norm() <= 1e-9 * f.norm());
   }
-  // Nor where they are taken along together, whatever moves elsewhere.
+  // Nor under a common translation, while an obstacle elsewhere moves.
   const BoundContacts before = models;
   models = beside_a_box("[0, 9.1, 0]");
   const Positions x2 = x1.rowwise() + Eigen::RowVector3d(0.02, -0.01, 0.03);
-  contacts.models_changed(before, x1, x2);
+  contacts.update_obstacles(before, x1, x2);
   CHECK((friction(x2) - f).norm() <= 1e-9 * f.norm());
 }
 
-TEST_CASE("What contacts have slipped is kept while obstacles move, and the obstacles' way is added") {
+TEST_CASE("Tangential displacements are advected by obstacle motion") {
   const Level level = sheet();
-  const double height = 0.4 * range, force = normal_force(height);
-  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
-  // The sheet slides on a plate, which then goes the other way, twice by 0.2 slip distances.
+  const double height = 0.4 * dhat, force = normal_force(height);
+  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
+  // The sheet slides on a plate, which then moves in the opposite direction, twice by 0.2 ε.
   BoundContacts models = bound(level, {a_plate(0)}), before = models;
   ActiveContacts contacts(models);
   contacts.begin_step(x0);
   contacts.max_step(x0, x1);
   contacts.begin_step(x1);
-  CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * slip)));
-  for (const double moved : {-0.2 * slip, -0.4 * slip}) {
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon)));
+  for (const double moved : {-0.2 * epsilon, -0.4 * epsilon}) {
     before = models;
     models = bound(level, {a_plate(moved)});
-    contacts.models_changed(before, x1, x1);
-    CHECK(contacts.carried());
-    CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * slip - moved)));
+    contacts.update_obstacles(before, x1, x1);
+    CHECK(contacts.advected());
+    CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon - moved)));
   }
-  contacts.begin_step(x1);  // no step has been made for the cloth to follow
-  CHECK_FALSE(contacts.carried());
-  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
+  contacts.begin_step(x1);  // the cloth has not moved yet
+  CHECK_FALSE(contacts.advected());
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
   contacts.begin_step(x1);
-  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * slip)));
+  CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
 }
 
-TEST_CASE("A cloth that is taken along has slipped by its own way less the obstacle's") {
+TEST_CASE("A moving cloth's tangential displacements are relative to the obstacle") {
   const Level level = sheet();
-  const double height = 0.4 * range, force = normal_force(height);
-  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * slip, height);
-  for (const auto& [way, slipped] : {std::pair(7 * slip, 0.3 * slip), std::pair(5 * slip, 2.3 * slip)}) {
+  const double height = 0.4 * dhat, force = normal_force(height);
+  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
+  for (const auto& [obstacle_motion, expected] :
+       {std::pair(7 * epsilon, 0.3 * epsilon), std::pair(5 * epsilon, 2.3 * epsilon)}) {
     BoundContacts models = bound(level, {a_plate(0)}), before = models;
     ActiveContacts contacts(models);
     contacts.begin_step(x0);
     contacts.max_step(x0, x1);
     contacts.begin_step(x1);
-    models = bound(level, {a_plate(way)});
-    const Positions x2 = at(level, 7.3 * slip, height);
-    contacts.models_changed(before, x1, x2);
-    CHECK(contacts.friction(x2) == Approx(force * potential(slipped)));
+    models = bound(level, {a_plate(obstacle_motion)});
+    const Positions x2 = at(level, 7.3 * epsilon, height);
+    contacts.update_obstacles(before, x1, x2);
+    CHECK(contacts.friction(x2) == Approx(force * potential(expected)));
     contacts.begin_step(x2);
-    CHECK(contacts.friction(x2) == Approx(force * potential(slipped)));
+    CHECK(contacts.friction(x2) == Approx(force * potential(expected)));
   }
 }
 
-TEST_CASE("On what stands still it has slipped by all of its way, on what it comes down on not at all") {
+TEST_CASE("Tangential displacements on a static obstacle are the cloth's own, and zero for a new contact") {
   const Level level = sheet();
-  const double height = 0.4 * range, force = normal_force(height);
+  const double height = 0.4 * dhat, force = normal_force(height);
   const auto on_floor = [&](double far) {  // in one model, and in two
     return std::array{
         bound(level, {make_plugin_from<ContactModel>(
@@ -307,7 +314,7 @@ TEST_CASE("On what stands still it has slipped by all of its way, on what it com
                          std::to_string(far) + ", 3]}]}")}),
         bound(level, {a_floor(), a_plate(far)})};
   };
-  const Positions x1 = at(level, 0.3 * slip, height), x2 = at(level, 2.3 * slip, height);
+  const Positions x1 = at(level, 0.3 * epsilon, height), x2 = at(level, 2.3 * epsilon, height);
   for (int k = 0; k < 2; ++k) {
     BoundContacts models = on_floor(5)[k], before = models;
     ActiveContacts contacts(models);
@@ -316,31 +323,31 @@ TEST_CASE("On what stands still it has slipped by all of its way, on what it com
     contacts.begin_step(x1);
     models = on_floor(5.5)[k];
     if (k == 1) models[0] = before[0];
-    contacts.models_changed(before, x1, x2);
-    CHECK(contacts.friction(x2) == Approx(force * potential(2.3 * slip)));
+    contacts.update_obstacles(before, x1, x2);
+    CHECK(contacts.friction(x2) == Approx(force * potential(2.3 * epsilon)));
 
     before = models;
     ActiveContacts far(models);
-    far.begin_step(at(level, 0, 3 * range));
+    far.begin_step(at(level, 0, 3 * dhat));
     models = on_floor(6)[k];
-    far.models_changed(before, at(level, 0, 3 * range), x2);
+    far.update_obstacles(before, at(level, 0, 3 * dhat), x2);
     CHECK(far.count() > 0);
     CHECK(far.friction(x2) == 0);
   }
 }
 
-TEST_CASE("Friction can be left out") {
+TEST_CASE("Friction can be disabled") {
   const Level level = sheet();
   const auto models = bound(level, {a_floor()});
   ActiveContacts contacts(models);
-  contacts.leave_out_friction();
-  contacts.begin_step(at(level, 0, 0.4 * range));
+  contacts.disable_friction();
+  contacts.begin_step(at(level, 0, 0.4 * dhat));
   CHECK_FALSE(contacts.has_friction());
   CHECK(contacts.count() > 0);
-  CHECK(contacts.friction(at(level, 1, 0.4 * range)) == 0);
+  CHECK(contacts.friction(at(level, 1, 0.4 * dhat)) == 0);
 }
 
-TEST_CASE("Of several models the nearest ends a step, and their contacts add up") {
+TEST_CASE("The smallest of several models' steps counts, and their collisions add up") {
   const Level level = sheet();
   const auto low = a_floor("low", -0.0002), high = a_floor("high", 0);
   for (const auto& order : {std::vector{low, high}, std::vector{high, low}}) {
@@ -350,33 +357,33 @@ TEST_CASE("Of several models the nearest ends a step, and their contacts add up"
     const StepLimit limit = contacts.max_step(x0, x1);
     CHECK(limit.fraction == Approx(0.5 * 0.9));
     CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(" and high: half_space"));
-    const Positions x = at(level, 0, 0.3 * range);
-    REQUIRE(contacts.max_step(at(level, 0, 0.5 * range), x).fraction == 1);
+    const Positions x = at(level, 0, 0.3 * dhat);
+    REQUIRE(contacts.max_step(at(level, 0, 0.5 * dhat), x).fraction == 1);
     double expected = 0;
     int count = 0;
     for (const auto& model : models) {
-      const auto set = model->sweep(x, x)->build(x);
-      expected += set->value(x);
-      count += set->contact_count();
+      const auto collisions = model->build_candidates(x, x)->build_collisions(x);
+      expected += collisions->value(x);
+      count += collisions->contact_count();
     }
     CHECK(contacts.barrier(x) == Approx(expected).epsilon(1e-12));
     CHECK(contacts.count() == count);
-    CHECK(contacts.smallest_gap() == Approx(0.3 * range));
+    CHECK(contacts.smallest_gap() == Approx(0.3 * dhat));
     CHECK(contacts.energies(x).size() == 2);
   }
 }
 
-TEST_CASE("All states of one way are evaluated from one search") {
+TEST_CASE("All states of one linear motion are evaluated from one search") {
   const Level level = sheet();
   BoundContacts models;
   models.push_back(std::make_unique<Counted>(a_floor()->bind(level, Material())));
   const auto& counted = dynamic_cast<const Counted&>(*models[0]);
   ActiveContacts contacts(models);
-  const Positions x0 = at(level, 0, 0.9 * range), x1 = at(level, 0, 0.2 * range);
+  const Positions x0 = at(level, 0, 0.9 * dhat), x1 = at(level, 0, 0.2 * dhat);
   contacts.begin_step(x0);
-  CHECK(counted.sweeps == 1);
+  CHECK(counted.searches == 1);
   contacts.max_step(x0, x1);
-  CHECK(counted.sweeps == 2);
+  CHECK(counted.searches == 2);
   double last = contacts.barrier(x0);
   for (const double part : {0.25, 0.5, 1.0}) {
     const Positions x = x0 + part * (x1 - x0);
@@ -385,12 +392,12 @@ TEST_CASE("All states of one way are evaluated from one search") {
     last = contacts.barrier(x);
     contacts.add_gradient(x, g);
     contacts.energies(x);
-    contacts.renew_lag(x);
+    contacts.update_lagging(x);
   }
-  CHECK(counted.sweeps == 2);
+  CHECK(counted.searches == 2);
 }
 
-TEST_CASE("Newton says what holds a step that it cannot take") {
+TEST_CASE("Newton names what blocks a step") {
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     Falling falling({std::make_shared<Frozen>()});
     NewtonParameters p;
@@ -407,7 +414,7 @@ TEST_CASE(
   Falling falling({a_floor()});
   NewtonParameters p;
   p.force_tolerance = 1e-5;
-  const LevelResult r = falling.solve(p, 5 * range);
+  const LevelResult r = falling.solve(p, 5 * dhat);
   CAPTURE(r.message);
   REQUIRE(r.outcome == Outcome::converged);
   REQUIRE(r.smallest_gap);
@@ -419,9 +426,9 @@ TEST_CASE(
     const Positions& x = falling.rows.states[i];
     REQUIRE(row.contacts);
     REQUIRE(row.smallest_gap);
-    CHECK((*row.contacts > 0) == (x.col(2).minCoeff() < range));
+    CHECK((*row.contacts > 0) == (x.col(2).minCoeff() < dhat));
     plain.max_step(x, x);
-    CHECK(row.energy == Approx(plain.plain_energy(x)).epsilon(1e-9));  // friction is no part of it
+    CHECK(row.energy == Approx(plain.plain_energy(x)).epsilon(1e-9));  // without friction
   }
   CHECK(falling.rows.rows.back().contacts == 16);
   // The floor bears the weight and friction the rest: the plain model, which has no friction, is out of
@@ -430,13 +437,13 @@ TEST_CASE(
   Positions g;
   falling.model.gradient(r.x, g);
   CHECK(-g.colwise().sum().x() == Approx(0.98 * weight));
-  const auto set = falling.model.contacts()[0]->sweep(r.x, r.x)->build(r.x);
+  const auto set = falling.model.contacts()[0]->build_candidates(r.x, r.x)->build_collisions(r.x);
   CHECK(-gradient_of(*set, r.x).col(2).sum() == Approx(9.81 * weight).epsilon(1e-4));
   CHECK(falling.model.force_residual(r.x) == Approx(0.98 / std::hypot(0.98, 9.81)).epsilon(1e-3));
 
   Falling free({});
   p.max_steps = 3;
-  const LevelResult none = free.solve(p, 5 * range);
+  const LevelResult none = free.solve(p, 5 * dhat);
   CHECK_FALSE(none.smallest_gap);
   REQUIRE(!free.rows.rows.empty());
   for (const IterationRow& row : free.rows.rows) {
@@ -453,18 +460,17 @@ TEST_CASE("A level is converged with the friction of where it ends, however long
   p.form = NewtonForm::statics;
   p.iterations_per_step = 20;
   PlainObjective objective(falling.model);
-  const LevelResult r =
-      minimise(objective, at(falling.level, 0, 0.9 * range), p, {Stopwatch(), falling.rows});
+  const LevelResult r = minimise(objective, at(falling.level, 0, 0.9 * dhat), p, {Stopwatch(), falling.rows});
   CAPTURE(r.message);
   REQUIRE(r.outcome == Outcome::converged);
   Positions g;
-  objective.contacts().renew_lag(r.x);
+  objective.contacts().update_lagging(r.x);
   objective.gradient(r.x, g);
   CHECK(free_norm(g, falling.model.fixed()) / falling.model.residual_scale(r.x, g) <= 1e-6);
 }
 
 TEST_CASE("The objective's derivatives with limits, contact and friction") {
-  // A sheet rolled over a ball until its ends are within range of each other's layer below.
+  // A sheet rolled over a ball until its ends are within d̂ of each other's layer below.
   const Solved s = scene_from(R"(
 name: all
 cloth: {shape: rectangle, size: [0.3, 0.2], triangulation: random, vertices: 30}
@@ -473,9 +479,9 @@ material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e6}
 start: {translate: [-0.15, -0.1, 0.109], perturbation: 3e-3}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3, stiffness: 100}, gravity]
 contact:
-  - {type: ipc, range: 0.02, stiffness: 20, friction: 0.4, slip_distance: 1e-3,
+  - {type: ipc, dhat: 0.02, stiffness: 20, friction: 0.4, friction_smoothing_distance: 1e-3,
      obstacles: [{name: shelf, shape: box, size: [0.05, 0.3, 0.1], translate: [0.12, 0, 0.05]}]}
-  - {type: shapes, range: 0.02, stiffness: 20, friction: 0.4, slip_distance: 1e-3,
+  - {type: shapes, dhat: 0.02, stiffness: 20, friction: 0.4, friction_smoothing_distance: 1e-3,
      shapes: [{name: ball, shape: sphere, radius: 0.1}]}
 methods: {newton: {}}
 )");
@@ -492,7 +498,8 @@ methods: {newton: {}}
   REQUIRE(objective.max_step(start, x).fraction == 1);
   REQUIRE(objective.contacts().friction(x) > 0);
   REQUIRE(objective.contacts().barrier(x) > 0);
-  for (const auto& contact : model.contacts()) REQUIRE(contact->sweep(x, x)->build(x)->contact_count() > 3);
+  for (const auto& contact : model.contacts())
+    REQUIRE(contact->build_candidates(x, x)->build_collisions(x)->contact_count() > 3);
   REQUIRE(model.limits()[0]->value(x) > 0);
 
   const auto value = [&](const Positions& y) {
@@ -532,13 +539,13 @@ methods: {newton: {}}
         "start nearer to the rest shape, or raise the limit");
 }
 
-TEST_CASE("Contacts are found again along the way that they were found along, having slipped as far") {
+TEST_CASE("Restored contacts have the same candidates and tangential displacements") {
   const Level level = sheet();
   const auto counted = std::make_shared<Counted>(a_floor()->bind(level, Material()));
   const Counted& floor = *counted;
   const BoundContacts models = {counted};
 
-  const Positions x0 = at(level, 0, 0.5 * range), x1 = at(level, 3e-4, 0.4 * range);
+  const Positions x0 = at(level, 0, 0.5 * dhat), x1 = at(level, 3e-4, 0.4 * dhat);
   ActiveContacts contacts(models);
   contacts.begin_step(x0);
   contacts.max_step(x0, x1);
@@ -546,22 +553,24 @@ TEST_CASE("Contacts are found again along the way that they were found along, ha
   contacts.begin_step(x1);
   REQUIRE(contacts.has_friction());
   const ContactMemory memory = contacts.memory();
-  CHECK(memory.sweep_begin == x0);
-  CHECK(memory.sweep_end == x1);
-  CHECK(memory.from == x1);
-  REQUIRE(memory.slips.size() == 1);
-  REQUIRE(memory.slips[0].size() == 16);
-  for (const Slip& kept : memory.slips[0]) CHECK(kept.by.norm() == Approx(slip));
+  CHECK(memory.candidates_begin == x0);
+  CHECK(memory.candidates_end == x1);
+  CHECK(memory.reference == x1);
+  REQUIRE(memory.tangential_displacements.size() == 1);
+  REQUIRE(memory.tangential_displacements[0].size() == 16);
+  for (const TangentialDisplacement& d : memory.tangential_displacements[0])
+    CHECK(d.displacement.norm() == Approx(epsilon));
 
   contacts.max_step(x1, x1);
   ActiveContacts again(models);
   again.restore(memory, x1);
-  CHECK(floor.begin == x0);  // on which the order of the contacts may depend
+  CHECK(floor.begin == x0);  // contacts' order may depend on it
   CHECK(floor.end == x1);
-  const Positions x2 = at(level, 4e-4, 0.4 * range);
+  const Positions x2 = at(level, 4e-4, 0.4 * dhat);
   REQUIRE(contacts.friction(x2) > 0);
   CHECK(again.friction(x2) == contacts.friction(x2));
   CHECK(again.barrier(x1) == contacts.barrier(x1));
-  CHECK(again.memory().from == memory.from);
-  CHECK(again.memory().slips[0][3].by == memory.slips[0][3].by);
+  CHECK(again.memory().reference == memory.reference);
+  CHECK(again.memory().tangential_displacements[0][3].displacement ==
+        memory.tangential_displacements[0][3].displacement);
 }

@@ -26,7 +26,7 @@ namespace {
 struct Query {
   PairKind kind = PairKind::point_triangle;
   PairPositions x0, x1;
-  double offset = 0, keep = 0.1;
+  double offset = 0, min_gap_fraction = 0.1;
 
   double time(int* blocking = nullptr) const {
     ContactPair pair;
@@ -34,7 +34,8 @@ struct Query {
     pair.kind = kind;
     pair.offset = offset;
     int ended_by = -2;
-    const double t = additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, keep, ended_by);
+    const double t =
+        additive_ccd(x0.transpose(), x1.transpose(), Positions(0, 3), {pair}, min_gap_fraction, ended_by);
     CHECK((ended_by == -1) == (t == 1));
     if (blocking) *blocking = ended_by;
     return t;
@@ -70,7 +71,7 @@ template <class Number>
 bool separates(const Query& q, const Triple<Number>& n, double tau) {
   Number along[4];
   for (int k = 0; k < 4; ++k) along[k] = dot(n, position<Number>(q, k, tau));
-  const int first = first_side(q.kind);
+  const int first = first_primitive_size(q.kind);
   for (int a = 0; a < first; ++a)
     for (int b = first; b < 4; ++b) {
       const Number apart = along[a] - along[b], offset(q.offset);
@@ -161,7 +162,7 @@ Query random_query(std::mt19937& random, int family) {
   };
   const auto push = [&](const Vector3d& p) {
     q.x1 = q.x0;
-    q.x1.leftCols(first_side(q.kind)).colwise() += p;
+    q.x1.leftCols(first_primitive_size(q.kind)).colwise() += p;
   };
   switch (family) {
     case 0:  // anything
@@ -174,7 +175,7 @@ Query random_query(std::mt19937& random, int family) {
       push(size(1e-9, 1e3) * (any().col(0) - n));
       break;
     }
-    case 3: {  // tiny gaps, everything moves
+    case 3: {  // tiny gaps, all vertices move
       touching(size(1e-9, 1e-3));
       q.x1 = q.x0 + size(1e-9, 10) * any();
       break;
@@ -221,15 +222,16 @@ Query random_query(std::mt19937& random, int family) {
     }
     case 10: {  // sides that turn about each other
       touching(size(1e-6, 1e-1));
-      q.x1.leftCols(first_side(q.kind)) = -q.x0.leftCols(first_side(q.kind));
-      q.x1.rightCols(4 - first_side(q.kind)) =
-          q.x0.rightCols(4 - first_side(q.kind)) + size(1e-6, 1) * any().rightCols(4 - first_side(q.kind));
+      q.x1.leftCols(first_primitive_size(q.kind)) = -q.x0.leftCols(first_primitive_size(q.kind));
+      q.x1.rightCols(4 - first_primitive_size(q.kind)) =
+          q.x0.rightCols(4 - first_primitive_size(q.kind)) +
+          size(1e-6, 1) * any().rightCols(4 - first_primitive_size(q.kind));
       break;
     }
-    default:  // towards a shared place: vertex on vertex, edge on vertex
-      q.x1.col(random() % first_side(q.kind)) = q.x1.col(3);
+    default:  // towards a common point: vertex on vertex, edge on vertex
+      q.x1.col(random() % first_primitive_size(q.kind)) = q.x1.col(3);
   }
-  if (random() % 4 == 0) q.keep = random() % 2 ? 0.5 : 0;
+  if (random() % 4 == 0) q.min_gap_fraction = random() % 2 ? 0.5 : 0;
   if (random() % 4 == 0) q.offset = unit(random) * std::max(q.gap(0), 0.0);
   return q;
 }
@@ -238,7 +240,7 @@ Query random_query(std::mt19937& random, int family) {
 struct Tally {
   int ended[families] = {};  ///< before their motion's end
   int unsafe = 0;
-  int early = 0;  ///< ended while more of the gap than `keep` and the documented slack was left
+  int early = 0;  ///< ended while more of the gap than `min_gap_fraction` and the documented slack was left
 };
 
 Tally check_queries(int count, unsigned seed) {
@@ -251,14 +253,14 @@ Tally check_queries(int count, unsigned seed) {
     if (t == 1) continue;
     ++tally.ended[i % families];
     const double rounding = 1e-14 * std::max(q.x0.cwiseAbs().maxCoeff(), q.x1.cwiseAbs().maxCoeff());
-    if (q.gap(t) > (q.keep + 0.02) * q.gap(0) + rounding) ++tally.early;
+    if (q.gap(t) > (q.min_gap_fraction + 0.02) * q.gap(0) + rounding) ++tally.early;
   }
   return tally;
 }
 
 /// The time of impact from below, to nine digits; 1 without an impact.
 double impact(Query q) {
-  q.keep = 0;
+  q.min_gap_fraction = 0;
   const PairPositions x0 = q.x0;
   double time = 0;
   for (int i = 0; i < 100 && time < 1; ++i) {
@@ -281,7 +283,7 @@ Query point_over_triangle(double height, const Vector3d& motion) {
 
 }  // namespace
 
-TEST_CASE("no motion is let through, by exact arithmetic") {
+TEST_CASE("no motion leads to an intersection, by exact arithmetic") {
   const char* wanted = std::getenv("DRAPE_CCD_QUERIES");  // a million take about a minute
   const int count = wanted ? std::atoi(wanted) : 120000;
   const Tally tally = check_queries(count, 1);
@@ -290,7 +292,7 @@ TEST_CASE("no motion is let through, by exact arithmetic") {
   for (const int ended : tally.ended) CHECK(ended > count / families / 100);
 }
 
-TEST_CASE("the check finds what goes through") {
+TEST_CASE("the exact check detects intersections") {
   const Query q = point_over_triangle(0.5, {0, 0, -1});
   CHECK(safe(q, 0.49));
   CHECK_FALSE(safe(q, 0.5));
@@ -301,13 +303,13 @@ TEST_CASE("the check finds what goes through") {
   CHECK_FALSE(safe(rounded, 0.251));
 }
 
-TEST_CASE("how near to the impact it gets") {
+TEST_CASE("how close to the impact the step ends") {
   std::mt19937 random(2);
   std::vector<double> all;
   int straight = 0;
   for (int i = 0; i < 12000; ++i) {
     Query q = random_query(random, i % families);
-    q.keep = 0.1;
+    q.min_gap_fraction = 0.1;
     const double t = q.time();
     if (t == 0 || t == 1) continue;
     const double end = impact(q);
@@ -326,7 +328,7 @@ TEST_CASE("how near to the impact it gets") {
   CHECK(all[all.size() / 100] > 0.5);
 }
 
-TEST_CASE("fractions that can be said beforehand") {
+TEST_CASE("fractions that are known in closed form") {
   int blocking = 0;
   CHECK(point_over_triangle(0.5, {0, 0, -1}).time(&blocking) == Approx(0.45).epsilon(0.03));
   CHECK(blocking == 0);
@@ -336,21 +338,21 @@ TEST_CASE("fractions that can be said beforehand") {
   CHECK(point_over_triangle(0.5, {3, 4, 0}).time() == 1);
   CHECK(point_over_triangle(1e-9, {3, 4, 0}).time() == 1);
   CHECK(point_over_triangle(1e-9, {0, 0, 5}).time() == 1);
-  CHECK(point_over_triangle(0, {0, 0, 1}).time() == 0);  // it touches already
+  CHECK(point_over_triangle(0, {0, 0, 1}).time() == 0);  // touching
   Query rounded = point_over_triangle(0.5, {0, 0, -1});
   rounded.offset = 0.3;
   CHECK(rounded.time() == Approx(0.18).epsilon(0.03));
   Query half = point_over_triangle(0.5, {0, 0, -1});
-  half.keep = 0.5;
+  half.min_gap_fraction = 0.5;
   CHECK(half.time() == Approx(0.25).epsilon(0.05));
   CHECK(half.time() <= 0.25);
-  // Everything moves by the same: nothing comes nearer.
+  // A common translation: no gap changes.
   Query together = point_over_triangle(1e-6, {0, 0, 0});
   together.x1.colwise() += Vector3d(1, -2, 1000);
   CHECK(together.time() == 1);
 }
 
-TEST_CASE("the first of many pairs ends the motion, whatever the number of threads") {
+TEST_CASE("the first of many pairs limits the motion, with any number of threads") {
   const int points = 5000;
   Positions obstacle(3, 3), x0(points, 3), x1(points, 3);
   obstacle << -100, -100, 0, 100, -100, 0, 0, 100, 0;
@@ -382,7 +384,7 @@ TEST_CASE("the first of many pairs ends the motion, whatever the number of threa
   set_thread_count(0);
   CHECK(additive_ccd(x0, x1, obstacle, {}, 0.1, ended) == 1);
   CHECK(ended == -1);
-  // Every gap keeps its tenth, and the one that ended it no more than the slack.
+  // Every gap keeps a tenth, and the blocking one no more than the tolerance above that.
   const Positions x = x0 + first * (x1 - x0);
   for (int i = 0; i < points; ++i) {
     const double part = (x(i, 2) - pairs[i].offset) / (x0(i, 2) - pairs[i].offset);

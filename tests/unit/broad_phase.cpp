@@ -70,7 +70,7 @@ AdjacencyList pairs_of(const BroadPhase& phase) {
 
 }  // namespace
 
-TEST_CASE("broad phase: a box surrounds its points in spite of rounding") {
+TEST_CASE("broad phase: a box bounds its points despite rounding") {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-5, 5);
   for (int i = 0; i < 10000; ++i) {
@@ -86,7 +86,7 @@ TEST_CASE("broad phase: a box surrounds its points in spite of rounding") {
   CHECK(!Box().overlaps(Box::around({-1, -1, -1}, {1, 1, 1}, 0)));
 }
 
-TEST_CASE("broad phase: boxes beyond what floats hold are cut off, and still overlap") {
+TEST_CASE("broad phase: boxes beyond the range of floats are clamped, and still overlap") {
   const Vector p(0.25, 0.5, 0.75);
   std::vector<Box> boxes;
   for (int i = 0; i < 100; ++i) boxes.push_back(Box::around(i * p, (i + 1) * p, i % 2 ? 1e39 : 1e300));
@@ -105,7 +105,7 @@ TEST_CASE("broad phase: boxes beyond what floats hold are cut off, and still ove
   }
 }
 
-TEST_CASE("broad phase: every kind finds the pairs that there are") {
+TEST_CASE("broad phase: every kind finds the pairs of a brute-force search") {
   for (const int count : {0, 1, 2, 8, 9, 63, 65, 700, 1500})
     for (const double size : {0.0, 0.1, 0.8}) {
       const std::vector<Box> boxes = random_boxes(count, size, count), others = random_boxes(333, size, 77);
@@ -124,7 +124,7 @@ TEST_CASE("broad phase: every kind finds the pairs that there are") {
     }
 }
 
-TEST_CASE("broad phase: boxes without extent, boxes that are equal, boxes that touch") {
+TEST_CASE("broad phase: degenerate, equal and touching boxes") {
   const Vector p(0.25, 0.5, 0.75);
   std::vector<Box> boxes(20, Box::around(p, p, 0));  // equal: all pairs
   for (int i = 0; i < 30; ++i) {                     // in a row, each shares a face with the next
@@ -158,7 +158,7 @@ TEST_CASE("broad phase: refitted or rebuilt, the pairs are those of the last upd
   }
 }
 
-TEST_CASE("broad phase: no more pairs than were asked for, no mixing of kinds") {
+TEST_CASE("broad phase: the limit on pairs, and kinds that differ") {
   const std::vector<Box> boxes = random_boxes(400, 0.5, 5);
   const long count = static_cast<long>(brute_force(boxes, boxes, true).items.size());
   REQUIRE(count > 500);

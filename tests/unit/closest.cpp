@@ -26,7 +26,7 @@ double height_left_out(const PairPositions& x) {
 /// holds when no vertex lies on the near side of its side's point, seen along r.
 void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-15) {
   const Closest found = closest(kind, x);
-  const int first = first_side(kind);
+  const int first = first_primitive_size(kind);
   CAPTURE(x, found.c.transpose());
   CHECK(std::abs(found.c.head(first).sum() - 1) <= 1e-15);
   CHECK(std::abs(found.c.sum()) <= 1e-15 * found.c.norm());
@@ -54,7 +54,7 @@ void check_optimal(PairKind kind, const PairPositions& x, double tolerance = 4e-
 /// motion along them.
 void check_directions(PairKind kind, const PairPositions& x) {
   const Closest found = closest(kind, x);
-  const int first = first_side(kind);
+  const int first = first_primitive_size(kind);
   CAPTURE(x, found.c.transpose(), found.direction, found.free);
   for (int m = 0; m < found.free; ++m) {
     const auto d = found.direction.col(m);
@@ -76,7 +76,7 @@ PairPositions random_positions(std::mt19937& random) {
 
 }  // namespace
 
-TEST_CASE("no other points of a random pair are nearer") {
+TEST_CASE("no other points of a random pair are closer") {
   std::mt19937 random(1);
   for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge, PairKind::point_plane}) {
     std::set<std::vector<bool>> regions;

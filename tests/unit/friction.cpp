@@ -10,17 +10,17 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double slip_distance = 1e-4;
+constexpr double epsilon = 1e-4;  // friction smoothing distance [m]
 
 struct Sliding {
   std::vector<FrictionContact> contacts;
-  Positions from;
+  Positions reference;
 
   explicit Sliding(int count, unsigned seed = 1) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     const int n = 5 * count;
-    from = Positions::NullaryExpr(n, 3, [&](Eigen::Index, Eigen::Index) { return normal(random); });
+    reference = Positions::NullaryExpr(n, 3, [&](Eigen::Index, Eigen::Index) { return normal(random); });
     for (int i = 0; i < count; ++i) {
       FrictionContact contact;
       contact.key = {(i * 7) % count, i % 3, 0, 0, 0};
@@ -34,19 +34,20 @@ struct Sliding {
     }
   }
   Positions moved(double by, unsigned seed) const {
-    return from + by * Eigen::Map<const Positions>(normal_numbers(from.size(), seed).data(), from.rows(), 3);
+    return reference + by * Eigen::Map<const Positions>(normal_numbers(reference.size(), seed).data(),
+                                                        reference.rows(), 3);
   }
-  std::unique_ptr<FrictionEnergy> energy() const { return make_friction(contacts, from, {}, slip_distance); }
+  std::unique_ptr<FrictionEnergy> energy() const { return make_friction(contacts, reference, {}, epsilon); }
 };
 
 }  // namespace
 
-TEST_CASE("friction's derivatives, sticking and slipping") {
+TEST_CASE("friction's derivatives, sticking and sliding") {
   for (int i = 0; i < 30; ++i) {
     const Sliding sliding(1 + i % 5, i);
     const auto energy = sliding.energy();
     for (const double by : {0.01, 0.3, 3.0}) {
-      const Positions x = sliding.moved(by * slip_distance, 100 + i);
+      const Positions x = sliding.moved(by * epsilon, 100 + i);
       const Positions g = gradient_of(*energy, x);
       const Eigen::MatrixXd h = dense(hessian_of(*energy, x, Projection::none));
       REQUIRE(g.norm() > 0);
@@ -62,55 +63,55 @@ TEST_CASE("friction's derivatives, sticking and slipping") {
   }
 }
 
-TEST_CASE("friction of a single point: nothing at rest, its full force from the slip distance on") {
+TEST_CASE("friction of a single point: zero at rest, full force above the smoothing distance") {
   FrictionContact contact;
   contact.vertices = {0, -1, -1, -1};
   contact.c = {1, -1, 0, 0};
   contact.normal = {0, 0, 1};
   contact.force = 0.25;
-  const Positions from = Positions::Zero(1, 3);
-  const auto energy = make_friction({contact}, from, {}, slip_distance);
+  const Positions reference = Positions::Zero(1, 3);
+  const auto energy = make_friction({contact}, reference, {}, epsilon);
   const auto at = [&](double x, double y, double z) {
-    return Positions(from + Positions(Eigen::RowVector3d(x, y, z)));
+    return Positions(reference + Positions(Eigen::RowVector3d(x, y, z)));
   };
-  CHECK(energy->value(from) == 0);
-  CHECK(gradient_of(*energy, from).norm() == 0);
+  CHECK(energy->value(reference) == 0);
+  CHECK(gradient_of(*energy, reference).norm() == 0);
   CHECK(energy->value(at(0, 0, 1)) == 0);
-  const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / slip_distance);
-  CHECK((dense(hessian_of(*energy, from, Projection::none)) - expected).norm() <= 1e-10);
+  const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / epsilon);
+  CHECK((dense(hessian_of(*energy, reference, Projection::none)) - expected).norm() <= 1e-10);
   for (const double part : {1e-6, 0.1, 0.5, 0.999}) {
-    const Positions g = gradient_of(*energy, at(0.6 * part * slip_distance, 0.8 * part * slip_distance, 2));
+    const Positions g = gradient_of(*energy, at(0.6 * part * epsilon, 0.8 * part * epsilon, 2));
     const double f = 0.25 * part * (2 - part);
     CHECK((g - Eigen::RowVector3d(0.6 * f, 0.8 * f, 0)).norm() <= 1e-9 * f);
   }
   for (const double part : {1.0, 1.001, 10.0, 1e4}) {
-    const Positions x = at(0, part * slip_distance, 0);
+    const Positions x = at(0, part * epsilon, 0);
     CHECK(gradient_of(*energy, x).norm() == Approx(0.25).epsilon(1e-10));
-    CHECK(energy->value(x) == Approx(0.25 * slip_distance * (part - 1.0 / 3)));
+    CHECK(energy->value(x) == Approx(0.25 * epsilon * (part - 1.0 / 3)));
   }
-  CHECK(make_friction({}, from, {}, slip_distance) == nullptr);
+  CHECK(make_friction({}, reference, {}, epsilon) == nullptr);
 }
 
-TEST_CASE("friction's forces after a step are those at its end, for every contact that is still there") {
+TEST_CASE("persistent contacts keep their friction forces from one step to the next") {
   Sliding sliding(200);
   const auto before = sliding.energy();
-  const Positions x = sliding.moved(slip_distance, 7);
-  Slips slips;
-  before->add_slips(x, slips);
-  REQUIRE(slips.size() == sliding.contacts.size());
-  for (const Slip& slip : slips) CHECK(slip.by.norm() <= slip_distance * (1 + 1e-12));
-  std::ranges::sort(slips, {}, &Slip::contact);
+  const Positions x = sliding.moved(epsilon, 7);
+  TangentialDisplacements displacements;
+  before->append_tangential_displacements(x, displacements);
+  REQUIRE(displacements.size() == sliding.contacts.size());
+  for (const TangentialDisplacement& d : displacements) CHECK(d.displacement.norm() <= epsilon * (1 + 1e-12));
+  std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
   const Positions f = gradient_of(*before, x);
   std::shuffle(sliding.contacts.begin(), sliding.contacts.end(), std::mt19937(2));
-  CHECK((gradient_of(*make_friction(sliding.contacts, x, slips, slip_distance), x) - f).norm() <=
+  CHECK((gradient_of(*make_friction(sliding.contacts, x, displacements, epsilon), x) - f).norm() <=
         1e-9 * f.norm());
-  // One that is new has not slipped yet.
-  FrictionContact& fresh = sliding.contacts[0];
-  fresh.key[1] += 7;  // among the others
-  CHECK(gradient_of(*make_friction({fresh}, x, slips, slip_distance), x).norm() == 0);
+  // A new contact has no displacement.
+  FrictionContact& added = sliding.contacts[0];
+  added.key[1] += 7;  // among the others
+  CHECK(gradient_of(*make_friction({added}, x, displacements, epsilon), x).norm() == 0);
 }
 
 TEST_CASE("friction has the same bits with any number of threads") {
   const Sliding sliding(5000);
-  check_threads(*sliding.energy(), sliding.moved(slip_distance, 3));
+  check_threads(*sliding.energy(), sliding.moved(epsilon, 3));
 }

@@ -62,7 +62,7 @@ std::vector<std::pair<int, int>> by_cgal(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("intersections: two triangles that share nothing") {
+TEST_CASE("intersections: two triangles without a common vertex") {
   CHECK(count_against_unit({.2, .2, -1}, {.3, .2, 1}, {.2, .4, 1}) == 1);     // through it
   CHECK(count_against_unit({.2, .2, 1e-12}, {.3, .2, 1}, {.2, .4, 1}) == 0);  // just above
   CHECK(count_against_unit({.2, .2, 0}, {.3, .2, 1}, {.2, .4, 1}) == 1);      // a vertex touches its inside
@@ -102,7 +102,7 @@ TEST_CASE("intersections: neighbours") {
   CHECK(count(mesh_of({a, b, c}, {{0, 1, 2}, {1, 2, 0}})) == 1);
 }
 
-TEST_CASE("intersections: pairs are ordered and lie where they are said to") {
+TEST_CASE("intersections: pairs are ordered, with a point near them") {
   TriangleMesh mesh = grid({1, 1}, 12, 12, Diagonals::one_way);
   CHECK(count(mesh) == 0);
   const TriangleMesh needle = mesh_of({{.31, .52, -1}, {.32, .52, -1}, {.31, .53, 1}}, {{0, 1, 2}});
@@ -136,7 +136,7 @@ TEST_CASE("intersections: the same as CGAL's on crumpled cloths") {
   }
 }
 
-TEST_CASE("intersections: triangles that have lost their area touch their neighbours") {
+TEST_CASE("intersections: triangles without area touch their neighbours") {
   TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
   const Positions flat = mesh.vertices;
   mesh.vertices.rowwise() = flat.row(5);  // all in one point

@@ -46,19 +46,19 @@ struct OnePair {
   }
   /// Sets d̂ so that the gap is a part s of it.
   OnePair& with_gap_part(double s) {
-    parameters.range = (distance() - pair.offset) / s;
+    parameters.dhat = (distance() - pair.offset) / s;
     return *this;
   }
-  std::unique_ptr<ContactSet> set(const Positions& y) const {
+  std::unique_ptr<Collisions> set(const Positions& y) const {
     return make_pair_contacts(y, obstacle, {pair}, parameters);
   }
-  std::unique_ptr<ContactSet> set() const { return set(x); }
+  std::unique_ptr<Collisions> set() const { return set(x); }
   Positions gradient(const Positions& y) const { return gradient_of(*set(y), y); }
 
   /// Gradient and Hessian against differences with step h.
   void check_derivatives(double h, double tolerance) const {
     const auto own = set();
-    CAPTURE(at(), closest(pair.kind, at()).c.transpose(), distance(), parameters.range, pair.mollifier, h);
+    CAPTURE(at(), closest(pair.kind, at()).c.transpose(), distance(), parameters.dhat, pair.mollifier, h);
     REQUIRE(own->contact_count() == 1);
     const Positions g = gradient_of(*own, x);
     const Eigen::MatrixXd hessian = dense(hessian_of(*own, x, Projection::none));
@@ -144,7 +144,7 @@ TEST_CASE("derivatives and projections of random pairs") {
   for (const auto& [what, count] : seen) CHECK(count >= 5);
 }
 
-TEST_CASE("derivatives just beside where the nearest features change, and a continuous gradient across") {
+TEST_CASE("derivatives next to changes of the nearest features, and a continuous gradient across them") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e2(0, 0.01, 0), e3(0, 0, 0.002);
   const Vector3d edge = 0.4 * e1, vertex = o, diagonal = 0.3 * e1 + 0.7 * e2;
   for (const Vector3d& foot : {edge, vertex, diagonal})
@@ -154,7 +154,7 @@ TEST_CASE("derivatives just beside where the nearest features change, and a cont
            {Vector3d(1, 2, 0), Vector3d(-2, -1, 0), Vector3d(2, -3, 0), Vector3d(-1, 2, 0)}) {
         const Vector3d point = foot + e3 + aside * way;
         OnePair one(PairKind::point_triangle, columns(point, o, e1, e2));
-        one.parameters.range = 0.004;
+        one.parameters.dhat = 0.004;
         one.check_derivatives(aside / 4, 1e-6 + 1e-15 / aside);
         one.check_projections();
         gradients.push_back(one.gradient(one.x));
@@ -167,7 +167,7 @@ TEST_CASE("derivatives just beside where the nearest features change, and a cont
       for (const Vector3d& to : {Vector3d(0.001, 0.01, 0), Vector3d(0.004, 0.01, 0)}) {
         const Vector3d from = e3 + (to.x() == 0.004 ? 0.4 : 0) * e1 + Vector3d(sign, -2 * sign, 0) * aside;
         OnePair one(PairKind::edge_edge, columns(o, e1, from, to + e3));
-        one.parameters.range = 0.004;
+        one.parameters.dhat = 0.004;
         one.check_derivatives(aside / 4, 1e-6 + 1e-15 / aside);
         one.check_projections();
       }
@@ -198,7 +198,7 @@ TEST_CASE("derivatives at gaps of 1e-8 m") {
   }
 }
 
-TEST_CASE("edges that are parallel, and nearly") {
+TEST_CASE("parallel and nearly parallel edges") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e3(0, 0, 0.0005), shift(0.003, 0, 0);
   const double epsilon = 1e-3 * 1e-8;
   double before = -1;
@@ -253,7 +253,7 @@ TEST_CASE("the mollifier's threshold") {
   CHECK(checked > 20);
 }
 
-TEST_CASE("the force is -κ weight b'(s), along the connection, and sums to zero") {
+TEST_CASE("the force is -κ weight b'(s), along the shortest vector, and sums to zero") {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(0.02, 0.98);
   for (int i = 0; i < 200; ++i) {
@@ -270,7 +270,7 @@ TEST_CASE("the force is -κ weight b'(s), along the connection, and sums to zero
     CHECK((pushed - expected * n).norm() <= 1e-9 * std::abs(expected));
     CHECK(g.colwise().sum().norm() <= 1e-12 * std::abs(expected));
     CHECK(one.set()->value(one.x) == Approx(-one.parameters.stiffness * one.pair.weight *
-                                            one.parameters.range * (s - 1) * (s - 1) * std::log(s)));
+                                            one.parameters.dhat * (s - 1) * (s - 1) * std::log(s)));
   }
 }
 
@@ -283,7 +283,7 @@ struct ManyPairs {
   BarrierParameters parameters;
 
   ManyPairs(int cloth, int fixed, int count, unsigned seed) {
-    parameters.range = 0.1;
+    parameters.dhat = 0.1;
     parameters.stiffness = 2;
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
@@ -295,7 +295,8 @@ struct ManyPairs {
     while (static_cast<int>(pairs.size()) < count) {
       ContactPair pair;
       pair.kind = static_cast<PairKind>(random() % 3);
-      const int first = first_side(pair.kind), owner = pair.kind == PairKind::point_plane ? 0 : random() % 3;
+      const int first = first_primitive_size(pair.kind),
+                owner = pair.kind == PairKind::point_plane ? 0 : random() % 3;
       for (int k = 0; k < 4; ++k) pair.vertices[k] = vertex(owner == 2 || (k < first) == (owner == 0));
       const std::set<int> different(pair.vertices.begin(), pair.vertices.end());
       if (different.size() < 4) continue;
@@ -308,12 +309,12 @@ struct ManyPairs {
       pairs.push_back(pair);
     }
   }
-  std::unique_ptr<ContactSet> set() const { return make_pair_contacts(x, obstacle, pairs, parameters); }
+  std::unique_ptr<Collisions> set() const { return make_pair_contacts(x, obstacle, pairs, parameters); }
 };
 
 }  // namespace
 
-TEST_CASE("a set is the sum of those of its pairs that are within range, in their order") {
+TEST_CASE("collisions are the sum over the pairs within dhat, in their order") {
   const ManyPairs many(40, 20, 6000, 7);
   const auto all = many.set();
   int count = 0;
@@ -325,7 +326,7 @@ TEST_CASE("a set is the sum of those of its pairs that are within range, in thei
     const PairPositions at = positions_of(pair, many.x, many.obstacle);
     const double gap = connection(at, closest(pair.kind, at)).norm() - pair.offset;
     const auto one = make_pair_contacts(many.x, many.obstacle, {pair}, many.parameters);
-    REQUIRE(one->contact_count() == (gap < many.parameters.range ? 1 : 0));
+    REQUIRE(one->contact_count() == (gap < many.parameters.dhat ? 1 : 0));
     if (one->contact_count() == 0) continue;
     ++count;
     smallest = std::min(smallest, gap);
@@ -346,7 +347,7 @@ TEST_CASE("a set is the sum of those of its pairs that are within range, in thei
   CHECK(std::vector<int>(stencils.data(), stencils.data() + stencils.size()) == order);
 }
 
-TEST_CASE("contacts have the same bits with any number of threads") {
+TEST_CASE("contacts are bit for bit the same with any number of threads") {
   const ManyPairs many(200, 50, 60000, 8);
   std::vector<double> values;
   for (const int threads : {1, 2, 3}) {
@@ -359,10 +360,10 @@ TEST_CASE("contacts have the same bits with any number of threads") {
   check_threads(*many.set(), many.x);
 }
 
-TEST_CASE("outside the range there is nothing, and touching is not allowed") {
+TEST_CASE("the barrier is zero beyond dhat and infinite at contact") {
   const Vector3d o(0, 0, 0), e1(0.01, 0, 0), e2(0, 0.01, 0);
   OnePair one(PairKind::point_triangle, columns(0.3 * (e1 + e2) + Vector3d(0, 0, 1e-3), o, e1, e2));
-  one.parameters.range = 1e-3;
+  one.parameters.dhat = 1e-3;
   CHECK(one.set()->contact_count() == 0);
   CHECK(one.set()->value(one.x) == 0);
   CHECK(one.set()->smallest_gap() == std::numeric_limits<double>::infinity());
@@ -376,7 +377,7 @@ TEST_CASE("outside the range there is nothing, and touching is not allowed") {
   CHECK(one.set()->smallest_gap() == Approx(-1e-3));
 }
 
-TEST_CASE("a contact's friction is bounded by μ times its force, and against the motion") {
+TEST_CASE("a contact's friction is at most μ times its force and opposes the motion") {
   std::mt19937 random(9);
   std::normal_distribution<double> normal;
   int checked = 0;
@@ -386,13 +387,13 @@ TEST_CASE("a contact's friction is bounded by μ times its force, and against th
     one.pair.friction = 0.3;
     one.pair.mollifier = i % 2 ? 0 : 2 * one.parallel();
     one.with_gap_part(0.4);
-    one.parameters.slip_distance = 1e-5;
+    one.parameters.friction_smoothing_distance = 1e-5;
     const Positions from = one.x;
     const auto friction = one.set()->friction(from, {});
     REQUIRE(friction);
     const Closest found = closest(kind, one.at());
     const Vector3d n = connection(one.at(), found).normalized();
-    Vector3d slip = Vector3d::Zero();
+    Vector3d u = Vector3d::Zero();
     Positions moved = from;
     for (Eigen::Index v = 0; v < moved.rows(); ++v)
       for (int c = 0; c < 3; ++c) moved(v, c) += 1e-3 * normal(random);
@@ -402,19 +403,19 @@ TEST_CASE("a contact's friction is bounded by μ times its force, and against th
     for (int k = 0; k < 4; ++k) {
       const int v = one.pair.vertices[k];
       if (v >= one.x.rows()) continue;
-      slip += found.c[k] * (moved.row(v) - from.row(v)).transpose();
-      if ((k < first_side(kind)) == (one.pair.vertices[0] < one.x.rows())) force += g.row(v);
+      u += found.c[k] * (moved.row(v) - from.row(v)).transpose();
+      if ((k < first_primitive_size(kind)) == (one.pair.vertices[0] < one.x.rows())) force += g.row(v);
       largest = std::max(largest, std::abs(found.c[k]));
     }
-    slip -= n.dot(slip) * n;
-    REQUIRE(slip.norm() > one.parameters.slip_distance);
+    u -= n.dot(u) * n;
+    REQUIRE(u.norm() > one.parameters.friction_smoothing_distance);
     const double z = one.parallel() / one.pair.mollifier,
                  faded = kind == PairKind::edge_edge && i % 2 == 0 ? z * (2 - z) : 1;
     const double expected = -0.3 * faded * one.parameters.stiffness * one.pair.weight * barrier_slope(0.4);
     REQUIRE(expected > 0);
     CHECK(force.norm() == Approx(expected).epsilon(1e-9));
     const double sign = one.pair.vertices[0] < one.x.rows() ? 1 : -1;
-    CHECK((sign * force - expected * slip.normalized()).norm() <= 1e-9 * expected);
+    CHECK((sign * force - expected * u.normalized()).norm() <= 1e-9 * expected);
     ++checked;
   }
   CHECK(checked == 90);

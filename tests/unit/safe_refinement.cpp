@@ -149,7 +149,7 @@ TEST_CASE("A sheet around a ball is refined without touching it") {
   CHECK(refined.fault.empty());
   CHECK(refined.iterations > 0);
   CHECK(cloth.intersections(1, refined.x) == 0);
-  // No vertex is further from where it should be than the ball and the barrier's range make it.
+  // No vertex is further from its target than the ball and d̂ require.
   double deepest = 0;
   for (const auto& t : cloth.hierarchy.levels[1].rest.triangles.rowwise())
     deepest = std::max(deepest, 0.3 - (target.row(t[0]) + target.row(t[1]) + target.row(t[2])).norm() / 3);
@@ -185,7 +185,7 @@ TEST_CASE("Friction does not hold what is refined") {
   const Positions x = tent_over_its_own_end(slippery.starts[0], 0.9e-3);
   const auto model = make_plugin_from<ContactModel>("{type: ipc, friction: 1}");
   const auto contact = model->bind(rough.hierarchy.levels[0], Material());
-  REQUIRE(contact->sweep(x, x)->build(x)->friction(x, {}));
+  REQUIRE(contact->build_candidates(x, x)->build_collisions(x)->friction(x, {}));
   CHECK(slippery.refine(x).x == rough.refine(x).x);
 }
 

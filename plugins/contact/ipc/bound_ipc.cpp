@@ -3,54 +3,55 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/contact/averaged_contact_displacement.h"
 #include "core/contact/contact_kernel.h"
 #include "core/contact/contact_stack.h"
-#include "core/contact/mean_moves.h"
 #include "core/contact/stiffness.h"
 #include "core/mesh/intersections.h"
 #include "core/mesh/same_triangles.h"
-#include "plugins/contact/ipc/kept.h"
-#include "plugins/contact/ipc/obstacle_way.h"
+#include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "plugins/contact/ipc/surface_contacts.h"
+#include "plugins/contact/ipc/weak_cache.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
 constexpr long unlimited = std::numeric_limits<long>::max();
 
-const BoundIpc& own_kind(const BoundContact& contact) {
+const BoundIpc& as_ipc(const BoundContact& contact) {
   const auto* own = dynamic_cast<const BoundIpc*>(&contact);
-  if (!own) throw std::runtime_error("obstacles of \"ipc\" cannot come from those of another contact model");
+  if (!own) throw std::runtime_error("obstacles of \"ipc\" cannot replace those of another contact model");
   return *own;
 }
 
-std::vector<std::array<int, 4>> close_at_rest(const Surface& cloth, const Positions& rest, double range) {
+std::vector<std::array<int, 4>> find_rest_proximity_pairs(const Surface& cloth, const Positions& rest,
+                                                          double dhat) {
   const Positions none;
   SweptBoxes boxes;
-  boxes.update(cloth, rest, rest, 0.5 * range);
+  boxes.update(cloth, rest, rest, 0.5 * dhat);
   const auto tree = make_broad_phase(BroadPhaseKind::bvh);
   tree->update(boxes.triangles);
   AdjacencyList rows;
-  // Of triangles: some ten times what a cloth of 200K vertices has with a range of its edges' length.
-  constexpr long most_pairs = 50'000'000;
-  if (!tree->overlaps(most_pairs, rows))
+  // Of triangles: some ten times those of a cloth of 200K vertices with d̂ equal to its edge length.
+  constexpr long max_pairs = 50'000'000;
+  if (!tree->overlaps(max_pairs, rows))
     throw std::runtime_error(
         "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
-        "within \"range\" of each other; lower it to about the length of an edge");
-  FoundPairs found;
-  find_self_pairs(cloth, boxes, rows, {rest, rest, range, none, none}, 0, unlimited, found);
-  std::vector<std::array<int, 4>> close;
-  for (const ContactPair& pair : found.pairs) close.push_back(pair.vertices);
-  std::sort(close.begin(), close.end());
-  return close;
+        "within \"dhat\" of each other; lower it to about the length of an edge");
+  BroadPhasePairs found;
+  find_self_pairs(cloth, boxes, rows, {rest, rest, dhat, none, none}, 0, unlimited, found);
+  std::vector<std::array<int, 4>> pairs;
+  for (const ContactPair& pair : found.pairs) pairs.push_back(pair.vertices);
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
-/// Found pairs along a way, and the names of what they are made of.
-class IpcSweep final : public ContactSweep {
+/// The candidates of a linear motion.
+class IpcCandidates final : public CollisionCandidates {
  public:
-  IpcSweep(Positions x0, Positions x1, double fraction, Candidates found,
-           std::shared_ptr<const ObstacleTree> tree, std::shared_ptr<const RestingCloth> rest,
-           const BarrierParameters& barrier, double friction, double keep)
+  IpcCandidates(Positions x0, Positions x1, double fraction, ClassifiedPairs found,
+                std::shared_ptr<const ObstacleTree> tree, std::shared_ptr<const RestCloth> rest,
+                const BarrierParameters& barrier, double friction, double min_gap_fraction)
       : x0_(std::move(x0)),
         x1_(std::move(x1)),
         fraction_(fraction),
@@ -60,101 +61,102 @@ class IpcSweep final : public ContactSweep {
         rest_(std::move(rest)),
         barrier_(barrier),
         friction_(friction),
-        keep_(keep) {}
+        min_gap_fraction_(min_gap_fraction) {}
 
   StepLimit max_step() const override {
     StepLimit limit{1, ""};
-    for (const std::vector<ContactPair>* pairs : {&found_.repelling, &found_.passive}) {
+    for (const std::vector<ContactPair>* pairs : {&found_.barrier, &found_.ccd_only}) {
       int blocking = -1;
-      const double part = additive_ccd(x0_, x1_, obstacles_.vertices, *pairs, keep_, blocking);
+      const double part = additive_ccd(x0_, x1_, obstacles_.vertices, *pairs, min_gap_fraction_, blocking);
       if (part < limit.fraction)
         limit = {part,
                  blocking < 0 ? "" : name_of((*pairs)[blocking], obstacles_, static_cast<int>(x0_.rows()))};
     }
-    if (fraction_ < 1 && limit.fraction == 1)
-      limit.by = "the number of pairs that a longer way may bring together";
+    if (fraction_ < 1 && limit.fraction == 1) limit.by = "the limit on candidate pairs of one step";
     limit.fraction *= fraction_;
     return limit;
   }
 
-  std::unique_ptr<ContactSet> build(const Positions& x) const override {
-    auto pairs = make_pair_contacts(x, obstacles_.vertices, found_.repelling, barrier_);
-    if (found_.near.empty()) return pairs;
-    std::vector<std::unique_ptr<ContactSet>> sets;
+  std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
+    auto pairs = make_pair_contacts(x, obstacles_.vertices, found_.barrier, barrier_);
+    if (found_.vertex_triangles.empty()) return pairs;
+    std::vector<std::unique_ptr<Collisions>> sets;
     sets.push_back(
-        make_surface_contacts(SurfaceContacts::of(x, obstacles_, tree_->coefficients, found_.near,
-                                                  rest_->surface.vertex_area, friction_, barrier_.range),
+        make_surface_contacts(SurfaceContacts::of(x, obstacles_, tree_->coefficients, found_.vertex_triangles,
+                                                  rest_->surface.vertex_area, friction_, barrier_.dhat),
                               barrier_));
     sets.push_back(std::move(pairs));
-    return std::make_unique<ContactStack>(std::move(sets));
+    return std::make_unique<CollisionStack>(std::move(sets));
   }
 
-  /// At the way's beginning, of the pairs that have a barrier.
+  /// At x0, over the pairs with a barrier.
   SmallestGap smallest_gap() const {
     const int n = static_cast<int>(x0_.rows());
     SmallestGap smallest;
-    smallest.range = barrier_.range;
+    smallest.dhat = barrier_.dhat;
     smallest.stiffness = barrier_.stiffness;
     const ContactPair* nearest = nullptr;
-    const auto look_at = [&](const ContactPair& pair) {
+    const auto visit = [&](const ContactPair& pair) {
       const PairPositions at = positions_of(pair, x0_, obstacles_.vertices);
-      if (!within_range(pair, at, barrier_.range)) return;
-      const double gap = contact_at(pair, at, barrier_.range).gap();
+      if (!is_within_dhat(pair, at, barrier_.dhat)) return;
+      const double gap = contact_at(pair, at, barrier_.dhat).gap();
       if (gap >= smallest.gap) return;
       smallest.gap = gap;
       nearest = &pair;
     };
-    for (const ContactPair& pair : found_.repelling) look_at(pair);
-    for (const ContactPair& pair : found_.passive)  // of an obstacle: what is near a vertex repels it
-      if (pair.vertices[0] >= n || pair.vertices[3] >= n) look_at(pair);
+    for (const ContactPair& pair : found_.barrier) visit(pair);
+    // The surface's barrier acts on the vertices of CCD-only pairs with an obstacle.
+    for (const ContactPair& pair : found_.ccd_only)
+      if (pair.vertices[0] >= n || pair.vertices[3] >= n) visit(pair);
     if (nearest) smallest.between = name_of(*nearest, obstacles_, n);
     return smallest;
   }
 
  private:
-  Positions x0_, x1_;  // of the way as far as it was searched
-  double fraction_;    // of the way that was asked for
-  Candidates found_;
+  Positions x0_, x1_;  // the part of the motion that was searched
+  double fraction_;    // of the requested motion
+  ClassifiedPairs found_;
   std::shared_ptr<const ObstacleTree> tree_;
   const Obstacles& obstacles_;
-  std::shared_ptr<const RestingCloth> rest_;
+  std::shared_ptr<const RestCloth> rest_;
   BarrierParameters barrier_;
-  double friction_, keep_;
+  double friction_, min_gap_fraction_;
 };
 
 }  // namespace
 
-std::shared_ptr<const RestingCloth> RestingCloth::of(const Level& level, double range, bool self_contact) {
-  static Kept<RestingCloth> all;
+std::shared_ptr<const RestCloth> RestCloth::of(const Level& level, double dhat, bool self_contact) {
+  static WeakCache<RestCloth> all;
   const TriangleMesh& rest = level.rest;
   return all.find_or_make(
-      [&](const RestingCloth& cloth) {
-        return cloth.range == range && cloth.self_contact == self_contact &&
+      [&](const RestCloth& cloth) {
+        return cloth.dhat == dhat && cloth.self_contact == self_contact &&
                cloth.rest.vertices.rows() == rest.vertices.rows() && cloth.rest.vertices == rest.vertices &&
                same_triangles(cloth.rest.triangles, rest.triangles);
       },
       [&] {
-        RestingCloth cloth{rest, range, self_contact, Surface::of(rest, level.topology), {}};
-        if (self_contact) cloth.close = close_at_rest(cloth.surface, rest.vertices, range);
+        RestCloth cloth{rest, dhat, self_contact, Surface::of(rest, level.topology), {}};
+        if (self_contact)
+          cloth.rest_proximity_pairs = find_rest_proximity_pairs(cloth.surface, rest.vertices, dhat);
         return cloth;
       });
 }
 
-std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obstacles> obstacles, double range,
+std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obstacles> obstacles, double dhat,
                                                      BroadPhaseKind kind) {
-  static Kept<ObstacleTree> all;
+  static WeakCache<ObstacleTree> all;
   return all.find_or_make(
       [&](const ObstacleTree& tree) {
-        return tree.obstacles == obstacles && tree.range == range && tree.kind == kind;
+        return tree.obstacles == obstacles && tree.dhat == dhat && tree.kind == kind;
       },
       [&] {
         ObstacleTree tree{obstacles,
-                          range,
+                          dhat,
                           kind,
                           {},
-                          OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, range),
+                          OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat),
                           make_broad_phase(kind)};
-        tree.boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * range);
+        tree.boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
         tree.tree->update(tree.boxes.triangles);
         return tree;
       });
@@ -163,23 +165,23 @@ std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obsta
 BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> obstacles, const Level& level,
                    const Material& material)
     : friction_(p.friction),
-      keep_(p.keep),
+      min_gap_fraction_(p.min_gap_fraction),
       self_contact_(p.self_contact),
-      barrier_{p.range, p.stiffness.value_or(contact_stiffness(material)), p.slip_distance},
+      barrier_{p.dhat, p.stiffness.value_or(contact_stiffness(material)), p.friction_smoothing_distance},
       obstacles_(std::move(obstacles)),
-      obstacle_tree_(ObstacleTree::of(obstacles_, p.range, p.broad_phase)),
-      rest_(RestingCloth::of(level, p.range, p.self_contact)),
+      obstacle_tree_(ObstacleTree::of(obstacles_, p.dhat, p.broad_phase)),
+      rest_(RestCloth::of(level, p.dhat, p.self_contact)),
       cloth_(rest_->surface),
       broad_phase_(p.broad_phase),
       cloth_tree_(make_broad_phase(p.broad_phase)) {}
 
-bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits, FoundPairs& found,
+bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits, BroadPhasePairs& found,
                       Counts& counts) const {
-  const Way way{x0, x1, barrier_.range, obstacles_->vertices, obstacles_->vertices};
+  const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_->vertices, obstacles_->vertices};
   found.clear();
   counts = {};
-  const auto list_rows = [&](const Positions& end, const BroadPhase* obstacle_tree) {
-    boxes_.update(cloth_, x0, end, 0.5 * barrier_.range);
+  const auto find_triangle_pairs = [&](const Positions& end, const BroadPhase* obstacle_tree) {
+    boxes_.update(cloth_, x0, end, 0.5 * barrier_.dhat);
     cloth_tree_->update(boxes_.triangles);
     const long limit = limits.triangles - counts.triangles;
     if (!(obstacle_tree ? cloth_tree_->overlaps(*obstacle_tree, limit, rows_)
@@ -188,110 +190,115 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& li
     counts.triangles += static_cast<long>(rows_.items.size());
     return true;
   };
-  // What all of the cloth does together brings nothing of it nearer to the rest.
-  if (self_contact_ && !(list_rows(x1.rowwise() - (x1 - x0).colwise().mean(), nullptr) &&
-                         find_self_pairs(cloth_, boxes_, rows_, way, friction_, limits.primitives, found)))
+  // A translation of the whole cloth changes no distance within it.
+  if (self_contact_ && !(find_triangle_pairs(x1.rowwise() - (x1 - x0).colwise().mean(), nullptr) &&
+                         find_self_pairs(cloth_, boxes_, rows_, motion, friction_, limits.primitives, found)))
     return false;
-  if (!obstacles_->bodies.empty() && !(list_rows(x1, obstacle_tree_->tree.get()) &&
-                                       find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes,
-                                                           rows_, way, friction_, limits.primitives, found)))
+  if (!obstacles_->bodies.empty() &&
+      !(find_triangle_pairs(x1, obstacle_tree_->tree.get()) &&
+        find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes, rows_, motion, friction_,
+                            limits.primitives, found)))
     return false;
   counts.primitives = found.count();
   return true;
 }
 
-std::unique_ptr<ContactSweep> BoundIpc::sweep(const Positions& x0, const Positions& x1) const {
+std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions& x0,
+                                                                const Positions& x1) const {
   const std::lock_guard lock(busy_);
   const long size = std::max(cloth_.triangle_count(), 1000);
   Counts limits{48 * size, 16 * size}, counts;
-  FoundPairs found;
+  BroadPhasePairs found;
   Positions end = x1;
   double fraction = 1;
   for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {
-    if (tries == 1) {  // where much is near already, three times that is reasonable
+    if (tries == 1) {  // dense scenes: allow three times the pairs at x0
       search(x0, x0, {unlimited, unlimited}, found, counts);
-      const Counts usual = limits;
+      const Counts default_limits = limits;
       limits = {std::max(limits.triangles, 3 * counts.triangles),
                 std::max(limits.primitives, 3 * counts.primitives)};
-      if (!(limits == usual)) continue;
+      if (!(limits == default_limits)) continue;
     }
     fraction = tries < 20 ? 0.25 * fraction : 0;
     if (tries >= 20) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
-  Candidates candidates{std::move(found.pairs), {}, std::move(found.near)};
-  std::vector<ContactPair>& pairs = candidates.repelling;
-  const auto passive = std::stable_partition(pairs.begin(), pairs.end(), [this](const ContactPair& pair) {
-    return pair.weight > 0 && !std::binary_search(rest_->close.begin(), rest_->close.end(), pair.vertices);
+  ClassifiedPairs candidates{std::move(found.pairs), {}, std::move(found.vertex_triangles)};
+  std::vector<ContactPair>& pairs = candidates.barrier;
+  const auto ccd_only = std::stable_partition(pairs.begin(), pairs.end(), [this](const ContactPair& pair) {
+    return pair.weight > 0 && !std::binary_search(rest_->rest_proximity_pairs.begin(),
+                                                  rest_->rest_proximity_pairs.end(), pair.vertices);
   });
-  candidates.passive.assign(passive, pairs.end());
-  pairs.erase(passive, pairs.end());
-  return std::make_unique<IpcSweep>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
-                                    rest_, barrier_, friction_, keep_);
+  candidates.ccd_only.assign(ccd_only, pairs.end());
+  pairs.erase(ccd_only, pairs.end());
+  return std::make_unique<IpcCandidates>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
+                                         rest_, barrier_, friction_, min_gap_fraction_);
 }
 
 SmallestGap BoundIpc::smallest_gap(const Positions& x) const {
-  return static_cast<const IpcSweep&>(*sweep(x, x)).smallest_gap();
+  return static_cast<const IpcCandidates&>(*build_candidates(x, x)).smallest_gap();
 }
 
-StepLimit BoundIpc::max_move(const BoundContact& before, const Positions& x) const {
-  const Obstacles& from = *own_kind(before).obstacles_;
+StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) const {
+  const Obstacles& from = *as_ipc(before).obstacles_;
   if (&from == obstacles_.get()) return {};
-  return ObstacleWay(from, *obstacles_).max_move(cloth_, x, barrier_.range, broad_phase_);
+  return ObstacleTrajectory(from, *obstacles_).max_step(cloth_, x, barrier_.dhat, broad_phase_);
 }
 
-void BoundIpc::carry(const BoundContact& before, const Positions& x, Positions& from) const {
-  const BoundIpc& was = own_kind(before);
-  if (was.obstacles_ == obstacles_) return;
+void BoundIpc::advect(const BoundContact& before, const Positions& x, Positions& reference) const {
+  const BoundIpc& old = as_ipc(before);
+  if (old.obstacles_ == obstacles_) return;
   const int n = static_cast<int>(x.rows());
-  FoundPairs found;
+  BroadPhasePairs found;
   {
     Counts counts;
-    const std::lock_guard lock(was.busy_);
-    was.search(x, x, {unlimited, unlimited}, found, counts);
+    const std::lock_guard lock(old.busy_);
+    old.search(x, x, {unlimited, unlimited}, found, counts);
   }
-  MeanMoves moves(n);  // by friction's force
-  const Positions by = obstacles_->vertices - was.obstacles_->vertices;
-  const auto surface = SurfaceContacts::of(x, *was.obstacles_, was.obstacle_tree_->coefficients, found.near,
-                                           was.cloth_.vertex_area, was.friction_, was.barrier_.range);
+  AveragedContactDisplacement mean(n);  // weighted by friction force
+  const Positions obstacle_motion = obstacles_->vertices - old.obstacles_->vertices;
+  const auto surface =
+      SurfaceContacts::of(x, *old.obstacles_, old.obstacle_tree_->coefficients, found.vertex_triangles,
+                          old.cloth_.vertex_area, old.friction_, old.barrier_.dhat);
   for (const SurfaceContact& contact : surface.contacts) {
-    const std::vector<double> pressures = surface.pressures(contact, was.barrier_.range);
+    const std::vector<double> pressures = surface.pressures(contact, old.barrier_.dhat);
     for (int i = contact.first; i < contact.last; ++i) {
       const NearestFeature& f = surface.features[i];
-      Eigen::Vector3d move = Eigen::Vector3d::Zero();
+      Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
       for (int k = 0; k < 3; ++k)
-        if (f.vertices[k] >= 0) move += f.weights[k] * by.row(f.vertices[k]).transpose();
-      moves.add(contact.vertex, move, f.friction * pressures[i - contact.first]);
+        if (f.vertices[k] >= 0) displacement += f.weights[k] * obstacle_motion.row(f.vertices[k]).transpose();
+      mean.add(contact.vertex, displacement, f.friction * pressures[i - contact.first]);
     }
   }
   for (const ContactPair& pair : found.pairs) {
     const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
     if ((is_cloth(0) && is_cloth(3)) || pair.weight == 0 || pair.friction == 0) continue;
-    const PairPositions at = positions_of(pair, x, was.obstacles_->vertices);
-    if (!within_range(pair, at, was.barrier_.range)) continue;
-    const Contact contact = contact_at(pair, at, was.barrier_.range);
-    const PairPositions move = positions_of(pair, x, obstacles_->vertices) - at;
-    const Eigen::Vector3d of_obstacle = move * contact.closest.c.cwiseAbs();  // the cloth's columns are zero
+    const PairPositions at = positions_of(pair, x, old.obstacles_->vertices);
+    if (!is_within_dhat(pair, at, old.barrier_.dhat)) continue;
+    const Contact contact = contact_at(pair, at, old.barrier_.dhat);
+    const PairPositions displacement = positions_of(pair, x, obstacles_->vertices) - at;
+    // The displacement's columns of cloth vertices are zero.
+    const Eigen::Vector3d of_obstacle = displacement * contact.closest.c.cwiseAbs();
     for (int k = 0; k < 4; ++k)
       if (is_cloth(k))
-        moves.add(pair.vertices[k], of_obstacle,
-                  std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
+        mean.add(pair.vertices[k], of_obstacle,
+                 std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
   }
-  moves.move(from);
+  mean.add_to(reference);
 }
 
-std::vector<Touch> BoundIpc::intersections(const Positions& x) const {
+std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {
   const TriangleMesh cloth{x, cloth_.triangles};
-  std::vector<Touch> touches;
+  std::vector<Intersection> found;
   if (self_contact_)
     for (const TrianglePair& pair : self_intersections(cloth))
-      touches.push_back({"cloth triangle " + std::to_string(pair.first),
-                         "cloth triangle " + std::to_string(pair.second), pair.where});
+      found.push_back({"cloth triangle " + std::to_string(pair.first),
+                       "cloth triangle " + std::to_string(pair.second), pair.where});
   for (const Obstacle& body : obstacles_->bodies)
     for (const TrianglePair& pair : drape::intersections(cloth, body.mesh))
-      touches.push_back({"cloth triangle " + std::to_string(pair.first),
-                         body.name + " triangle " + std::to_string(pair.second), pair.where});
-  return touches;
+      found.push_back({"cloth triangle " + std::to_string(pair.first),
+                       body.name + " triangle " + std::to_string(pair.second), pair.where});
+  return found;
 }
 
 std::vector<TriangleMesh> BoundIpc::obstacles() const {
@@ -300,4 +307,4 @@ std::vector<TriangleMesh> BoundIpc::obstacles() const {
   return meshes;
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -8,80 +8,81 @@
 #include "plugins/contact/ipc/candidates.h"
 #include "plugins/contact/ipc/ipc.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// What a sweep found: pairs that repel each other, pairs that are only not to pass through each other, and
-/// the cloth's vertices with the triangles whose surface repels them.
-struct Candidates {
-  std::vector<ContactPair> repelling, passive;
-  std::vector<NearTriangle> near;
+/// Candidates by use: pairs with a barrier, pairs for CCD only, and cloth vertices with the obstacle
+/// triangles that may contribute to their barrier.
+struct ClassifiedPairs {
+  std::vector<ContactPair> barrier, ccd_only;
+  std::vector<VertexTriangleCandidate> vertex_triangles;
 };
 
-/// What follows from the cloth's rest shape. A level that is bound again, as conditions change, shares it.
-struct RestingCloth {
+/// Data of the cloth's rest shape, shared when the level is bound again under other loads.
+struct RestCloth {
   TriangleMesh rest;
-  double range = 0;  ///< d̂ [m]
+  double dhat = 0;  ///< d̂ [m]
   bool self_contact = true;
   Surface surface;
-  std::vector<std::array<int, 4>> close;  ///< self pairs that rest within the range, in order
+  std::vector<std::array<int, 4>> rest_proximity_pairs;  ///< self pairs within d̂ at rest, sorted
 
-  /// Kept for as long as somebody has it.
-  static std::shared_ptr<const RestingCloth> of(const Level& level, double range, bool self_contact);
+  /// Cached for as long as anyone owns it.
+  static std::shared_ptr<const RestCloth> of(const Level& level, double dhat, bool self_contact);
 };
 
-/// The obstacles' boxes, a tree of them and what else depends on the range, kept likewise.
+/// The obstacles' boxes, their BVH and what else depends on d̂; cached in the same way.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
-  double range;
+  double dhat;
   BroadPhaseKind kind;
   SweptBoxes boxes;
   OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;
 
-  static std::shared_ptr<const ObstacleTree> of(std::shared_ptr<const Obstacles> obstacles, double range,
+  static std::shared_ptr<const ObstacleTree> of(std::shared_ptr<const Obstacles> obstacles, double dhat,
                                                 BroadPhaseKind kind);
 };
 
-/// Contact `ipc` of one level.
-class BoundIpc final : public BoundContact, public MovableObstacles, public NamesSmallestGap {
+/// The contact model `ipc` bound to one level.
+class BoundIpc final : public BoundContact, public KinematicObstacles, public SmallestGapProvider {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
            const Material& material);
 
-  /// Shortened, and its max_step with it, where the whole way would bring more pairs together than are
-  /// reasonable to hold (see README.md, "Long steps").
-  std::unique_ptr<ContactSweep> sweep(const Positions& x0, const Positions& x1) const override;
-  std::vector<Touch> intersections(const Positions& x) const override;
+  /// Shortens the motion, and with it max_step, if it has too many candidate pairs (see README.md, "Long
+  /// steps").
+  std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
+                                                        const Positions& x1) const override;
+  std::vector<Intersection> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
 
   SmallestGap smallest_gap(const Positions& x) const override;
-  StepLimit max_move(const BoundContact& before, const Positions& x) const override;
-  void carry(const BoundContact& before, const Positions& x, Positions& from) const override;
+  StepLimit max_step(const BoundContact& before, const Positions& x) const override;
+  void advect(const BoundContact& before, const Positions& x, Positions& reference) const override;
 
  private:
-  /// Numbers of pairs, of triangles whose boxes overlap and of primitives that may come near.
+  /// Numbers of pairs: of triangles with overlapping boxes, and of primitives that may come within d̂.
   struct Counts {
     long triangles = 0, primitives = 0;
     bool operator==(const Counts&) const = default;
   };
-  /// False if there are more than `limits`. Called by one thread at a time.
-  bool search(const Positions& x0, const Positions& x1, const Counts& limits, FoundPairs& found,
+  /// Returns false if there are more pairs than `limits`. The caller holds busy_.
+  bool search(const Positions& x0, const Positions& x1, const Counts& limits, BroadPhasePairs& found,
               Counts& counts) const;
 
-  double friction_, keep_;
+  double friction_, min_gap_fraction_;
   bool self_contact_;
   BarrierParameters barrier_;
   std::shared_ptr<const Obstacles> obstacles_;
   std::shared_ptr<const ObstacleTree> obstacle_tree_;
-  std::shared_ptr<const RestingCloth> rest_;
+  std::shared_ptr<const RestCloth> rest_;
   const Surface& cloth_;
   BroadPhaseKind broad_phase_;
 
-  // Kept from call to call for speed alone: results do not depend on them.
+  // Reused between calls for speed; results do not depend on them.
   mutable std::mutex busy_;
   mutable std::unique_ptr<BroadPhase> cloth_tree_;
   mutable SweptBoxes boxes_;
   mutable AdjacencyList rows_;
 };
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -12,9 +12,9 @@
 
 #include "core/mesh/check.h"
 #include "core/mesh/intersections.h"
-#include "plugins/contact/ipc/kept.h"
+#include "plugins/contact/ipc/weak_cache.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -25,22 +25,22 @@ Point point(const TriangleMesh& mesh, int v) {
   return {mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
 }
 
-/// The wrap cuts a mesh into pieces of about alpha before anything else. Refused where there were more than
-/// memory is for, whatever alpha's bounds: a folded mesh has many times the area of its box.
-void refuse_too_many_pieces(const TriangleMesh& mesh, double alpha) {
-  constexpr double most_pieces = 2e7;
+/// The wrap first splits the mesh into pieces of about alpha. Throws if they would exceed memory: a folded
+/// mesh has many times the area of its box, so bounds on alpha do not suffice.
+void check_piece_count(const TriangleMesh& mesh, double alpha) {
+  constexpr double max_pieces = 2e7;
   double area = 0;
   for (const auto& t : mesh.triangles.rowwise()) {
     const Eigen::RowVector3d a = mesh.vertices.row(t[0]);
     area += 0.5 * (mesh.vertices.row(t[1]) - a).cross(mesh.vertices.row(t[2]) - a).norm();
   }
-  if (area / (alpha * alpha) > most_pieces)
+  if (area / (alpha * alpha) > max_pieces)
     throw std::runtime_error(
         "a cage would take more than 20 million pieces of its mesh; raise the cages' alpha");
 }
 
-SoundMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
-  refuse_too_many_pieces(mesh, alpha);
+ValidatedMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
+  check_piece_count(mesh, alpha);
   std::vector<Point> points;
   std::vector<std::array<std::size_t, 3>> faces;
   for (int v = 0; v < mesh.vertices.rows(); ++v) points.push_back(point(mesh, v));
@@ -50,27 +50,28 @@ SoundMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
   SurfaceMesh wrapped;
   CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped);
   wrapped.collect_garbage();
-  SoundMesh sound;
-  sound.mesh.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
+  ValidatedMesh validated;
+  validated.mesh.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
   for (const auto v : wrapped.vertices()) {
     const Point& p = wrapped.point(v);
-    sound.mesh.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
+    validated.mesh.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
   }
-  sound.mesh.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
+  validated.mesh.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
   Eigen::Index row = 0;
   for (const auto f : wrapped.faces()) {
     int k = 0;
     for (const auto v : wrapped.vertices_around_face(wrapped.halfedge(f)))
-      sound.mesh.triangles(row, k++) = static_cast<int>(v.idx());
+      validated.mesh.triangles(row, k++) = static_cast<int>(v.idx());
     ++row;
   }
-  if (const auto faults = check_mesh(sound.mesh); !faults.empty()) throw std::runtime_error(faults[0]);
-  sound.topology = Topology::of(sound.mesh.triangles, static_cast<int>(sound.mesh.vertices.rows()));
-  return sound;
+  if (const auto faults = check_mesh(validated.mesh); !faults.empty()) throw std::runtime_error(faults[0]);
+  validated.topology =
+      Topology::of(validated.mesh.triangles, static_cast<int>(validated.mesh.vertices.rows()));
+  return validated;
 }
 
-/// A vertex of each connected part.
-std::vector<int> one_of_each_part(const SoundMesh& mesh) {
+/// One vertex of each connected component.
+std::vector<int> one_vertex_per_component(const ValidatedMesh& mesh) {
   const int n = static_cast<int>(mesh.mesh.vertices.rows());
   std::vector<char> seen(n, 0);
   std::vector<int> found, queue;
@@ -91,22 +92,23 @@ std::vector<int> one_of_each_part(const SoundMesh& mesh) {
 }
 
 struct Cages {
-  std::shared_ptr<const SoundMesh> mesh;
+  std::shared_ptr<const ValidatedMesh> mesh;
   CageParameters parameters;
-  std::vector<std::shared_ptr<const SoundMesh>> wraps;
+  std::vector<std::shared_ptr<const ValidatedMesh>> wraps;
 };
 
-Cages make_cages(const std::shared_ptr<const SoundMesh>& mesh, const CageParameters& p) {
+Cages make_cages(const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& p) {
   const Positions& x = mesh->mesh.vertices;
   const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
-  Cages cages{mesh, p, std::vector<std::shared_ptr<const SoundMesh>>(p.count)};
+  Cages cages{mesh, p, std::vector<std::shared_ptr<const ValidatedMesh>>(p.count)};
   double size = diagonal;
   for (int k = p.count - 1; k >= 0; --k, size *= p.growth) {
     const bool innermost = k == p.count - 1;
-    const std::shared_ptr<const SoundMesh>& inner = innermost ? mesh : cages.wraps[k + 1];
-    cages.wraps[k] = std::make_shared<const SoundMesh>(wrap(inner->mesh, p.alpha * size, p.offset * size));
-    if (const std::string fault = why_not_around(*cages.wraps[k], *inner); !fault.empty())
-      throw std::runtime_error("cage " + std::to_string(k) + " is not around " +
+    const std::shared_ptr<const ValidatedMesh>& inner = innermost ? mesh : cages.wraps[k + 1];
+    cages.wraps[k] =
+        std::make_shared<const ValidatedMesh>(wrap(inner->mesh, p.alpha * size, p.offset * size));
+    if (const std::string fault = enclosure_fault(*cages.wraps[k], *inner); !fault.empty())
+      throw std::runtime_error("cage " + std::to_string(k) + " does not enclose " +
                                (innermost ? "its mesh" : "cage " + std::to_string(k + 1)) + ": " + fault +
                                "; change the cages' alpha or offset");
   }
@@ -120,29 +122,31 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
   d.add("count", &P::count)
       .at_least(0)
       .at_most(8)
-      .meaning("how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
+      .meaning(
+          "number of cages: level l of the cloth collides with cage l, finer levels with the obstacle "
+          "itself");
   d.add("alpha", &P::alpha)
       .unit("1")
       .at_least(5e-3)
       .below(1)
       .meaning(
-          "of the innermost cage, in diagonals of the mesh's box: smaller holes are closed, and triangles "
-          "are about as large")
+          "of the innermost cage's alpha wrap, over the diagonal of the mesh's bounding box: size of the "
+          "holes that are closed, and of triangles")
       .source("Portaneri et al. 2022");
   d.add("offset", &P::offset)
       .unit("1")
       .at_least(1e-4)
       .below(1)
-      .meaning("likewise, how far it is from the mesh")
+      .meaning("offset of the innermost cage from the mesh, over the same diagonal")
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth)
       .unit("1")
       .at_least(1)
       .at_most(10)
-      .meaning("alpha and offset of a cage over those of the next finer one");
+      .meaning("ratio of a cage's alpha and offset to those of the next finer one");
 }
 
-std::string why_not_around(const SoundMesh& outer, const SoundMesh& inner) {
+std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inner) {
   if ((outer.topology.edge_triangles.col(1).array() < 0).any()) return "it is not closed";
   const auto text = [](const TrianglePair& pair, const std::string& what) {
     return "its triangle " + std::to_string(pair.first) + what + std::to_string(pair.second);
@@ -157,19 +161,19 @@ std::string why_not_around(const SoundMesh& outer, const SoundMesh& inner) {
     surface.add_face(SurfaceMesh::Vertex_index(t[0]), SurfaceMesh::Vertex_index(t[1]),
                      SurfaceMesh::Vertex_index(t[2]));
   const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
-  for (const int v : one_of_each_part(inner))
+  for (const int v : one_vertex_per_component(inner))
     if (side(point(inner.mesh, v)) != CGAL::ON_BOUNDED_SIDE)
       return "that one's vertex " + std::to_string(v) + " is outside";
   return "";
 }
 
-std::shared_ptr<const std::vector<std::shared_ptr<const SoundMesh>>> cages_of(
-    const std::shared_ptr<const SoundMesh>& mesh, const CageParameters& parameters) {
-  static Kept<Cages> all;
+std::shared_ptr<const std::vector<std::shared_ptr<const ValidatedMesh>>> cages_of(
+    const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& parameters) {
+  static WeakCache<Cages> all;
   const auto cages =
       all.find_or_make([&](const Cages& made) { return made.mesh == mesh && made.parameters == parameters; },
                        [&] { return make_cages(mesh, parameters); });
   return {cages, &cages->wraps};
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/plugin/parameters.h"
-#include "plugins/contact/ipc/sound_mesh.h"
+#include "plugins/contact/ipc/validated_mesh.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// Closed surfaces around an obstacle, each around the next: what coarse levels of the cloth meet.
+/// Nested closed surfaces around an obstacle, which replace it on coarse levels of the cloth.
 struct CageParameters {
   int count = 0;
   double alpha = 0.05, offset = 0.01, growth = 2;
@@ -17,14 +17,14 @@ struct CageParameters {
   bool operator==(const CageParameters&) const = default;
 };
 
-/// The outermost first; made once for as long as somebody has them. Alpha wraps (Portaneri et al. 2022) of a
-/// mesh, of that wrap, and so on. Throws std::runtime_error if one is not around the next, by exact
+/// The cages, outermost first, cached for as long as anyone owns them: alpha wraps (Portaneri et al. 2022) of
+/// the mesh, of that wrap, and so on. Throws std::runtime_error if a cage does not enclose the next, by exact
 /// predicates.
-std::shared_ptr<const std::vector<std::shared_ptr<const SoundMesh>>> cages_of(
-    const std::shared_ptr<const SoundMesh>& mesh, const CageParameters& parameters);
+std::shared_ptr<const std::vector<std::shared_ptr<const ValidatedMesh>>> cages_of(
+    const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& parameters);
 
-/// Why `outer` is not around `inner`, by exact predicates: empty if it is closed, does not intersect itself
-/// nor touch `inner`, and has all of its parts inside.
-std::string why_not_around(const SoundMesh& outer, const SoundMesh& inner);
+/// Why `outer` does not enclose `inner`, by exact predicates. Empty if `outer` is closed, free of
+/// self-intersections and of contact with `inner`, and has all components of `inner` inside.
+std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inner);
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -8,47 +8,46 @@
 #include "plugins/contact/ipc/obstacle.h"
 #include "plugins/contact/ipc/surface.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// The cloth's straight way from x0 to x1, that of the obstacles' vertices, and how near counts.
-struct Way {
+/// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
+struct LinearMotion {
   const Positions& x0;
   const Positions& x1;
-  double range;  ///< d̂ [m]
+  double dhat;  ///< d̂ [m]
   const Positions &obstacles0, &obstacles1;
 };
 
-/// Pairs of primitives, and cloth vertices with obstacle triangles once more: for each vertex ascending by
-/// triangle, and in a row.
-struct FoundPairs {
+/// Candidate pairs before classification. `vertex_triangles` repeats those of a cloth vertex and an obstacle
+/// triangle: contiguous for each vertex and ascending by triangle.
+struct BroadPhasePairs {
   std::vector<ContactPair> pairs;
-  std::vector<NearTriangle> near;
+  std::vector<VertexTriangleCandidate> vertex_triangles;
 
   long count() const { return static_cast<long>(pairs.size()); }
   void clear() {
     pairs.clear();
-    near.clear();
+    vertex_triangles.clear();
   }
 };
 
-/// Share of |e|²|e'|² (at rest) below which nearly parallel edges are faded out: IPC (Li et al. 2020),
-/// section 5.
-inline constexpr double mollifier_share = 1e-3;
+/// ε of the mollifier over |e|²|e'|² of the edges' rest lengths (Li et al. 2020, section 5).
+inline constexpr double mollifier_threshold = 1e-3;
 
-// Both list the pairs of primitives that may come within the range on the way, from rows of triangles whose
-// swept boxes overlap, in an order that depends on the rows alone. They append to `found`, and give up and
-// return false once its pairs are more than `limit`.
+// Both append to `found` the pairs of primitives that may come within d̂ during the motion, from rows of
+// triangles whose swept boxes overlap. The order depends on the rows alone. They return false once `found`
+// has more than `limit` pairs.
 
-/// Vertices against triangles and edges against edges of the cloth; none that share a vertex.
-bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows, const Way& way,
-                     double friction, long limit, FoundPairs& found);
+/// Vertex-triangle and edge-edge pairs of the cloth that share no vertex.
+bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows,
+                     const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found);
 
 /// Cloth vertices against obstacle triangles, obstacle vertices against cloth triangles, edges against edges.
-/// The first have no weight as pairs: their barrier is that of the nearest features. The others have less
-/// where the obstacle stands out of the cloth between its vertices by less than an eighth of the range, and
-/// none where it is flat: there the cloth's vertices come first.
+/// The first have weight 0 as pairs: their barrier is that of the nearest features. The weight of the others
+/// is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0 where it is flat:
+/// there the cloth's vertices make contact first.
 bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Obstacles& obstacles,
-                         const SweptBoxes& obstacle_boxes, const AdjacencyList& rows, const Way& way,
-                         double friction, long limit, FoundPairs& found);
+                         const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
+                         const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found);
 
-}  // namespace drape
+}  // namespace drape::ipc

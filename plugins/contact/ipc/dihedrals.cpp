@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
-constexpr double flat_to_rounding = 1e-6;  // [rad]
+constexpr double flat_angle = 1e-6;  // [rad]
 
 }  // namespace
 
 Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   const Eigen::Index n = vertices.rows(), count = surface.edges.rows();
-  // From each edge at right angles to its first and second triangle's third vertex.
-  Positions away[2] = {Positions::Zero(count, 3), Positions::Zero(count, 3)};
+  // The heights of each edge's two triangles, from the edge to the opposite vertex.
+  Positions height[2] = {Positions::Zero(count, 3), Positions::Zero(count, 3)};
   std::vector<char> triangles(count, 0);
   for (int t = 0; t < surface.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
@@ -22,26 +22,26 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
       const Eigen::RowVector3d from = vertices.row(surface.edges(e, 0)),
                                along = vertices.row(surface.edges(e, 1)) - from,
                                to = vertices.row(surface.triangles(t, k)) - from;
-      away[std::min<int>(triangles[e]++, 1)].row(e) = to - to.dot(along) / along.squaredNorm() * along;
+      height[std::min<int>(triangles[e]++, 1)].row(e) = to - to.dot(along) / along.squaredNorm() * along;
     }
   Dihedrals d;
   d.edge_angle.resize(count);
   d.edge_curvature.setZero(count);
   d.vertex_angle.setZero(n);
   d.vertex_curvature.setZero(n);
-  d.edge_on_border.resize(count);
-  d.vertex_on_border.assign(n, 0);
+  d.edge_on_boundary.resize(count);
+  d.vertex_on_boundary.assign(n, 0);
   for (int e = 0; e < count; ++e) {
-    const Eigen::Vector3d a = away[0].row(e), b = away[1].row(e);
-    d.edge_on_border[e] = triangles[e] != 2;
-    d.edge_angle[e] = d.edge_on_border[e] ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
-    if (d.edge_angle[e] < flat_to_rounding) d.edge_angle[e] = 0;
-    if (!d.edge_on_border[e]) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
+    const Eigen::Vector3d a = height[0].row(e), b = height[1].row(e);
+    d.edge_on_boundary[e] = triangles[e] != 2;
+    d.edge_angle[e] = d.edge_on_boundary[e] ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
+    if (d.edge_angle[e] < flat_angle) d.edge_angle[e] = 0;
+    if (!d.edge_on_boundary[e]) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
     for (int k = 0; k < 2; ++k) {
       const int v = surface.edges(e, k);
       d.vertex_angle[v] = std::max(d.vertex_angle[v], d.edge_angle[e]);
       d.vertex_curvature[v] = std::max(d.vertex_curvature[v], d.edge_curvature[e]);
-      if (d.edge_on_border[e]) d.vertex_on_border[v] = 1;
+      if (d.edge_on_boundary[e]) d.vertex_on_boundary[v] = 1;
     }
   }
   return d;
@@ -52,21 +52,21 @@ double Dihedrals::sagitta(double angle, double curvature, double length) {
 }
 
 OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihedrals& dihedrals,
-                                              double range) {
-  constexpr double whole = 0.25, none = 1;  // radii of curvature of four ranges, and of one
+                                              double dhat) {
+  constexpr double full = 0.25, none = 1;  // curvatures in 1/d̂ with coefficient 1, and with 0
   const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
   OperatorCoefficients c;
   c.edge.setZero(count);
   c.vertex.setZero(n);
   for (int e = 0; e < count; ++e) {
-    if (dihedrals.edge_on_border[e]) continue;
-    const double bends = (range * dihedrals.edge_curvature[e] - whole) / (none - whole);
-    c.edge[e] = 1 - std::clamp(bends, 0.0, 1.0);
+    if (dihedrals.edge_on_boundary[e]) continue;
+    const double reduction = (dhat * dihedrals.edge_curvature[e] - full) / (none - full);
+    c.edge[e] = 1 - std::clamp(reduction, 0.0, 1.0);
     for (int k = 0; k < 2; ++k)
-      if (const int v = surface.edges(e, k); !dihedrals.vertex_on_border[v])
+      if (const int v = surface.edges(e, k); !dihedrals.vertex_on_boundary[v])
         c.vertex[v] = std::max(c.vertex[v], c.edge[e]);
   }
   return c;
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -4,19 +4,19 @@
 
 #include "plugins/contact/ipc/surface.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// How a surface bends at its edges and vertices.
+/// Dihedral angles and curvatures of a surface at its edges and vertices.
 struct Dihedrals {
-  Eigen::VectorXd edge_angle;      ///< between the normals of its two triangles, 0 where flat to rounding;
-                                   ///< π on the border [rad]
-  Eigen::VectorXd edge_curvature;  ///< that over the mean height of the two triangles; 0 on the border [1/m]
-  Eigen::VectorXd vertex_angle, vertex_curvature;  ///< the largest of its edges'
-  std::vector<char> edge_on_border, vertex_on_border;
+  Eigen::VectorXd
+      edge_angle;  ///< between its triangles' normals; 0 if flat up to round-off, π on the boundary [rad]
+  Eigen::VectorXd edge_curvature;  ///< angle over the triangles' mean height; 0 on the boundary [1/m]
+  Eigen::VectorXd vertex_angle, vertex_curvature;  ///< the largest of the vertex's edges
+  std::vector<char> edge_on_boundary, vertex_on_boundary;
 
   static Dihedrals of(const Surface& surface, const Positions& vertices);
 
-  /// How far the surface stands out of a cloth edge of this length that is laid across the edge [m].
+  /// How far the surface protrudes through a chord of this length laid across the edge [m].
   double edge_sagitta(int e, double length) const {
     return sagitta(edge_angle[e], edge_curvature[e], length);
   }
@@ -28,17 +28,17 @@ struct Dihedrals {
   static double sagitta(double angle, double curvature, double length);
 };
 
-/// Coefficients of the improved maximum operator (Li et al. 2023): what triangles, whose coefficients are 1,
-/// count again along the edges and at the vertices that they share. In a function of the distance, summed
-/// over triangles, less edges, plus vertices, a flat region of any triangulation counts once.
+/// Coefficients of the improved maximum operator (Li et al. 2023). Triangles have 1; the coefficients of
+/// edges and vertices correct for the points that triangles share. With a function of the distance summed
+/// over triangles, minus edges, plus vertices, a flat region counts once in any triangulation.
 struct OperatorCoefficients {
   Eigen::VectorXd edge, vertex;
 
-  /// Edges where the surface bends on the scale of the range count less, down to not at all: there are pits
-  /// so narrow that a point sees all round them at once, for which the sum could turn to attraction.
-  /// A vertex has the largest coefficient of its edges. So whatever is nearest to a point has 1 or more in
-  /// all, and where coefficients are alike the sum is a mean of those with and without the operator.
-  static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double range);
+  /// Reduces the coefficients of edges whose radius of curvature is below 4 d̂, to 0 at d̂: around a narrower
+  /// pit the sum could become attractive. A vertex has the largest coefficient of its edges. The nearest
+  /// feature of a point therefore has a total of at least 1. With equal coefficients the sum is the mean of
+  /// those with and without the operator.
+  static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double dhat);
 };
 
-}  // namespace drape
+}  // namespace drape::ipc

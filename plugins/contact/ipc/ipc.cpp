@@ -5,50 +5,55 @@
 #include "core/plugin/bounds.h"
 #include "core/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
-#include "plugins/contact/ipc/kept.h"
+#include "plugins/contact/ipc/weak_cache.h"
 
-namespace drape {
+namespace drape::ipc {
 
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
-  d.add("self_contact", &P::self_contact).meaning("keep the cloth apart from itself");
-  d.add_sections("obstacles", &P::obstacles).meaning("meshes in the cloth's way");
+  d.add("self_contact", &P::self_contact).meaning("whether the cloth collides with itself");
+  d.add_sections("obstacles", &P::obstacles).meaning("triangle meshes that the cloth collides with");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("Coulomb's μ, of the cloth against itself and against obstacles without their own");
-  d.add("range", &P::range)
+      .meaning("Coulomb's friction coefficient μ, for self-contact and for obstacles without their own");
+  d.add("dhat", &P::dhat)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(1e3)
-      .meaning("distance d̂ below which the barrier acts")
+      .meaning("barrier activation distance d̂: the barrier acts on smaller gaps")
+      .formerly("range")
       .source("docs/method.md, section 6");
   d.add("stiffness", &P::stiffness)
       .unit("Pa")
       .at_least(1e-9)
       .at_most(bounds::largest_modulus)
-      .meaning("κ: pressure of the barrier is κ |b'(distance / d̂)|; null chooses it from the cloth's weight")
+      .meaning(
+          "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
+          "weight per area")
       .source("core/contact/stiffness.h");
-  d.add("slip_distance", &P::slip_distance)
+  d.add("friction_smoothing_distance", &P::friction_smoothing_distance)
       .unit("m")
       .at_least(1e-12)
       .at_most(1e3)
-      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
-      .source("Li et al. 2020, equation 14: ε_v h");
-  d.add("keep", &P::keep)
+      .meaning("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
+      .formerly("slip_distance")
+      .source("Li et al. 2020, eq. 14");
+  d.add("min_gap_fraction", &P::min_gap_fraction)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
-      .meaning("part of every gap that a step leaves")
-      .source("Li et al. 2021, additive CCD");
+      .meaning("fraction of every gap that a step must leave: s of additive CCD")
+      .formerly("keep")
+      .source("Li et al. 2021");
   d.add_choice("broad_phase", &P::broad_phase,
                {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
-      .meaning("how near pairs are looked for: own tree, FCL's or CGAL's; they find the same");
+      .meaning("broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {
-  static Kept<Obstacles> all;
+  static WeakCache<Obstacles> all;
   int levels = 1;
   for (const ObstacleParameters& p : p_.obstacles) levels = std::max(levels, p.cages.count + 1);
   for (int level = 0; level < levels; ++level) {
@@ -66,9 +71,9 @@ std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& mate
                                     level, material);
 }
 
-}  // namespace drape
+}  // namespace drape::ipc
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::ContactModel, drape::Ipc>(
-      "ipc", "IPC's barrier and friction: the cloth against itself and against triangle meshes.");
+  registry.add<drape::ContactModel, drape::ipc::Ipc>(
+      "ipc", "IPC's barrier and friction, for self-contact and triangle-mesh obstacles.");
 }

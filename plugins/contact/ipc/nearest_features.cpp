@@ -6,15 +6,15 @@
 
 #include "core/contact/pair_geometry.h"
 
-namespace drape {
+namespace drape::ipc {
 
 using Eigen::Vector3d;
 
 namespace {
 
-constexpr double cancelled = 1e-12;
+constexpr double zero_coefficient = 1e-12;
 
-/// The parameter in [0, 1] of the segment's point that is nearest to p.
+/// The parameter in [0, 1] of the segment's point nearest to p.
 double nearest(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   const Vector3d u = b - a;
   return std::clamp((p - a).dot(u) / u.squaredNorm(), 0.0, 1.0);
@@ -25,19 +25,19 @@ double nearest(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
 void FeatureSearch::add_triangle(const Vector3d& p, int t) {
   const auto v = obstacles_.surface.triangles.row(t);
   PairPositions x;
-  x << p, place(v[0]), place(v[1]), place(v[2]);
-  if (box_distance(PairKind::point_triangle, x) >= range_) return;
+  x << p, position(v[0]), position(v[1]), position(v[2]);
+  if (box_distance(PairKind::point_triangle, x) >= dhat_) return;
   const Closest found = closest(PairKind::point_triangle, x);
-  if (connection(x, found).squaredNorm() >= range_ * range_) return;
+  if (connection(x, found).squaredNorm() >= dhat_ * dhat_) return;
   near_.push_back(t);
   const auto is_in = [&](int k) { return found.c[1 + k] != 0; };
   if (found.free == 2) {
-    cells_.push_back({Kind::face, t, 1});
+    terms_.push_back({Kind::face, t, 1});
   } else if (found.free == 1) {
     const int opposite = !is_in(0) ? 0 : !is_in(1) ? 1 : 2;
-    cells_.push_back({Kind::edge, obstacles_.surface.triangle_edges(t, opposite), 1});
+    terms_.push_back({Kind::edge, obstacles_.surface.triangle_edges(t, opposite), 1});
   } else {
-    cells_.push_back({Kind::vertex, v[is_in(0) ? 0 : is_in(1) ? 1 : 2], 1});
+    terms_.push_back({Kind::vertex, v[is_in(0) ? 0 : is_in(1) ? 1 : 2], 1});
   }
 }
 
@@ -45,58 +45,59 @@ void FeatureSearch::add_edge(const Vector3d& p, int e) {
   const double coefficient = coefficients_.edge[e];
   if (coefficient == 0) return;
   const auto v = obstacles_.surface.edges.row(e);
-  const Vector3d a = place(v[0]), b = place(v[1]);
+  const Vector3d a = position(v[0]), b = position(v[1]);
   const double t = nearest(p, a, b);
-  if ((p - a - t * (b - a)).squaredNorm() >= range_ * range_) return;
+  if ((p - a - t * (b - a)).squaredNorm() >= dhat_ * dhat_) return;
   if (t > 0 && t < 1)
-    cells_.push_back({Kind::edge, e, -coefficient});
+    terms_.push_back({Kind::edge, e, -coefficient});
   else
-    cells_.push_back({Kind::vertex, v[t > 0], -coefficient});
+    terms_.push_back({Kind::vertex, v[t > 0], -coefficient});
 }
 
 void FeatureSearch::add_vertex(const Vector3d& p, int v) {
-  if (coefficients_.vertex[v] > 0 && (p - place(v)).squaredNorm() < range_ * range_)
-    cells_.push_back({Kind::vertex, v, coefficients_.vertex[v]});
+  if (coefficients_.vertex[v] > 0 && (p - position(v)).squaredNorm() < dhat_ * dhat_)
+    terms_.push_back({Kind::vertex, v, coefficients_.vertex[v]});
 }
 
-void FeatureSearch::append(const Vector3d& p, const NearTriangle* begin, const NearTriangle* end,
-                           std::vector<NearestFeature>& features) {
-  cells_.clear();
+void FeatureSearch::append(const Vector3d& p, const VertexTriangleCandidate* begin,
+                           const VertexTriangleCandidate* end, std::vector<NearestFeature>& features) {
+  terms_.clear();
   near_.clear();
-  for (const NearTriangle* at = begin; at != end; ++at) add_triangle(p, at->triangle);
-  // An edge or vertex within range has all of its triangles within range, the one that owns it too.
+  for (const VertexTriangleCandidate* at = begin; at != end; ++at) add_triangle(p, at->triangle);
+  // If an edge or vertex is within d̂, so are all of its triangles, including its representative.
   if (near_.size() > 1)
     for (const int t : near_)
       for (int k = 0; k < 3; ++k) {
-        if (obstacles_.surface.owns_edge(t, k)) add_edge(p, obstacles_.surface.triangle_edges(t, k));
-        if (obstacles_.surface.owns_vertex(t, k)) add_vertex(p, obstacles_.surface.triangles(t, k));
+        if (obstacles_.surface.represents_edge(t, k)) add_edge(p, obstacles_.surface.triangle_edges(t, k));
+        if (obstacles_.surface.represents_vertex(t, k)) add_vertex(p, obstacles_.surface.triangles(t, k));
       }
-  std::ranges::sort(cells_, {}, [](const Cell& cell) { return std::tuple(cell.kind, cell.number); });
-  for (std::size_t i = 0; i < cells_.size();) {
-    Cell sum = cells_[i];
-    for (++i; i < cells_.size() && cells_[i].kind == sum.kind && cells_[i].number == sum.number; ++i)
-      sum.coefficient += cells_[i].coefficient;
-    if (std::abs(sum.coefficient) > cancelled) features.push_back(feature(p, sum));
+  std::ranges::sort(terms_, {}, [](const Term& term) { return std::tuple(term.kind, term.index); });
+  for (std::size_t i = 0; i < terms_.size();) {
+    Term sum = terms_[i];
+    for (++i; i < terms_.size() && terms_[i].kind == sum.kind && terms_[i].index == sum.index; ++i)
+      sum.coefficient += terms_[i].coefficient;
+    if (std::abs(sum.coefficient) > zero_coefficient) features.push_back(feature(p, sum));
   }
 }
 
-NearestFeature FeatureSearch::feature(const Vector3d& p, const Cell& cell) const {
+NearestFeature FeatureSearch::feature(const Vector3d& p, const Term& term) const {
   const Surface& surface = obstacles_.surface;
-  NearestFeature f{{-1, -1, -1}, Vector3d::UnitX(), {}, Vector3d::Zero(), 0, cell.coefficient, 0};
-  if (cell.kind == Kind::face) {
-    for (int k = 0; k < 3; ++k) f.vertices[k] = surface.triangles(cell.number, k);
-    const Vector3d a = place(f.vertices[0]), b = place(f.vertices[1]), c = place(f.vertices[2]);
+  NearestFeature f{{-1, -1, -1}, Vector3d::UnitX(), {}, Vector3d::Zero(), 0, term.coefficient, 0};
+  if (term.kind == Kind::face) {
+    for (int k = 0; k < 3; ++k) f.vertices[k] = surface.triangles(term.index, k);
+    const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]), c = position(f.vertices[2]);
     f.weights = -closest_point_triangle(p, a, b, c).c.tail<3>();
-    // By the plane's normal: of a gap that is small against the triangle, the connection has few digits left.
+    // The plane's normal is accurate even if the gap is small compared with the triangle; p minus the nearest
+    // point is not.
     f.normal = (b - a).cross(c - a).normalized();
     f.distance = f.normal.dot(p - a);
     if (f.distance < 0) {
       f.distance = -f.distance;
       f.normal = -f.normal;
     }
-  } else if (cell.kind == Kind::edge) {
-    for (int k = 0; k < 2; ++k) f.vertices[k] = surface.edges(cell.number, k);
-    const Vector3d a = place(f.vertices[0]), b = place(f.vertices[1]);
+  } else if (term.kind == Kind::edge) {
+    for (int k = 0; k < 2; ++k) f.vertices[k] = surface.edges(term.index, k);
+    const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]);
     const double t = nearest(p, a, b);
     f.weights = {1 - t, t, 0};
     f.along = (b - a).normalized();
@@ -106,8 +107,8 @@ NearestFeature FeatureSearch::feature(const Vector3d& p, const Cell& cell) const
     f.distance = r.norm();
     f.normal = r / f.distance;
   } else {
-    f.vertices[0] = cell.number;
-    const Vector3d r = p - place(cell.number);
+    f.vertices[0] = term.index;
+    const Vector3d r = p - position(term.index);
     f.distance = r.norm();
     f.normal = r / f.distance;
   }
@@ -115,4 +116,4 @@ NearestFeature FeatureSearch::feature(const Vector3d& p, const Cell& cell) const
   return f;
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

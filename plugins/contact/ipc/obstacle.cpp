@@ -8,12 +8,12 @@
 #include "core/mesh/turn.h"
 #include "core/plugin/bounds.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
-using Frames = std::vector<std::shared_ptr<const SoundMesh>>;
+using Frames = std::vector<std::shared_ptr<const ValidatedMesh>>;
 
-/// What differs between the triangles of two files; empty if nothing does.
+/// The difference between the triangles of two files, empty if there is none.
 std::string difference(const Triangles& first, const Triangles& other) {
   const auto in_each = [](Eigen::Index a, Eigen::Index b, const std::string& what) {
     return "has " + std::to_string(b) + what + " and not " + std::to_string(a);
@@ -26,130 +26,125 @@ std::string difference(const Triangles& first, const Triangles& other) {
 
 Frames read_animation(const ObstacleParameters& p) {
   if (!p.file.empty()) throw std::runtime_error("\"file\" and \"animation\" exclude each other");
-  if (p.cages.count > 0)
-    throw std::runtime_error("\"cages\" are made around a mesh that keeps its form: leave out \"animation\"");
+  if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
   Frames frames;
   for (const std::string& file : p.animation) {
-    frames.push_back(sound_mesh_of(file));
+    frames.push_back(load_validated_mesh(file));
     if (const auto what = difference(frames[0]->mesh.triangles, frames.back()->mesh.triangles); !what.empty())
       throw std::runtime_error(file + " " + what + " as " + p.animation[0] +
                                " has; all files of an animation must have the same triangles");
   }
   const int last = static_cast<int>(frames.size()) - 1;
-  if (p.frame > last)
-    throw std::runtime_error("its animation ends with frame " + std::to_string(last) +
-                             ", the number of files less 1");
+  if (p.frame > last) throw std::runtime_error("the last frame of its animation is " + std::to_string(last));
   return frames;
 }
 
-Form form_of(const ObstacleParameters& p) {
-  Form form;
-  form.pose = {p.scale, p.rotate, p.translate};
+ObstacleGeometry geometry_of(const ObstacleParameters& p) {
+  ObstacleGeometry geometry;
+  geometry.pose = {p.scale, p.rotate, p.translate};
   if (p.shape == "box") {
-    form.frames = {unit_box()};
-    form.stretch = p.size;
+    geometry.frames = {unit_box()};
+    geometry.local_scale = p.size;
   } else if (p.shape == "sphere") {
-    form.frames = {unit_sphere(p.subdivisions)};
-    form.stretch.setConstant(p.radius);
+    geometry.frames = {unit_sphere(p.subdivisions)};
+    geometry.local_scale.setConstant(p.radius);
   } else if (!p.animation.empty()) {
-    form.frames = read_animation(p);
-    form.frame = p.frame;
+    geometry.frames = read_animation(p);
+    geometry.frame = p.frame;
   } else if (p.file.empty()) {
     throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read, or \"animation\"");
   } else {
-    form.frames = {sound_mesh_of(p.file)};
+    geometry.frames = {load_validated_mesh(p.file)};
   }
-  return form;
+  return geometry;
 }
 
 }  // namespace
 
 void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
-  d.add("name", &P::name).meaning("what messages call it; by default its shape and number");
+  d.add("name", &P::name).meaning("name in messages; by default its shape and index");
   d.add("shape", &P::shape)
       .choices({"file", "box", "sphere"})
-      .meaning(
-          "what it is: a mesh from a file, a box about the origin, or a sphere about it whose vertices lie "
-          "on the sphere");
+      .meaning("a mesh from a file, a box centred at the origin, or an icosphere centred at the origin");
   d.add("file", &P::file).path().meaning("shape file: the mesh (.obj, .off or .ply), relative to this file");
   d.add("size", &P::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape box: its edges");
+      .meaning("shape box: edge lengths");
   d.add("radius", &P::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape sphere: its radius");
+      .meaning("shape sphere: radius");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
-      .meaning(
-          "shape sphere: how often an icosahedron's triangles are cut in four, 20 · 4^subdivisions in all");
+      .meaning("shape sphere: subdivisions of the icosahedron; it has 20 · 4^subdivisions triangles");
   d.add("animation", &P::animation)
       .path()
-      .meaning("in place of file: meshes with the same triangles, which it takes the form of in turn");
+      .meaning("instead of file: the frames of an animation, meshes with the same triangles");
   d.add("frame", &P::frame)
       .unit("1")
       .at_least(0)
       .at_most(1e6)
-      .meaning("which mesh of the animation it is, from 0 and linear in between; for a schedule to change");
+      .meaning("frame of the animation, from 0, interpolated linearly; for a schedule to change");
   d.add_section("cages", &P::cages)
-      .meaning("closed surfaces around it that coarse levels of the cloth meet in its place");
+      .meaning("closed surfaces around the obstacle that replace it on coarse levels");
   d.add("scale", &P::scale)
       .unit("1")
       .at_least(1 / bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .meaning("factor on its coordinates, the first of its moves");
+      .meaning("scale factor, applied first");
   d.add("rotate", &P::rotate)
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("then turned about the x, then the y, then the z axis by these angles");
+      .meaning("rotation about the x, then y, then z axis, applied second");
   d.add("translate", &P::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("then moved by this");
+      .meaning("translation, applied last");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("its μ against the cloth, in place of the model's");
+      .meaning("its friction coefficient μ; null: the model's");
 }
 
 Eigen::Matrix3d Pose::linear() const { return scale * turned(rotate); }
 
-Positions Form::own_places(double frame) const {
+Positions ObstacleGeometry::local_positions(double frame) const {
   const int last = static_cast<int>(frames.size()) - 1;
   const int k = std::clamp(static_cast<int>(std::floor(frame)), 0, std::max(0, last - 1));
   const double part = std::clamp(frame - k, 0.0, 1.0);
   const Positions& from = frames[k]->mesh.vertices;
-  Positions places =
+  Positions positions =
       part == 0 || last == 0 ? from : Positions((1 - part) * from + part * frames[k + 1]->mesh.vertices);
-  for (int c = 0; c < 3; ++c) places.col(c) *= stretch[c];
-  return places;
+  for (int c = 0; c < 3; ++c) positions.col(c) *= local_scale[c];
+  return positions;
 }
 
 Obstacle Obstacle::of(const ObstacleParameters& p, int number, int level) {
   Obstacle body{p.name.empty() ? p.shape + " " + std::to_string(number) : p.name, {}, p.friction, {}};
   try {
-    body.form = form_of(p);
+    body.geometry = geometry_of(p);
     if (p.cages.count > 0) {
-      const auto cages = cages_of(body.form.frames[0], p.cages);
+      const auto cages = cages_of(body.geometry.frames[0], p.cages);
       if (level < p.cages.count)
-        body.form.frames = {std::shared_ptr<const SoundMesh>(cages, (*cages)[level].get())};
+        body.geometry.frames = {std::shared_ptr<const ValidatedMesh>(cages, (*cages)[level].get())};
     }
   } catch (const std::exception& error) {
     throw std::runtime_error("obstacle \"" + body.name + "\": " + reason_of(error));
   }
   if (level < p.cages.count) body.name += " (cage " + std::to_string(level) + ")";
-  const Form& form = body.form;
-  body.mesh.triangles = form.frames[0]->mesh.triangles;
-  body.mesh.vertices = (form.own_places(form.frame) * form.pose.linear().transpose()).rowwise() +
-                       form.pose.translate.transpose();
+  const ObstacleGeometry& geometry = body.geometry;
+  body.mesh.triangles = geometry.frames[0]->mesh.triangles;
+  body.mesh.vertices =
+      (geometry.local_positions(geometry.frame) * geometry.pose.linear().transpose()).rowwise() +
+      geometry.pose.translate.transpose();
   return body;
 }
 
@@ -161,8 +156,9 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.vertices.conservativeResize(n + m, 3);
     all.vertices.bottomRows(m) = body.mesh.vertices;
     all.first_vertex.push_back(n + m);
-    all.surface.append(Surface::of(body.mesh, body.form.frames.empty() ? Topology::of(body.mesh.triangles, m)
-                                                                       : body.form.frames[0]->topology));
+    all.surface.append(Surface::of(body.mesh, body.geometry.frames.empty()
+                                                  ? Topology::of(body.mesh.triangles, m)
+                                                  : body.geometry.frames[0]->topology));
   }
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);
@@ -174,4 +170,4 @@ int Obstacles::body_of(int vertex) const {
   return static_cast<int>(next - first_vertex.begin()) - 1;
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

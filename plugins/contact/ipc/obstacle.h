@@ -8,12 +8,12 @@
 #include "core/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/dihedrals.h"
-#include "plugins/contact/ipc/sound_mesh.h"
 #include "plugins/contact/ipc/surface.h"
+#include "plugins/contact/ipc/validated_mesh.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// One obstacle as a config describes it: a mesh, turned and moved.
+/// One obstacle in a config: a mesh and its transform.
 struct ObstacleParameters {
   std::string name, shape = "file", file;
   Eigen::Vector3d size{1, 1, 1};
@@ -29,7 +29,7 @@ struct ObstacleParameters {
   static void declare(Declaration<ObstacleParameters>& d);
 };
 
-/// From an obstacle's own coordinates to the world's: scaled, turned, moved.
+/// The transform from an obstacle's local to world coordinates: scale, rotate, translate.
 struct Pose {
   double scale = 1;
   Eigen::Vector3d rotate{0, 0, 0};  ///< about x, then y, then z [degree]
@@ -39,30 +39,32 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// What an obstacle's places follow from.
-struct Form {
-  std::vector<std::shared_ptr<const SoundMesh>> frames;  ///< one mesh, or a sequence with the same triangles
-  double frame = 0;                                      ///< which of them, linear in between
-  Eigen::Vector3d stretch{1, 1, 1};                      ///< factors on its own coordinates
+/// The local mesh and the transform that determine an obstacle's vertex positions.
+struct ObstacleGeometry {
+  std::vector<std::shared_ptr<const ValidatedMesh>>
+      frames;                            ///< one mesh, or an animation with the same triangles
+  double frame = 0;                      ///< index of the frame, interpolated linearly
+  Eigen::Vector3d local_scale{1, 1, 1};  ///< factors on local coordinates
   Pose pose;
 
-  Positions own_places(double frame) const;
-  bool operator==(const Form&) const = default;
+  Positions local_positions(double frame) const;  ///< [m]
+  bool operator==(const ObstacleGeometry&) const = default;
 };
 
-/// A mesh in the way of the cloth.
+/// A mesh that the cloth collides with.
 struct Obstacle {
   std::string name;
-  TriangleMesh mesh;               ///< where it is in the world
-  std::optional<double> friction;  ///< μ, where it has its own
-  Form form{};                     ///< without frames it never moves
+  TriangleMesh mesh;               ///< in world coordinates
+  std::optional<double> friction;  ///< μ, if it has its own
+  ObstacleGeometry geometry{};     ///< without frames the obstacle is static
 
-  /// Whether it follows from the same; never where that is not known.
+  /// Whether both have the same geometry; false without frames.
   bool operator==(const Obstacle& other) const {
-    return !form.frames.empty() && form == other.form && name == other.name && friction == other.friction;
+    return !geometry.frames.empty() && geometry == other.geometry && name == other.name &&
+           friction == other.friction;
   }
-  /// Throws std::runtime_error naming the obstacle if the file cannot be read or the mesh is not sound.
-  /// On a level that has a cage, it is that.
+  /// Throws std::runtime_error naming the obstacle if its file cannot be read or its mesh is invalid. On a
+  /// level with a cage, the obstacle is the cage.
   static Obstacle of(const ObstacleParameters& parameters, int number,
                      int level = std::numeric_limits<int>::max());
 };
@@ -70,7 +72,7 @@ struct Obstacle {
 /// All obstacles of a scene as one surface.
 struct Obstacles {
   std::vector<Obstacle> bodies;
-  std::vector<int> first_vertex;  ///< of each body, and their number in all
+  std::vector<int> first_vertex;  ///< of each body, then the total number
   Positions vertices;             ///< of all bodies
   Surface surface;
   Dihedrals dihedrals;
@@ -79,4 +81,4 @@ struct Obstacles {
   int body_of(int vertex) const;
 };
 
-}  // namespace drape
+}  // namespace drape::ipc

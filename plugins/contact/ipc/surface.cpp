@@ -4,7 +4,7 @@
 
 #include "core/numerics/parallel.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
 template <class Rows>
@@ -21,7 +21,7 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
   s.triangles = rest.triangles;
   s.triangle_edges = topology.triangle_edges;
   s.edges = topology.edges;
-  s.owned.assign(rest.triangles.rows(), 0);
+  s.representative.assign(rest.triangles.rows(), 0);
   s.vertex_area.setZero(rest.vertices.rows());
   s.edge_area.setZero(s.edges.rows());
   s.triangle_area.resize(rest.triangles.rows());
@@ -32,8 +32,8 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
       const int v = s.triangles(t, k), e = s.triangle_edges(t, k);
       s.vertex_area[v] += s.triangle_area[t] / 3;
       s.edge_area[e] += s.triangle_area[t] / 3;
-      if (*topology.vertex_triangles.begin(v) == t) s.owned[t] |= static_cast<char>(1 << k);
-      if (topology.edge_triangles(e, 0) == t) s.owned[t] |= static_cast<char>(1 << (3 + k));
+      if (*topology.vertex_triangles.begin(v) == t) s.representative[t] |= static_cast<char>(1 << k);
+      if (topology.edge_triangles(e, 0) == t) s.representative[t] |= static_cast<char>(1 << (3 + k));
     }
   }
   s.edge_length_squared.resize(s.edges.rows());
@@ -48,7 +48,7 @@ void Surface::append(const Surface& other) {
   append_rows(triangles, Triangles(other.triangles.array() + n));
   append_rows(triangle_edges, Triangles(other.triangle_edges.array() + e));
   append_rows(edges, decltype(edges)(other.edges.array() + n));
-  owned.insert(owned.end(), other.owned.begin(), other.owned.end());
+  representative.insert(representative.end(), other.representative.begin(), other.representative.end());
   append_rows(vertex_area, other.vertex_area);
   append_rows(edge_area, other.edge_area);
   append_rows(triangle_area, other.triangle_area);
@@ -70,4 +70,4 @@ void SweptBoxes::update(const Surface& surface, const Positions& x0, const Posit
   });
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

@@ -5,29 +5,29 @@
 #include "core/contact/box.h"
 #include "core/mesh/topology.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// A triangle surface as contact sees it: rest areas and lengths, and which triangle each vertex and edge is
-/// looked up through, so that pairs of triangles yield every pair of primitives once (Curtis et al. 2008,
-/// "representative triangles").
+/// A triangle surface for contact: rest areas and lengths, and the representative triangle of each vertex and
+/// edge (Curtis et al. 2008), through which pairs of triangles yield every pair of primitives once.
 struct Surface {
   Triangles triangles;
   Triangles triangle_edges;  ///< column k: the edge opposite vertex k
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges;
-  std::vector<char> owned;  ///< a triangle's bits: k for its vertex k, 3 + k for the edge opposite it
-  Eigen::VectorXd vertex_area, edge_area, triangle_area;  ///< thirds of adjacent rest areas; its own [m²]
-  Eigen::VectorXd edge_length_squared;                    ///< at rest [m²]
+  std::vector<char> representative;  ///< bits per triangle: k for vertex k, 3 + k for the edge opposite it
+  Eigen::VectorXd vertex_area, edge_area,
+      triangle_area;                    ///< a third of the adjacent areas; its own, at rest [m²]
+  Eigen::VectorXd edge_length_squared;  ///< at rest [m²]
 
   static Surface of(const TriangleMesh& rest, const Topology& topology);
-  /// Adds another surface, whose vertices, edges and triangles follow this one's.
+  /// Appends another surface. Its vertices, edges and triangles follow this one's.
   void append(const Surface& other);
 
   int triangle_count() const { return static_cast<int>(triangles.rows()); }
-  bool owns_vertex(int t, int k) const { return (owned[t] >> k & 1) != 0; }
-  bool owns_edge(int t, int k) const { return (owned[t] >> (3 + k) & 1) != 0; }
+  bool represents_vertex(int t, int k) const { return (representative[t] >> k & 1) != 0; }
+  bool represents_edge(int t, int k) const { return (representative[t] >> (3 + k) & 1) != 0; }
 };
 
-/// Boxes of a surface that moves straight from x0 to x1, each `margin` larger than what it holds.
+/// Bounding boxes of a surface's linear motion from x0 to x1, inflated by `margin` [m].
 struct SweptBoxes {
   std::vector<Box> vertices, triangles;
 
@@ -39,4 +39,4 @@ struct SweptBoxes {
   }
 };
 
-}  // namespace drape
+}  // namespace drape::ipc

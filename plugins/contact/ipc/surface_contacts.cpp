@@ -8,7 +8,7 @@
 #include "core/contact/friction.h"
 #include "core/numerics/parallel.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
@@ -22,12 +22,12 @@ Matrix3d projected(const Matrix3d& h, Projection projection) {
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-class SurfaceSet final : public ContactSet {
+class SurfaceCollisions final : public Collisions {
  public:
-  SurfaceSet(SurfaceContacts all, const BarrierParameters& parameters)
+  SurfaceCollisions(SurfaceContacts all, const BarrierParameters& parameters)
       : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {
     parallel_for(static_cast<int>(barriers_.size()), grain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) barriers_[i] = barrier(all_.features[i].distance / p_.range);
+      for (int i = begin; i < end; ++i) barriers_[i] = barrier(all_.features[i].distance / p_.dhat);
     });
     double sum = 0;
     for (const SurfaceContact& contact : all_.contacts)
@@ -36,8 +36,8 @@ class SurfaceSet final : public ContactSet {
         smallest_gap_ = std::min(smallest_gap_, f.distance);
         sum += contact.weight * f.coefficient * barriers_[i].value;
       }
-    // Where a vertex touches, terms of both signs may be infinite.
-    value_ = smallest_gap_ > 0 ? p_.stiffness * p_.range * sum : std::numeric_limits<double>::infinity();
+    // For a gap of 0 the sum would be ∞ - ∞.
+    value_ = smallest_gap_ > 0 ? p_.stiffness * p_.dhat * sum : std::numeric_limits<double>::infinity();
   }
 
   int contact_count() const override { return static_cast<int>(all_.features.size()); }
@@ -63,7 +63,7 @@ class SurfaceSet final : public ContactSet {
       const SurfaceContact& contact = all_.contacts[k];
       Matrix3d h = Matrix3d::Zero();
       for (int i = contact.first; i < contact.last; ++i) h += stiffness(contact, i) * curvature(i);
-      // One plane's b'' n nᵀ is positive semidefinite.
+      // The Hessian b'' n nᵀ of a single plane is positive semidefinite.
       const NearestFeature& first = all_.features[contact.first];
       const bool is_one_plane = contact.last == contact.first + 1 && first.is_face() && first.coefficient > 0;
       if (!projection.is_exact() && !is_one_plane) h = projected(h, projection);
@@ -71,10 +71,11 @@ class SurfaceSet final : public ContactSet {
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& from, const Slips& slips) const override {
+  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                           const TangentialDisplacements& displacements) const override {
     std::vector<FrictionContact> frictions;
     for (const SurfaceContact& contact : all_.contacts) {
-      const std::vector<double> pressures = all_.pressures(contact, p_.range);
+      const std::vector<double> pressures = all_.pressures(contact, p_.dhat);
       for (int i = contact.first; i < contact.last; ++i) {
         const NearestFeature& f = all_.features[i];
         const double force = f.friction * p_.stiffness * pressures[i - contact.first];
@@ -86,7 +87,7 @@ class SurfaceSet final : public ContactSet {
                                force});
       }
     }
-    return make_friction(std::move(frictions), from, slips, p_.slip_distance);
+    return make_friction(std::move(frictions), reference, displacements, p_.friction_smoothing_distance);
   }
 
  private:
@@ -99,7 +100,7 @@ class SurfaceSet final : public ContactSet {
   /// The Hessian of d̂ b(distance / d̂).
   Matrix3d curvature(int i) const {
     const NearestFeature& f = all_.features[i];
-    Matrix3d h = barriers_[i].second / p_.range * f.normal * f.normal.transpose();
+    Matrix3d h = barriers_[i].second / p_.dhat * f.normal * f.normal.transpose();
     if (!f.is_face())
       h += barriers_[i].first / f.distance *
            (Matrix3d::Identity() - f.normal * f.normal.transpose() - f.along * f.along.transpose());
@@ -108,7 +109,7 @@ class SurfaceSet final : public ContactSet {
 
   SurfaceContacts all_;
   BarrierParameters p_;
-  std::vector<Derivatives> barriers_;  // by distance / d̂
+  std::vector<Derivatives> barriers_;  // of each feature, by distance / d̂
   double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
 };
 
@@ -116,20 +117,20 @@ class SurfaceSet final : public ContactSet {
 
 SurfaceContacts SurfaceContacts::of(const Positions& x, const Obstacles& obstacles,
                                     const OperatorCoefficients& coefficients,
-                                    const std::vector<NearTriangle>& near, const Eigen::VectorXd& vertex_area,
-                                    double friction, double range) {
-  std::vector<int> start;  // of each vertex' entries
-  for (int i = 0; i < static_cast<int>(near.size()); ++i)
-    if (i == 0 || near[i].vertex != near[i - 1].vertex) start.push_back(i);
+                                    const std::vector<VertexTriangleCandidate>& candidates,
+                                    const Eigen::VectorXd& vertex_area, double friction, double dhat) {
+  std::vector<int> start;  // first candidate of each vertex
+  for (int i = 0; i < static_cast<int>(candidates.size()); ++i)
+    if (i == 0 || candidates[i].vertex != candidates[i - 1].vertex) start.push_back(i);
   const int count = static_cast<int>(start.size());
-  start.push_back(static_cast<int>(near.size()));
+  start.push_back(static_cast<int>(candidates.size()));
   std::vector<SurfaceContacts> pieces((count + grain - 1) / grain);
   parallel_for(count, grain, [&](int begin, int end) {
     SurfaceContacts& piece = pieces[begin / grain];
-    FeatureSearch search(obstacles, coefficients, friction, range);
+    FeatureSearch search(obstacles, coefficients, friction, dhat);
     for (int k = begin; k < end; ++k) {
-      const int first = static_cast<int>(piece.features.size()), v = near[start[k]].vertex;
-      search.append(x.row(v), &near[start[k]], near.data() + start[k + 1], piece.features);
+      const int first = static_cast<int>(piece.features.size()), v = candidates[start[k]].vertex;
+      search.append(x.row(v), &candidates[start[k]], candidates.data() + start[k + 1], piece.features);
       if (const int last = static_cast<int>(piece.features.size()); last > first)
         piece.contacts.push_back({v, vertex_area[v], first, last});
     }
@@ -147,30 +148,31 @@ SurfaceContacts SurfaceContacts::of(const Positions& x, const Obstacles& obstacl
   return all;
 }
 
-std::vector<double> SurfaceContacts::pressures(const SurfaceContact& contact, double range) const {
+std::vector<double> SurfaceContacts::pressures(const SurfaceContact& contact, double dhat) const {
   const int count = contact.last - contact.first;
   const NearestFeature* f = features.data() + contact.first;
   std::vector<double> pressures(count);
   for (int i = 0; i < count; ++i)
-    pressures[i] = -contact.weight * f[i].coefficient * barrier(f[i].distance / range).first;
+    pressures[i] = -contact.weight * f[i].coefficient * barrier(f[i].distance / dhat).first;
   for (int i = 0; i < count; ++i) {
     while (pressures[i] < 0) {
-      int most_alike = -1;
+      int most_similar = -1;
       for (int k = 0; k < count; ++k)
         if (pressures[k] > 0 &&
-            (most_alike < 0 || f[k].normal.dot(f[i].normal) > f[most_alike].normal.dot(f[i].normal)))
-          most_alike = k;
-      const double taken = most_alike < 0 ? -pressures[i] : std::min(-pressures[i], pressures[most_alike]);
-      if (most_alike >= 0) pressures[most_alike] -= taken;
-      pressures[i] = taken == -pressures[i] ? 0 : pressures[i] + taken;
+            (most_similar < 0 || f[k].normal.dot(f[i].normal) > f[most_similar].normal.dot(f[i].normal)))
+          most_similar = k;
+      const double amount =
+          most_similar < 0 ? -pressures[i] : std::min(-pressures[i], pressures[most_similar]);
+      if (most_similar >= 0) pressures[most_similar] -= amount;
+      pressures[i] = amount == -pressures[i] ? 0 : pressures[i] + amount;
     }
   }
   return pressures;
 }
 
-std::unique_ptr<ContactSet> make_surface_contacts(SurfaceContacts contacts,
+std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
                                                   const BarrierParameters& parameters) {
-  return std::make_unique<SurfaceSet>(std::move(contacts), parameters);
+  return std::make_unique<SurfaceCollisions>(std::move(contacts), parameters);
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

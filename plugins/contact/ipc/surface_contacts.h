@@ -6,33 +6,34 @@
 #include "core/contact/pair_contacts.h"
 #include "plugins/contact/ipc/nearest_features.h"
 
-namespace drape {
+namespace drape::ipc {
 
-/// The features of one vertex of the cloth.
+/// A cloth vertex in contact with the obstacles' surface.
 struct SurfaceContact {
   int vertex;
-  double weight;    ///< its area [m²]
-  int first, last;  ///< its features are [first, last)
+  double weight;    ///< the vertex's rest area [m²]
+  int first, last;  ///< range [first, last) of its features
 };
 
-/// Cloth vertices within range of the obstacles, and what they see of them.
+/// The cloth vertices within d̂ of the obstacles, with their nearest features.
 struct SurfaceContacts {
   std::vector<SurfaceContact> contacts;
   std::vector<NearestFeature> features;
 
-  /// `near` is ascending by triangle for each vertex, whose entries follow each other.
+  /// `candidates` must be contiguous for each vertex and ascending by triangle.
   static SurfaceContacts of(const Positions& x, const Obstacles& obstacles,
-                            const OperatorCoefficients& coefficients, const std::vector<NearTriangle>& near,
-                            const Eigen::VectorXd& vertex_area, double friction, double range);
+                            const OperatorCoefficients& coefficients,
+                            const std::vector<VertexTriangleCandidate>& candidates,
+                            const Eigen::VectorXd& vertex_area, double friction, double dhat);
 
-  /// A contact's normal forces over κ, by feature, none below 0 [m²]: what a feature with a negative
-  /// coefficient takes away is taken from those whose normals are most like its own.
-  std::vector<double> pressures(const SurfaceContact& contact, double range) const;
+  /// A contact's normal forces over κ, per feature and non-negative [m²]. The force of a feature with a
+  /// negative coefficient is subtracted from the features with the most similar normals.
+  std::vector<double> pressures(const SurfaceContact& contact, double dhat) const;
 };
 
-/// The barrier κ d̂ Σ_contacts weight Σ_features coefficient · b(distance / d̂). Its Hessian is a 3×3 block a
-/// vertex, projected as a whole.
-std::unique_ptr<ContactSet> make_surface_contacts(SurfaceContacts contacts,
+/// The barrier κ d̂ Σ_contacts weight Σ_features coefficient · b(distance / d̂). Its Hessian has one 3×3 block
+/// per vertex, which is projected.
+std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
                                                   const BarrierParameters& parameters);
 
-}  // namespace drape
+}  // namespace drape::ipc

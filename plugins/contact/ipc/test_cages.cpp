@@ -7,12 +7,13 @@
 #include "tests/support/command.h"
 
 using namespace drape;
+using namespace drape::ipc;
 using Vector = Eigen::Vector3d;
 using Catch::Contains;
 
 namespace {
 
-/// A ball with horns: not convex, and in two parts.
+/// A ball with horns and a box beside it: not convex, two components.
 TriangleMesh horned() {
   TriangleMesh mesh = unit_sphere(3)->mesh;
   for (int v = 0; v < mesh.vertices.rows(); ++v)
@@ -35,18 +36,18 @@ ObstacleParameters with_cages(const std::string& file, int count) {
   return p;
 }
 
-SoundMesh sound(const TriangleMesh& mesh) {
+ValidatedMesh validated(const TriangleMesh& mesh) {
   return {mesh, Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()))};
 }
 
-SoundMesh placed(SoundMesh mesh, double scale, const Eigen::RowVector3d& move) {
+ValidatedMesh placed(ValidatedMesh mesh, double scale, const Eigen::RowVector3d& move) {
   mesh.mesh.vertices = (scale * mesh.mesh.vertices).rowwise() + move;
   return mesh;
 }
 
 }  // namespace
 
-TEST_CASE("ipc: cages are around each other, and moved as their obstacle is") {
+TEST_CASE("ipc: cages enclose each other and have their obstacle's transform") {
   const Scratch folder;
   const std::string file = (folder / "horned.ply").string();
   write_mesh(file, horned());
@@ -63,29 +64,30 @@ TEST_CASE("ipc: cages are around each other, and moved as their obstacle is") {
   CHECK(levels[4].mesh.vertices == itself.mesh.vertices);
   for (int l = 0; l < 3; ++l) {
     INFO(l);
-    CHECK(why_not_around(sound(levels[l].mesh), sound(levels[l + 1].mesh)).empty());
-    CHECK(!why_not_around(sound(levels[l + 1].mesh), sound(levels[l].mesh)).empty());
+    CHECK(enclosure_fault(validated(levels[l].mesh), validated(levels[l + 1].mesh)).empty());
+    CHECK(!enclosure_fault(validated(levels[l + 1].mesh), validated(levels[l].mesh)).empty());
     if (l < 2) CHECK(levels[l].mesh.triangles.rows() < levels[l + 1].mesh.triangles.rows());
   }
-  CHECK(levels[0].form.frames == Obstacle::of(p, 0, 0).form.frames);  // not made twice
+  CHECK(levels[0].geometry.frames == Obstacle::of(p, 0, 0).geometry.frames);  // cached
 }
 
-TEST_CASE("ipc: what is not around is said") {
-  const SoundMesh ball = *unit_sphere(2), box = *unit_box();
-  CHECK(why_not_around(ball, placed(box, 0.5, {0, 0, 0})).empty());
-  CHECK_THAT(why_not_around(ball, placed(box, 0.5, {3, 0, 0})), Contains("vertex 0 is outside"));
-  CHECK_THAT(why_not_around(ball, placed(box, 0.5, {0.9, 0, 0})),
+TEST_CASE("ipc: a cage that does not enclose its mesh is described") {
+  const ValidatedMesh ball = *unit_sphere(2), box = *unit_box();
+  CHECK(enclosure_fault(ball, placed(box, 0.5, {0, 0, 0})).empty());
+  CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {3, 0, 0})), Contains("vertex 0 is outside"));
+  CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {0.9, 0, 0})),
              Contains(" intersects that one's triangle "));
-  CHECK_THAT(why_not_around(placed(box, 0.5, {0, 0, 0}), ball), Contains("vertex 0 is outside"));
-  CHECK_THAT(why_not_around(sound(grid({1, 1}, 3, 3, Diagonals::one_way)), ball), Contains("not closed"));
-  // One part inside, one outside.
-  CHECK_THAT(why_not_around(placed(*unit_sphere(3), 0.2, {0, 0, 0}), sound(horned())),
+  CHECK_THAT(enclosure_fault(placed(box, 0.5, {0, 0, 0}), ball), Contains("vertex 0 is outside"));
+  CHECK_THAT(enclosure_fault(validated(grid({1, 1}, 3, 3, Diagonals::one_way)), ball),
+             Contains("not closed"));
+  // One component inside, one outside.
+  CHECK_THAT(enclosure_fault(placed(*unit_sphere(3), 0.2, {0, 0, 0}), validated(horned())),
              Contains("is outside"));
-  // Touching is not around.
-  CHECK(!why_not_around(box, placed(box, 0.5, {0.25, 0, 0})).empty());
+  // A cage may not touch what it encloses.
+  CHECK(!enclosure_fault(box, placed(box, 0.5, {0.25, 0, 0})).empty());
 }
 
-TEST_CASE("ipc: a level of the cloth meets the cage of its number") {
+TEST_CASE("ipc: a level of the cloth collides with the cage of its index") {
   const Scratch folder;
   const std::string file = (folder / "horned.ply").string();
   write_mesh(file, horned());
@@ -97,8 +99,8 @@ TEST_CASE("ipc: a level of the cloth meets the cage of its number") {
   const TriangleMesh itself = horned();
   CHECK(on(1).vertices == itself.vertices);
   CHECK(on(5).vertices == itself.vertices);
-  CHECK(why_not_around(sound(on(0)), sound(itself)).empty());
+  CHECK(enclosure_fault(validated(on(0)), validated(itself)).empty());
   p.obstacles[0].animation = {"a.ply"};
   p.obstacles[0].file.clear();
-  CHECK_THROWS_WITH(Ipc(p), Contains("\"horned\"") && Contains("leave out \"animation\""));
+  CHECK_THROWS_WITH(Ipc(p), Contains("\"horned\"") && Contains("without \"animation\""));
 }

@@ -12,6 +12,7 @@
 #include "tests/support/registry.h"
 
 using namespace drape;
+using namespace drape::ipc;
 
 namespace {
 
@@ -55,10 +56,10 @@ Positions folded(const Level& level, int layers, double gap, double noise, unsig
   return x;
 }
 
-/// All pairs of primitives whose distance at x is below the range, with its own idea of the weights. The
-/// obstacles are convex, so that of each a cloth vertex sees the triangle that is nearest to it.
+/// All pairs of primitives whose distance at x is below d̂, with independently computed
+/// weights. The obstacles are convex: a cloth vertex has contact with the nearest triangle of each.
 std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstacles, const Positions& x,
-                                     double range, double friction) {
+                                     double dhat, double friction) {
   const Surface own = Surface::of(level.rest, level.topology);
   const Surface& other = obstacles.surface;
   const int n = level.vertex_count();
@@ -67,15 +68,15 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
     const PairPositions at = positions_of(pair, x, obstacles.vertices);
     return connection(at, closest(pair.kind, at)).norm();
   };
-  const auto share = [&](const auto& bends, int k, double length) {
-    const double out = std::max(bends.first[k] * length / 4, bends.second[k] * length * length / 8);
-    return std::min(1.0, out / (range / 8));
+  const auto protrusion_factor = [&](const auto& bends, int k, double length) {
+    const double sagitta = std::max(bends.first[k] * length / 4, bends.second[k] * length * length / 8);
+    return std::min(1.0, sagitta / (dhat / 8));
   };
   const Dihedrals& d = obstacles.dihedrals;
   const std::pair<const Eigen::VectorXd&, const Eigen::VectorXd&> at_edge(d.edge_angle, d.edge_curvature),
       at_vertex(d.vertex_angle, d.vertex_curvature);
   const auto add = [&](ContactPair pair, double weight, double mu) {
-    if (weight == 0 || distance(pair) >= range) return;
+    if (weight == 0 || distance(pair) >= dhat) return;
     pair.weight = weight;
     pair.friction = mu;
     pairs.push_back(pair);
@@ -106,7 +107,7 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
     for (int t = 0; t < own.triangle_count(); ++t)
       add(point_triangle(n + v, own.triangles.row(t)),
           std::min(other.vertex_area[v], own.triangle_area[t]) / 2 *
-              share(at_vertex, v, std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))),
+              protrusion_factor(at_vertex, v, std::sqrt(own.triangle_area[t] / (std::sqrt(3.0) / 4))),
           friction);
   for (int e = 0; e < own.edges.rows(); ++e) {
     for (int f = e + 1; f < own.edges.rows(); ++f) {
@@ -120,7 +121,7 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
       add(edges(own.edges.row(e), other.edges.row(f).array() + n,
                 own.edge_length_squared[e] * other.edge_length_squared[f]),
           std::min(own.edge_area[e], other.edge_area[f]) / 2 *
-              share(at_edge, f, std::sqrt(own.edge_length_squared[e])),
+              protrusion_factor(at_edge, f, std::sqrt(own.edge_length_squared[e])),
           friction);
   }
   return pairs;
@@ -128,24 +129,26 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
 
 }  // namespace
 
-TEST_CASE("ipc: a surface's areas and owners") {
+TEST_CASE("ipc: a surface's areas and representative triangles") {
   const Level level = Level::of(0, grid({2, 1}, 9, 7, Diagonals::criss_cross));
   const Surface s = Surface::of(level.rest, level.topology);
   CHECK(s.vertex_area.sum() == Approx(2));
   CHECK(s.edge_area.sum() == Approx(2));
   CHECK(s.triangle_area.sum() == Approx(2));
   CHECK((s.vertex_area - level.vertex_area).norm() < 1e-14);
-  std::vector<int> vertex_owners(level.vertex_count()), edge_owners(s.edges.rows());
+  std::vector<int> vertex_representatives(level.vertex_count()), edge_representatives(s.edges.rows());
   for (int t = 0; t < s.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
-      vertex_owners[s.triangles(t, k)] += s.owns_vertex(t, k);
-      edge_owners[s.triangle_edges(t, k)] += s.owns_edge(t, k);
+      vertex_representatives[s.triangles(t, k)] += s.represents_vertex(t, k);
+      edge_representatives[s.triangle_edges(t, k)] += s.represents_edge(t, k);
     }
-  CHECK(std::all_of(vertex_owners.begin(), vertex_owners.end(), [](int owners) { return owners == 1; }));
-  CHECK(std::all_of(edge_owners.begin(), edge_owners.end(), [](int owners) { return owners == 1; }));
+  CHECK(std::all_of(vertex_representatives.begin(), vertex_representatives.end(),
+                    [](int count) { return count == 1; }));
+  CHECK(std::all_of(edge_representatives.begin(), edge_representatives.end(),
+                    [](int count) { return count == 1; }));
 }
 
-TEST_CASE("ipc: obstacles are sound, where they should be, and named when they are not") {
+TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are not") {
   ObstacleParameters p = sphere_obstacle(0.3, 3, {1, 2, 3});
   const Obstacle ball = Obstacle::of(p, 0);
   CHECK(ball.mesh.triangles.rows() == 20 * 64);
@@ -199,10 +202,11 @@ TEST_CASE("ipc: made from a config") {
                     Catch::Contains("\"x\"") && Catch::Contains("no.obj"));
 }
 
-TEST_CASE("ipc: a sweep holds every pair that comes within range, and contacts are those of a brute search") {
+TEST_CASE(
+    "ipc: candidates contain every pair within dhat, and collisions are those of a brute-force search") {
   const Level level = Level::of(0, grid({1, 1}, 24, 16, Diagonals::criss_cross));
   Ipc::Parameters p;
-  p.range = 0.012;
+  p.dhat = 0.012;
   p.friction = 0.3;
   p.obstacles = {sphere_obstacle(0.1, 2, {0, 0.5, -0.105}),
                  box_obstacle({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
@@ -218,13 +222,13 @@ TEST_CASE("ipc: a sweep holds every pair that comes within range, and contacts a
   for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl, BroadPhaseKind::cgal}) {
     p.broad_phase = kind;
     const auto contact = Ipc(p).bind(level, material);
-    const auto sweep = contact->sweep(x0, x1);
-    const BarrierParameters barrier{p.range, contact_stiffness(material), p.slip_distance};
+    const auto candidates = contact->build_candidates(x0, x1);
+    const BarrierParameters barrier{p.dhat, contact_stiffness(material), p.friction_smoothing_distance};
     for (const double part : {0.0, 0.3, 1.0}) {
       const Positions x = x0 + part * (x1 - x0);
-      const std::vector<ContactPair> pairs = brute_force(level, obstacles, x, p.range, p.friction);
+      const std::vector<ContactPair> pairs = brute_force(level, obstacles, x, p.dhat, p.friction);
       const auto expected = make_pair_contacts(x, obstacles.vertices, pairs, barrier);
-      const auto found = sweep->build(x);
+      const auto found = candidates->build_collisions(x);
       REQUIRE(expected->contact_count() > 100);
       CHECK(found->contact_count() == expected->contact_count());
       CHECK(found->smallest_gap() == Approx(expected->smallest_gap()).epsilon(1e-12));
@@ -236,18 +240,18 @@ TEST_CASE("ipc: a sweep holds every pair that comes within range, and contacts a
       CHECK(friction->value(x) == Approx(exact_friction->value(x)).epsilon(1e-10));
       energies.push_back(found->value(x));
     }
-    const StepLimit limit = sweep->max_step();
+    const StepLimit limit = candidates->max_step();
     CHECK(limit.fraction > 0);
     if (limit.fraction < 1) CHECK(!limit.by.empty());
     CHECK(contact->intersections(x0 + limit.fraction * (x1 - x0)).empty());
   }
-  for (int i = 0; i < 3; ++i) {  // to the bit, whatever the broad phase
+  for (int i = 0; i < 3; ++i) {  // bit for bit, with any broad phase
     CHECK(energies[i] == energies[3 + i]);
     CHECK(energies[i] == energies[6 + i]);
   }
 }
 
-TEST_CASE("ipc: a flat cloth over one big triangle is pushed by the barrier's pressure") {
+TEST_CASE("ipc: the barrier's pressure acts on a flat cloth above one large triangle") {
   for (const int columns : {5, 17}) {
     const Level level = Level::of(0, grid({0.2, 0.2}, columns, columns, Diagonals::one_way));
     Ipc::Parameters p;
@@ -256,7 +260,7 @@ TEST_CASE("ipc: a flat cloth over one big triangle is pushed by the barrier's pr
     Positions x = level.rest.vertices;
     x.col(2).setConstant(4e-4);
     const auto contact = Ipc(p).bind(level, Material());
-    const auto set = contact->sweep(x, x)->build(x);
+    const auto set = contact->build_candidates(x, x)->build_collisions(x);
     CHECK(set->contact_count() == columns * columns);
     const double s = 0.4, pressure = 7 * ((1 - s) * (1 - s) / s - 2 * (s - 1) * -std::log(s));
     const Positions force = -gradient_of(*set, x);
@@ -271,25 +275,25 @@ TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth 
   const double s = 0.4, pressure = 7 * ((1 - s) * (1 - s) / s - 2 * (s - 1) * -std::log(s));
   Ipc::Parameters p;
   p.stiffness = 7;
-  for (const double range : {1e-4, 1e-3})
+  for (const double dhat : {1e-4, 1e-3})
     for (const int columns : {4, 20, 61, 120}) {
-      p.range = range;
+      p.dhat = dhat;
       TriangleMesh floor = grid({0.3, 0.3}, columns, columns, Diagonals::one_way);
       floor.vertices.rowwise() -= Eigen::RowVector3d(0.0517, 0.0533, 0);
       auto obstacles = std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}}}));
       Positions x = level.rest.vertices;
-      x.col(2).setConstant(s * range);
+      x.col(2).setConstant(s * dhat);
       const BoundIpc contact(p, obstacles, level, Material());
-      const auto set = contact.sweep(x, x)->build(x);
+      const auto set = contact.build_candidates(x, x)->build_collisions(x);
       const Positions force = -gradient_of(*set, x);
-      CAPTURE(range, columns);
+      CAPTURE(dhat, columns);
       for (int v = 0; v < x.rows(); ++v)
         CHECK((force.row(v) - pressure * level.vertex_area[v] * Eigen::RowVector3d(0, 0, 1)).norm() <
               1e-9 * pressure * level.vertex_area[v]);
     }
 }
 
-TEST_CASE("ipc: max_step stops before anything passes through, and says what was in the way") {
+TEST_CASE("ipc: max_step prevents intersections and names the blocking pair") {
   const Level level = Level::of(0, grid({0.4, 0.4}, 21, 21, Diagonals::criss_cross));
   Ipc::Parameters p;
   p.obstacles = {sphere_obstacle(0.05, 3, {0.2, 0.2, -0.06})};
@@ -298,19 +302,19 @@ TEST_CASE("ipc: max_step stops before anything passes through, and says what was
   Positions x1 = x0;
   x1.col(2).array() -= 0.5;
   CHECK(contact->intersections(x0).empty());
-  StepLimit limit = contact->sweep(x0, x1)->max_step();
+  StepLimit limit = contact->build_candidates(x0, x1)->max_step();
   CHECK(limit.fraction < 0.01 / 0.5);
   CHECK(limit.fraction > 0.8 * 0.9 * 0.01 / 0.5);
   CHECK_THAT(limit.by, Catch::Contains("cloth") && Catch::Contains("ball") && Catch::Contains(" and "));
   Positions sunk = x0;
   sunk.col(2).array() -= 0.02;
-  const auto touches = contact->intersections(sunk);
-  REQUIRE(!touches.empty());
-  CHECK_THAT(touches[0].first, Catch::Contains("cloth triangle "));
-  CHECK_THAT(touches[0].second, Catch::Contains("ball triangle "));
-  CHECK((touches[0].where - Vector(0.2, 0.2, -0.02)).norm() < 0.06);
+  const auto found = contact->intersections(sunk);
+  REQUIRE(!found.empty());
+  CHECK_THAT(found[0].first, Catch::Contains("cloth triangle "));
+  CHECK_THAT(found[0].second, Catch::Contains("ball triangle "));
+  CHECK((found[0].where - Vector(0.2, 0.2, -0.02)).norm() < 0.06);
 
-  // Steps that would crumple it: applied as far as they are allowed, over and over.
+  // Steps that would crumple it, applied up to their limit, repeatedly.
   std::mt19937 random(5);
   Positions x = x0;
   int shortened = 0;
@@ -318,7 +322,7 @@ TEST_CASE("ipc: max_step stops before anything passes through, and says what was
     std::normal_distribution<double> move(0, step % 3 == 2 ? 0.05 : 0.005);
     Positions to = x;
     for (int i = 0; i < to.size(); ++i) to.data()[i] += move(random);
-    limit = contact->sweep(x, to)->max_step();
+    limit = contact->build_candidates(x, to)->max_step();
     REQUIRE(limit.fraction > 0);
     REQUIRE(limit.fraction <= 1);
     shortened += limit.fraction < 1;
@@ -328,41 +332,41 @@ TEST_CASE("ipc: max_step stops before anything passes through, and says what was
   CHECK(shortened > 30);
 }
 
-TEST_CASE("ipc: a mesh finer than the range does not push itself apart, yet never passes through itself") {
+TEST_CASE("ipc: a mesh finer than dhat has no barrier at rest, yet never intersects itself") {
   const Level level = Level::of(0, grid({0.01, 0.01}, 21, 21, Diagonals::one_way));
-  Ipc::Parameters p;  // the range is twice the edges
+  Ipc::Parameters p;  // d̂ is twice the edges
   const auto contact = Ipc(p).bind(level, Material());
   const Positions& rest = level.rest.vertices;
-  CHECK(contact->sweep(rest, rest)->build(rest)->contact_count() == 0);
+  CHECK(contact->build_candidates(rest, rest)->build_collisions(rest)->contact_count() == 0);
   Positions through = rest;
   through.row(10 * 21 + 10) << rest.row(10 * 21 + 13) + Eigen::RowVector3d(0, 0, -1e-3);
   Positions above = rest;
   above.row(10 * 21 + 10).z() += 1e-3;
-  const StepLimit limit = contact->sweep(above, through)->max_step();
+  const StepLimit limit = contact->build_candidates(above, through)->max_step();
   CHECK(limit.fraction < 1);
   CHECK(contact->intersections(above + limit.fraction * (through - above)).empty());
   CHECK(!contact->intersections(0.5 * (above + through)).empty());
-  // Layers that rest far from each other repel as ever.
+  // Layers that are far apart at rest repel.
   const Positions layers = folded(level, 2, 4e-4, 0, 1);
-  CHECK(contact->sweep(layers, layers)->build(layers)->contact_count() > 100);
+  CHECK(contact->build_candidates(layers, layers)->build_collisions(layers)->contact_count() > 100);
 }
 
-TEST_CASE("ipc: a way that brings too much together is searched in part") {
+TEST_CASE("ipc: a motion with too many candidates is shortened") {
   const Level level = Level::of(0, grid({1, 1}, 60, 60, Diagonals::one_way));
   const auto contact = Ipc(Ipc::Parameters()).bind(level, Material());
   const Positions x0 = level.rest.vertices;
-  Positions x1 = x0.rowwise() + Eigen::RowVector3d(0, 0, -100);  // together: no matter how far
-  CHECK(contact->sweep(x0, x1)->max_step().fraction == 1);
+  Positions x1 = x0.rowwise() + Eigen::RowVector3d(0, 0, -100);  // a translation: no limit
+  CHECK(contact->build_candidates(x0, x1)->max_step().fraction == 1);
   std::mt19937 random(5);
   std::normal_distribution<double> move(0, 10);
   for (int i = 0; i < x1.size(); ++i) x1.data()[i] += move(random);
-  const StepLimit limit = contact->sweep(x0, x1)->max_step();
+  const StepLimit limit = contact->build_candidates(x0, x1)->max_step();
   CHECK(limit.fraction > 0);
   CHECK(limit.fraction < 0.1);
   CHECK(contact->intersections(x0 + limit.fraction * (x1 - x0)).empty());
 }
 
-TEST_CASE("ipc: time to find that nothing is near") {
+TEST_CASE("ipc: time of a search without contacts") {
   const Level level = Level::of(0, grid({1, 1}, 313, 313, Diagonals::one_way));
   Ipc::Parameters p;
   p.obstacles = {sphere_obstacle(0.3, 5, {0.5, 0.5, -0.4})};
@@ -372,15 +376,15 @@ TEST_CASE("ipc: time to find that nothing is near") {
     for (int v = 0; v < x0.rows(); ++v) x0(v, 2) = wave * std::sin(7 * x0(v, 0) + 5 * x0(v, 1));
     Positions x1 = x0;
     x1.col(2) += 1e-3 * (3 * x0.col(0)).array().sin().matrix();
-    contact->sweep(x0, x1);
+    contact->build_candidates(x0, x1);
     ProcessorTime watch;
-    const auto sweep = contact->sweep(x0, x1);
+    const auto candidates = contact->build_candidates(x0, x1);
     const double search = watch.seconds();
     watch = ProcessorTime();
-    CHECK(sweep->max_step().fraction == 1);
+    CHECK(candidates->max_step().fraction == 1);
     const double filter = watch.seconds();
     watch = ProcessorTime();
-    CHECK(sweep->build(x1)->contact_count() == 0);
+    CHECK(candidates->build_collisions(x1)->contact_count() == 0);
     const double build = watch.seconds();
     CAPTURE(wave, search, filter, build);
     CHECK(search + filter + build < 1.5);  // 0.1 on two idle cores

@@ -6,10 +6,11 @@
 #include "core/mesh/io.h"
 #include "core/numerics/parallel.h"
 #include "plugins/contact/ipc/bound_ipc.h"
-#include "plugins/contact/ipc/obstacle_way.h"
+#include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "tests/support/command.h"
 
 using namespace drape;
+using namespace drape::ipc;
 using Vector = Eigen::Vector3d;
 
 namespace {
@@ -52,11 +53,11 @@ std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, do
   return Ipc(p).bind(level, Material());
 }
 
-StepLimit max_move(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return dynamic_cast<const MovableObstacles&>(after).max_move(before, x);
+StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
+  return dynamic_cast<const KinematicObstacles&>(after).max_step(before, x);
 }
 
-/// As whoever moves obstacles does when it cannot move them all the way.
+/// Interpolates as load stepping does after a shortened obstacle step.
 Bodies blended(const Bodies& from, const Bodies& to, double part) {
   Bodies result = to;
   const auto blend = [&](auto& now, const auto& a, const auto& b) { now = a + part * (b - a); };
@@ -77,8 +78,8 @@ double distance_moved(const Bodies& from, const Bodies& to) {
       .maxCoeff();
 }
 
-/// Places on the way up to `part` at which the cloth and the obstacle intersect, looked for every `step` or
-/// less.
+/// The number of samples, at most `step` apart, of the motion up to `part` at which cloth and obstacle
+/// intersect.
 int crossings(const Bodies& from, const Bodies& to, double part, const Level& level, const Positions& x,
               double step) {
   const double turn = (to[0].rotate - from[0].rotate).cwiseAbs().sum() * M_PI / 180;
@@ -94,40 +95,39 @@ int crossings(const Bodies& from, const Bodies& to, double part, const Level& le
 
 }  // namespace
 
-TEST_CASE("ipc: an obstacle leaves a tenth of the range, or most of a smaller gap") {
+TEST_CASE("ipc: an obstacle leaves a tenth of dhat, or most of a smaller gap") {
   const Level level = square(9, 0.4);
   const Positions& x = level.rest.vertices;
   const Bodies low = {box({0.2, 0.2, 0.1}, {0, 0, -0.06})}, high = {box({0.2, 0.2, 0.1}, {0, 0, 0.04})};
-  StepLimit limit = max_move(*bound(low, level), *bound(high, level), x);
+  StepLimit limit = max_step(*bound(low, level), *bound(high, level), x);
   CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.1).epsilon(1e-3));
   CHECK_THAT(limit.by, Catch::Contains("cloth") && Catch::Contains("block"));
   const Bodies near = {box({0.2, 0.2, 0.1}, {0, 0, -0.05 - 2e-5})};
-  limit = max_move(*bound(near, level), *bound(high, level), x);
+  limit = max_step(*bound(near, level), *bound(high, level), x);
   CHECK(limit.fraction == Approx(0.2 * 2e-5 / (0.09 + 2e-5)).epsilon(0.1));
-  limit = max_move(*bound(low, level), *bound({box({0.2, 0.2, 0.1}, {0, 0, -0.0503})}, level), x);
+  limit = max_step(*bound(low, level), *bound({box({0.2, 0.2, 0.1}, {0, 0, -0.0503})}, level), x);
   CHECK(limit.fraction == 1);
   CHECK(limit.by.empty());
-  CHECK(max_move(*bound(high, level), *bound(high, level), x).fraction == 1);  // where it is
-  CHECK(max_move(*bound(low, level), *bound(low, level), x).fraction == 1);
-  // Growing is moving too.
-  limit = max_move(*bound({box({0.1, 0.1, 0.1}, {0, 0, -0.06})}, level),
+  CHECK(max_step(*bound(high, level), *bound(high, level), x).fraction == 1);  // static
+  CHECK(max_step(*bound(low, level), *bound(low, level), x).fraction == 1);
+  // Growth is a motion too.
+  limit = max_step(*bound({box({0.1, 0.1, 0.1}, {0, 0, -0.06})}, level),
                    *bound({box({0.1, 0.1, 0.2}, {0, 0, -0.06})}, level), x);
   CHECK(limit.fraction == Approx((0.01 - 1e-4) / 0.05).epsilon(1e-3));
 }
 
-TEST_CASE(
-    "ipc: a plate that slides and turns under the cloth, a tenth of a millimetre below, is not held up") {
+TEST_CASE("ipc: a plate that slides and rotates a tenth of a millimetre below the cloth is not limited") {
   const Level level = square(9, 0.4);
   Bodies from = {box({1, 1, 0.01}, {0, 0, -0.0051})}, to = from;
   to[0].translate.x() += 0.2;
   to[0].rotate.z() = 200;
-  CHECK(max_move(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+  CHECK(max_step(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
 }
 
-TEST_CASE("ipc: no obstacle passes through the cloth, however it moves; what was cut is not cut again") {
+TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is not shortened again") {
   const Level level = square(7, 0.3);
   const Vector sizes[] = {{0.002, 0.002, 0.4}, {0.3, 0.2, 0.003}, {0.06, 0.08, 0.05}, {0.4, 0.004, 0.02}};
-  int cut = 0, whole = 0, would_cross = 0, barely = 0;
+  int shortened = 0, full = 0, would_cross = 0, barely = 0;
   for (int i = 0; i < 160; ++i) {
     const Positions x = wavy(level, 0.02);
     const TriangleMesh cloth{x, level.rest.triangles};
@@ -146,29 +146,29 @@ TEST_CASE("ipc: no obstacle passes through the cloth, however it moves; what was
     if (i % 4 == 0) to[0].scale = uniform(0.5, 2);
     if (i % 7 == 0) to[0].translate.z() = -from[0].translate.z() - 5;  // at a high speed
     const auto before = bound(from, level);
-    const StepLimit limit = max_move(*before, *bound(to, level), x);
+    const StepLimit limit = max_step(*before, *bound(to, level), x);
     CAPTURE(i, limit.fraction, limit.by);
     REQUIRE(limit.fraction > 0);
     REQUIRE(limit.fraction <= 1);
     CHECK(limit.by.empty() == (limit.fraction == 1));
     CHECK(crossings(from, to, limit.fraction, level, x, 1.5e-3) == 0);
-    (limit.fraction < 1 ? cut : whole) += 1;
+    (limit.fraction < 1 ? shortened : full) += 1;
     if (limit.fraction == 1) continue;
     const Bodies part = blended(from, to, limit.fraction);
-    CHECK(max_move(*before, *bound(part, level), x).fraction == 1);
+    CHECK(max_step(*before, *bound(part, level), x).fraction == 1);
     would_cross += crossings(from, to, 1, level, x, 1.5e-3) > 0;
-    // Not more careful than needed: it would soon touch.
+    // Not overly conservative: an intersection would follow soon.
     const double soon = limit.fraction + 2e-3 / (distance_moved(from, to) + 1);
     barely += crossings(from, to, std::min(1.0, soon), level, x, 5e-4) > 0;
   }
-  CAPTURE(cut, whole, would_cross, barely);
-  CHECK(cut > 40);
-  CHECK(whole > 20);
-  CHECK(would_cross > 0.95 * cut);
-  CHECK(barely > 0.5 * cut);
+  CAPTURE(shortened, full, would_cross, barely);
+  CHECK(shortened > 40);
+  CHECK(full > 20);
+  CHECK(would_cross > 0.95 * shortened);
+  CHECK(barely > 0.5 * shortened);
 }
 
-TEST_CASE("ipc: an edge that is highest between two places does not pass through the cloth there") {
+TEST_CASE("ipc: an edge that is highest during a rotation does not pass through the cloth") {
   const Level level = square(5, 0.2);
   const Positions& x = level.rest.vertices;
   const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
@@ -177,14 +177,14 @@ TEST_CASE("ipc: an edge that is highest between two places does not pass through
     from[0].rotate.y() = 43;
     to[0].rotate.y() = 47;
     REQUIRE(bound(to, level)->intersections(x).empty());
-    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    const double fraction = max_step(*bound(from, level), *bound(to, level), x).fraction;
     CHECK(fraction > 0.01);
     CHECK((fraction == 1) == passes);
     CHECK(fraction < (passes ? 2 : 0.2));
   }
 }
 
-TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn") {
+TEST_CASE("ipc: rotating obstacles keep gaps below a micrometre") {
   const Level level = square(5, 0.2);
   const Positions& x = level.rest.vertices;
   for (const double gap : {1e-7, 1e-6, 1e-5}) {
@@ -192,7 +192,7 @@ TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn")
     to[0].rotate = {30, 0, 40};
     const auto before = bound(from, level);
     for (int round = 0; round < 6; ++round) {
-      const double fraction = max_move(*before, *bound(to, level), x).fraction;
+      const double fraction = max_step(*before, *bound(to, level), x).fraction;
       CAPTURE(gap, round, fraction);
       CHECK(fraction > 0);
       if (round > 0) CHECK(fraction == 1);
@@ -202,7 +202,7 @@ TEST_CASE("ipc: gaps of less than a micrometre are kept by obstacles that turn")
   }
 }
 
-TEST_CASE("ipc: a sequence of meshes, linear in between, none of whose forms passes through the cloth") {
+TEST_CASE("ipc: an animation is interpolated linearly and never passes through the cloth") {
   const Scratch folder;
   const TriangleMesh flat = grid({0.3, 0.3}, 6, 6, Diagonals::one_way);
   Bodies from(1);
@@ -234,22 +234,22 @@ TEST_CASE("ipc: a sequence of meshes, linear in between, none of whose forms pas
   // The wing's right end goes up in frames 1 to 2 and down in frames 2 to 3: highest in between.
   x.col(2).setConstant(0.005);
   x.col(0).array() += 0.12;
-  const double blocked = max_move(*at(1), *at(3), x).fraction;
+  const double blocked = max_step(*at(1), *at(3), x).fraction;
   CHECK(blocked > 0.1);
   CHECK(blocked < 0.5);
   for (int k = 0; k <= 500; ++k) CHECK(at(1 + 2 * blocked * k / 500)->intersections(x).empty());
   CHECK(!at(1 + 2 * blocked + 0.05)->intersections(x).empty());
-  CHECK(max_move(*at(1), *at(1 + 2 * blocked), x).fraction == 1);
+  CHECK(max_step(*at(1), *at(1 + 2 * blocked), x).fraction == 1);
   CHECK(at(3)->intersections(x).empty());
   x.col(2).setConstant(0.05);
-  CHECK(max_move(*at(1), *at(3), x).fraction == 1);
-  CHECK(max_move(*at(3), *at(0), x).fraction == 1);
-  CHECK(max_move(*at(0.5), *at(0.5), x).fraction == 1);
+  CHECK(max_step(*at(1), *at(3), x).fraction == 1);
+  CHECK(max_step(*at(3), *at(0), x).fraction == 1);
+  CHECK(max_step(*at(0.5), *at(0.5), x).fraction == 1);
 
   ObstacleParameters wrong = from[0];
   wrong.frame = 3.5;
   CHECK_THROWS_WITH(Obstacle::of(wrong, 0),
-                    Catch::Contains("\"wing\"") && Catch::Contains("ends with frame 3"));
+                    Catch::Contains("\"wing\"") && Catch::Contains("last frame of its animation is 3"));
   wrong.frame = 0;
   wrong.animation.push_back((folder / "other.ply").string());
   TriangleMesh other = flat;
@@ -263,7 +263,7 @@ TEST_CASE("ipc: a sequence of meshes, linear in between, none of whose forms pas
   CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("exclude each other"));
 }
 
-TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of threads") {
+TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any number of threads") {
   const Level level = square(41, 0.4);
   Positions x = wavy(level, 0.01);
   Bodies from = {box({0.2, 0.2, 0.1}, {0, 0, -0.5}), box({0.05, 0.05, 0.1}, {0.1, 0, -0.12})}, to;
@@ -275,9 +275,9 @@ TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of
   ball.subdivisions = 3;
   ball.translate = {-0.1, 0, -0.2};
   from.push_back(ball);
-  // The first and the last touch almost, and stay.
+  // The first and the last nearly touch the cloth, and are static.
   from[0].translate.z() = x.col(2).minCoeff() - 0.05 - 1e-5;
-  const double up = max_move(*bound({ball}, level),
+  const double up = max_step(*bound({ball}, level),
                              *bound(
                                  [&] {
                                    Bodies high = {ball};
@@ -294,7 +294,7 @@ TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of
   std::vector<double> fractions;
   for (const int threads : {1, 2, 3}) {
     set_thread_count(threads);
-    const StepLimit limit = max_move(*bound(from, level), *bound(to, level), x);
+    const StepLimit limit = max_step(*bound(from, level), *bound(to, level), x);
     CHECK_THAT(limit.by, Catch::Contains("mover"));
     fractions.push_back(limit.fraction);
   }
@@ -305,10 +305,10 @@ TEST_CASE("ipc: one of many obstacles moves, with the same bits on any number of
   CHECK(fractions[2] == fractions[0]);
   to = from;
   to[1].translate.z() -= 1;
-  CHECK(max_move(*bound(from, level), *bound(to, level), x).fraction == 1);
+  CHECK(max_step(*bound(from, level), *bound(to, level), x).fraction == 1);
 }
 
-TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
+TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
   const Level level = square(3, 0.2);
   ObstacleParameters ball;
   ball.name = "ball";
@@ -317,11 +317,11 @@ TEST_CASE("ipc: an obstacle that becomes another one is refused by name") {
   ball.subdivisions = 1;
   const auto before = bound({ball}, level);
   ball.subdivisions = 2;
-  CHECK_THROWS_WITH(max_move(*before, *bound({ball}, level), level.rest.vertices),
-                    Catch::Contains("\"ball\"") && Catch::Contains("320 triangles and not 80"));
+  CHECK_THROWS_WITH(max_step(*before, *bound({ball}, level), level.rest.vertices),
+                    Catch::Contains("\"ball\"") && Catch::Contains("320 triangles instead of 80"));
 }
 
-TEST_CASE("ipc: where displacements count from is carried along with what is touched") {
+TEST_CASE("ipc: the reference of tangential displacements is advected by obstacles") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -330,37 +330,37 @@ TEST_CASE("ipc: where displacements count from is carried along with what is tou
   to[0].translate += Vector(0.01, 0.003, 0);
   to[0].rotate.z() = 5;
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
-  Positions moved_from = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-  const Positions start = moved_from;
-  dynamic_cast<const MovableObstacles&>(*after).carry(*before, x, moved_from);
-  const Eigen::Matrix3d turn = Obstacle::of(to[0], 0).form.pose.linear();
-  int carried = 0;
+  Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+  const Positions start = reference;
+  dynamic_cast<const KinematicObstacles&>(*after).advect(*before, x, reference);
+  const Eigen::Matrix3d turn = Obstacle::of(to[0], 0).geometry.pose.linear();
+  int advected = 0;
   for (int v = 0; v < x.rows(); ++v) {
     const Vector own = Vector(x(v, 0), x(v, 1), 0) - from[0].translate;
     const Vector moved = turn * own + to[0].translate - (own + from[0].translate);
     CAPTURE(v);
     if (x(v, 0) > 1e-9) {
-      ++carried;
-      CHECK((Vector(moved_from.row(v) - start.row(v)) - moved).norm() < 1e-12);
-    } else if (x(v, 0) < -1e-9) {  // those above the edge are carried by half a share of their edges
-      CHECK((moved_from.row(v) - start.row(v)).norm() < 0.02);
+      ++advected;
+      CHECK((Vector(reference.row(v) - start.row(v)) - moved).norm() < 1e-12);
+    } else if (x(v, 0) < -1e-9) {  // those above the box's edge have contacts of reduced weight
+      CHECK((reference.row(v) - start.row(v)).norm() < 0.02);
     }
   }
-  CHECK(carried >= 10);
-  // So a plate that slides below the cloth drags it by μ times the normal force.
+  CHECK(advected >= 10);
+  // A plate that slides below the cloth drags it with μ times the normal force.
   to = from;
   to[0].translate.x() += 0.01;
-  moved_from = x;
-  const auto slid = bound(to, level, 0.3);
-  dynamic_cast<const MovableObstacles&>(*slid).carry(*before, x, moved_from);
-  const auto set = slid->sweep(x, x)->build(x);
+  reference = x;
+  const auto displaced = bound(to, level, 0.3);
+  dynamic_cast<const KinematicObstacles&>(*displaced).advect(*before, x, reference);
+  const auto collisions = displaced->build_candidates(x, x)->build_collisions(x);
   Positions push = Positions::Zero(x.rows(), 3), drag = push;
-  set->add_gradient(x, push);
-  set->friction(moved_from, {})->add_gradient(x, drag);
+  collisions->add_gradient(x, push);
+  collisions->friction(reference, {})->add_gradient(x, drag);
   CHECK(-push.col(2).sum() > 0);
   CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
-  // Without friction there is nothing to carry.
-  moved_from = x;
-  dynamic_cast<const MovableObstacles&>(*bound(to, level)).carry(*bound(from, level), x, moved_from);
-  CHECK(moved_from == x);
+  // Without friction nothing is advected.
+  reference = x;
+  dynamic_cast<const KinematicObstacles&>(*bound(to, level)).advect(*bound(from, level), x, reference);
+  CHECK(reference == x);
 }

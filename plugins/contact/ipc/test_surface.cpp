@@ -12,12 +12,13 @@
 #include "tests/support/evaluate.h"
 
 using namespace drape;
+using namespace drape::ipc;
 
 namespace {
 
 using Vector = Eigen::Vector3d;
 
-constexpr double range = 0.01;
+constexpr double dhat = 0.01;
 
 struct Random {
   std::mt19937 engine;
@@ -30,20 +31,20 @@ struct Random {
 struct Scene {
   Obstacles obstacles;
   OperatorCoefficients coefficients;
-  std::vector<NearTriangle> near;
+  std::vector<VertexTriangleCandidate> candidates;
   Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
   BarrierParameters parameters;
 
   explicit Scene(const TriangleMesh& mesh) : obstacles(Obstacles::of({{"mesh", mesh, 0.5}})) {
-    parameters.range = range;
-    parameters.stiffness = 1 / range;  // E = Σ coefficient b
-    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, range);
-    for (int t = 0; t < mesh.triangles.rows(); ++t) near.push_back({0, t});
+    parameters.dhat = dhat;
+    parameters.stiffness = 1 / dhat;  // E = Σ coefficient b
+    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);
+    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
   }
   SurfaceContacts contacts(const Vector& p) const {
-    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, near, area, 0, range);
+    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
   }
-  std::unique_ptr<ContactSet> set(const Vector& p) const {
+  std::unique_ptr<Collisions> set(const Vector& p) const {
     return make_surface_contacts(contacts(p), parameters);
   }
   double value(const Vector& p) const { return set(p)->value(p.transpose()); }
@@ -82,12 +83,12 @@ Vector near_middle(const Scene& scene, Random& random) {
   const auto vertices = scene.obstacles.vertices;
   const Eigen::Index v = static_cast<Eigen::Index>(random(0, 1) * static_cast<double>(vertices.rows() - 1));
   return Vector(0.5 * vertices.row(v)) + Vector(0.0125, 0.0125, 0) +
-         Vector(random(-1, 1), random(-1, 1), random(-1.5, 1.5)) * range;
+         Vector(random(-1, 1), random(-1, 1), random(-1.5, 1.5)) * dhat;
 }
 
 }  // namespace
 
-TEST_CASE("surface: a flat sheet is its plane, whatever its triangles") {
+TEST_CASE("surface: a flat sheet acts as its plane, for any triangulation") {
   Random random;
   std::vector<TriangleMesh> sheets = {grid({0.05, 0.05}, 2, 2, Diagonals::one_way),
                                       random_triangulation({0.05, 0.05}, 300, 1)};
@@ -96,16 +97,16 @@ TEST_CASE("surface: a flat sheet is its plane, whatever its triangles") {
     const Scene scene(flat);
     int off_border = 0;
     for (int i = 0; i < 400; ++i) {
-      Vector p(random(-0.01, 0.06), random(-0.01, 0.06), random(-1, 1) * range);
+      Vector p(random(-0.01, 0.06), random(-0.01, 0.06), random(-1, 1) * dhat);
       if (i % 4 == 0) p.head<2>() = flat.vertices.row(i % flat.vertices.rows()).head<2>();  // above a vertex
       const Vector foot(std::clamp(p.x(), 0.0, 0.05), std::clamp(p.y(), 0.0, 0.05), 0);
       const double distance = (p - foot).norm();
-      const Derivatives b = barrier(distance / range);
+      const Derivatives b = barrier(distance / dhat);
       CAPTURE(p.transpose(), flat.vertices.rows());
       CHECK(scene.value(p) == Approx(b.value).epsilon(1e-10).margin(1e-14));
-      const Vector g = b.first / range * (p - foot) / distance;
+      const Vector g = b.first / dhat * (p - foot) / distance;
       CHECK((scene.gradient(p) - g).norm() <= 1e-9 * (1 + g.norm()));
-      if (i % 4 != 0) CHECK(scene.contacts(p).features.size() == (distance < range ? 1 : 0));
+      if (i % 4 != 0) CHECK(scene.contacts(p).features.size() == (distance < dhat ? 1 : 0));
       off_border += foot == p - Vector(0, 0, p.z());
     }
     CHECK(off_border > 100);
@@ -128,23 +129,24 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
       const Vector p = from + k * step;
       const SurfaceContacts contacts = scene.contacts(p);
       std::vector<std::array<int, 3>> features;
-      double slope = 0, bend = 0;  // bounds of the first and second derivative
+      double slope = 0, curvature = 0;  // bounds of the first and second derivative
       for (const NearestFeature& f : contacts.features) {
         features.push_back(f.vertices);
         negative += f.coefficient < 0;
-        const Derivatives b = barrier(std::max(f.distance - h, 1e-3 * f.distance) / range);
-        slope += std::abs(f.coefficient * b.first) / range;
-        bend += std::abs(f.coefficient) *
-                (b.second / range - b.first / std::max(f.distance - h, 1e-3 * f.distance)) / range;
+        const Derivatives b = barrier(std::max(f.distance - h, 1e-3 * f.distance) / dhat);
+        slope += std::abs(f.coefficient * b.first) / dhat;
+        curvature += std::abs(f.coefficient) *
+                     (b.second / dhat - b.first / std::max(f.distance - h, 1e-3 * f.distance)) / dhat;
       }
       const double value = scene.value(p);
       const Vector gradient = scene.gradient(p);
-      if (k > 0 && contacts.features.size() > 0 && scene.distance(p) > 0.1 * range) {
+      if (k > 0 && contacts.features.size() > 0 && scene.distance(p) > 0.1 * dhat) {
         if (features != before) ++changes;
         CAPTURE(round, k, p.transpose(), features.size(), before.size());
-        CHECK((gradient - force).norm() <= 2 * bend * h + 1e-3 * slope * h / range + 20 * h / range / range);
+        CHECK((gradient - force).norm() <=
+              2 * curvature * h + 1e-3 * slope * h / dhat + 20 * h / dhat / dhat);
         CHECK(std::abs(value - energy - 0.5 * step.dot(gradient + force)) <=
-              2 * (bend + 20 / range / range) * h * h);
+              2 * (curvature + 20 / dhat / dhat) * h * h);
       }
       before = features;
       energy = value;
@@ -155,28 +157,27 @@ TEST_CASE("surface: energy and force are continuous where the nearest features c
   CHECK(negative > 300);
 }
 
-TEST_CASE("surface: derivatives, and projections as a whole") {
+TEST_CASE("surface: derivatives and projections") {
   Random random;
   int negative = 0, indefinite = 0;
   for (int round = 0; round < 10; ++round) {
     const Scene scene(hills(12, 2e-3, 0.02, random));
     for (int i = 0; i < 200; ++i) {
       const Vector p = near_middle(scene, random);
-      if (scene.distance(p) > 0.95 * range || scene.distance(p) < 0.02 * range) continue;
+      if (scene.distance(p) > 0.95 * dhat || scene.distance(p) < 0.02 * dhat) continue;
       const Vector g = scene.gradient(p);
       const Eigen::Matrix3d h = scene.hessian(p, Projection::none);
       const auto value = [&](const Positions& x) { return scene.value(x.transpose()); };
       const auto by_x = [&](const Positions& x) {
         return Positions(scene.gradient(x.transpose()).transpose());
       };
-      const double size = 1e-5 * range;
+      const double size = 1e-5 * dhat;
       std::vector<std::size_t> counts;  // of features around p: differences are of no use where they change
       for (int c = 0; c < 6; ++c)
         counts.push_back(scene.contacts(p + (c % 2 ? 3 : -3) * size * Vector::Unit(c / 2)).features.size());
       const bool steady = std::ranges::all_of(counts, [&](std::size_t n) { return n == counts[0]; });
       CAPTURE(p.transpose(), scene.contacts(p).features.size());
-      CHECK((differences(value, p.transpose(), size).transpose() - g).norm() <=
-            1e-5 * (g.norm() + 1 / range));
+      CHECK((differences(value, p.transpose(), size).transpose() - g).norm() <= 1e-5 * (g.norm() + 1 / dhat));
       if (steady) CHECK((differences(by_x, p.transpose(), size) - h).norm() <= 1e-4 * h.norm());
       for (const NearestFeature& f : scene.contacts(p).features) negative += f.coefficient < 0;
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
@@ -194,9 +195,9 @@ TEST_CASE("surface: derivatives, and projections as a whole") {
   CHECK(indefinite > 100);
 }
 
-TEST_CASE("surface: what is nearest is never weighed less than once, however rough the surface") {
+TEST_CASE("surface: the nearest feature's coefficient is at least 1, on any rough surface") {
   Random random;
-  // From hills that are wide against the range to pits that are a tenth of it.
+  // From hills that are wide against d̂ to pits that are a tenth of it.
   for (const auto& [columns, height, wave] :
        {std::tuple(41, 2e-4, 0.03), std::tuple(21, 6e-4, 0.03), std::tuple(12, 2e-3, 0.02),
         std::tuple(41, 2e-3, 0.03), std::tuple(41, 5e-4, 0.005), std::tuple(81, 1e-3, 0.002),
@@ -206,16 +207,16 @@ TEST_CASE("surface: what is nearest is never weighed less than once, however rou
     for (int i = 0; i < 300; ++i) {
       const Vector p = near_middle(scene, random);
       const double distance = scene.distance(p);
-      if (distance >= range || distance < 1e-6 * range) continue;
+      if (distance >= dhat || distance < 1e-6 * dhat) continue;
       const SurfaceContacts contacts = scene.contacts(p);
       CAPTURE(columns, height, wave, p.transpose(), distance);
       REQUIRE(contacts.contacts.size() == 1);
       const auto nearest = std::ranges::min(contacts.features, {}, &NearestFeature::distance);
       CHECK(nearest.distance == Approx(distance).epsilon(1e-9));
       CHECK(nearest.coefficient >= 1 - 1e-9);
-      least = std::min(least, scene.value(p) / barrier(distance / range).value);
+      least = std::min(least, scene.value(p) / barrier(distance / dhat).value);
       double net = 0;
-      for (const double pressure : contacts.pressures(contacts.contacts[0], range)) {
+      for (const double pressure : contacts.pressures(contacts.contacts[0], dhat)) {
         CHECK(pressure >= 0);
         net += pressure;
       }
@@ -226,7 +227,7 @@ TEST_CASE("surface: what is nearest is never weighed less than once, however rou
   }
 }
 
-TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
+TEST_CASE("surface: the barrier is unbounded at every point of a surface") {
   Random random;
   for (const double height : {0.0, 2e-3, 5e-3}) {
     const Scene scene(hills(12, height, 0.02, random));
@@ -236,11 +237,11 @@ TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
           static_cast<int>(random(0.3, 0.7) * scene.obstacles.surface.triangle_count()));
       const double s = i % 3 > 0 ? 0 : random(0, 0.5), r = i % 3 > 1 ? 0 : random(0, 0.5);
       const Vector foot = (1 - s - r) * v.row(t[0]) + s * v.row(t[1]) + r * v.row(t[2]);
-      const Vector way(random(-1, 1), random(-1, 1), random(-1, 1));
+      const Vector direction(random(-1, 1), random(-1, 1), random(-1, 1));
       double before = 0;
       for (double part = 1e-2; part > 1e-9; part *= 0.1) {
-        const Vector p = foot + part * range * way.normalized();
-        const double value = scene.value(p), nearest = barrier(scene.distance(p) / range).value;
+        const Vector p = foot + part * dhat * direction.normalized();
+        const double value = scene.value(p), nearest = barrier(scene.distance(p) / dhat).value;
         CAPTURE(height, i, part);
         CHECK(value > before);
         CHECK(value > 0.9 * nearest);
@@ -251,7 +252,7 @@ TEST_CASE("surface: the barrier has no bound towards any point of a surface") {
   }
 }
 
-TEST_CASE("surface: friction is that of the net normal force") {
+TEST_CASE("surface: friction uses the net normal force") {
   Random random;
   int negative = 0;
   for (int round = 0; round < 6; ++round) {
@@ -259,14 +260,14 @@ TEST_CASE("surface: friction is that of the net normal force") {
     for (int i = 0; i < 200; ++i) {
       const Vector p = near_middle(scene, random);
       const SurfaceContacts contacts = scene.contacts(p);
-      if (contacts.contacts.empty() || scene.distance(p) < 1e-3 * range) continue;
+      if (contacts.contacts.empty() || scene.distance(p) < 1e-3 * dhat) continue;
       double net = 0;
       for (const NearestFeature& f : contacts.features) {
-        net -= f.coefficient * barrier(f.distance / range).first;
+        net -= f.coefficient * barrier(f.distance / dhat).first;
         negative += f.coefficient < 0;
       }
       double sum = 0;
-      for (const double pressure : contacts.pressures(contacts.contacts[0], range)) sum += pressure;
+      for (const double pressure : contacts.pressures(contacts.contacts[0], dhat)) sum += pressure;
       CHECK(sum == Approx(std::max(net, 0.0)).epsilon(1e-9).margin(1e-12));
     }
   }
@@ -274,7 +275,7 @@ TEST_CASE("surface: friction is that of the net normal force") {
   // On a flat sheet it is μ times the force, along the sheet, at edges and vertices too.
   const Scene flat(hills(12, 0, 1, random));
   for (int i = 0; i < 50; ++i) {
-    const Vector p = Vector(flat.obstacles.vertices.row(40 + i % 20)) + Vector(0, 0, 0.4 * range);
+    const Vector p = Vector(flat.obstacles.vertices.row(40 + i % 20)) + Vector(0, 0, 0.4 * dhat);
     const Vector to = p + Vector(1e-3, 2e-3, 0);
     const auto friction = flat.set(p)->friction(p.transpose(), {});
     REQUIRE(friction);

@@ -3,7 +3,7 @@
 
 namespace drape {
 
-/// No contact: the cloth passes through itself and everything else, at no cost.
+/// No contact: the cloth may intersect itself and everything else, at no cost.
 class NoContact : public ContactModel {
  public:
   struct Parameters {
@@ -18,5 +18,5 @@ class NoContact : public ContactModel {
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::ContactModel, drape::NoContact>(
-      "none", "No contact: nothing is kept apart, and no contact code runs.");
+      "none", "No contact: intersections are allowed, and no contact code runs.");
 }

@@ -6,11 +6,11 @@
 #include "core/contact/pair_contacts.h"
 #include "plugins/contact/shapes/solid.h"
 
-namespace drape {
+namespace drape::shapes {
 
-/// A level's cloth against solids. Every recorded gap is a cloth triangle's distance to a solid; its barrier
-/// is made of vertices, edges and insides of triangles as README.md says.
+/// Contact of a level's cloth with solids. Reported gaps are distances of cloth triangles to solids.
+/// README.md describes the barrier's pairs of vertices, edges and triangles.
 std::unique_ptr<BoundContact> bind_shapes(const Level& level, const std::vector<Solid>& solids,
-                                          const BarrierParameters& barrier, double keep);
+                                          const BarrierParameters& barrier, double min_gap_fraction);
 
-}  // namespace drape
+}  // namespace drape::shapes

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace drape {
+namespace drape::shapes {
 
 namespace {
 
 using Eigen::Vector2d, Eigen::Vector3d;
 
-/// Corners of the core in its own axes: 8 of a box, 2 of a capsule, 1 of a sphere.
+/// Corners of the core in local coordinates: 8 of a box, 2 of a capsule, 1 of a sphere.
 std::vector<Vector3d> core_corners(const Vector3d& half) {
   std::vector<Vector3d> corners{Vector3d::Zero()};
   for (int k = 0; k < 3; ++k) {
@@ -26,8 +26,9 @@ Vector3d on_circle(const Solid& solid, int k, int sides, double z) {
   return {solid.radius * std::cos(angle), solid.radius * std::sin(angle), z};
 }
 
-/// Calls visit(i) for the elements, points or edges, that may be within `radius` of `centre`. A prism's come
-/// in rings, and element k of each ring begins at angle k: bottom, top and, of edges, those between.
+/// Calls visit(i) for the points or edges that may be within `radius` of `centre`. Those of a prism are
+/// ordered in rings (bottom, top and, for edges, lateral); element k of each ring begins at angle 2πk /
+/// sides.
 template <class Visit>
 void visit_candidates(const Features& f, int count, const Solid& solid, const Vector3d& centre, double radius,
                       const Visit& visit) {
@@ -39,7 +40,8 @@ void visit_candidates(const Features& f, int count, const Solid& solid, const Ve
   const Vector3d q = solid.to_local(centre);
   const double rho = q.head<2>().norm(), angle = std::atan2(q.y(), q.x()), unit = 2 * M_PI / sides;
   if (rho + radius < solid.radius * std::cos(unit / 2)) return;
-  const double spread = radius < rho ? std::asin(radius / rho) : M_PI;  // of the ball, seen from the axis
+  const double spread =
+      radius < rho ? std::asin(radius / rho) : M_PI;  // half angle of the ball seen from the axis
   const int first = static_cast<int>(std::floor((angle - spread) / unit)) - 1;
   const int last = std::min(static_cast<int>(std::ceil((angle + spread) / unit)), first + sides - 1);
   for (int ring = 0; ring < count; ring += sides)
@@ -51,7 +53,7 @@ double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d&
   return (p - a - std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0) * e).norm();
 }
 
-/// Turns a profile of (radius, z), from the top down, about the axis.
+/// The surface of revolution of a profile of (radius, z), ordered from top to bottom.
 TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
   const int sides = 64, rings = static_cast<int>(profile.size());
   TriangleMesh mesh;
@@ -83,7 +85,7 @@ TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
 
 TriangleMesh box_surface(const Solid& solid) {
   TriangleMesh mesh;
-  const std::vector<Vector3d> corners = core_corners(solid.half);  // corner i has x, y, z by its bits
+  const std::vector<Vector3d> corners = core_corners(solid.half);  // bits of i select x, y, z
   mesh.vertices.resize(8, 3);
   for (int i = 0; i < 8; ++i) mesh.vertices.row(i) = solid.to_world(corners[i]);
   mesh.triangles.resize(12, 3);
@@ -94,12 +96,12 @@ TriangleMesh box_surface(const Solid& solid) {
 
 }  // namespace
 
-Features Features::of(const Solid& solid, double slack) {
+Features Features::of(const Solid& solid, double max_inset) {
   Features f;
   std::vector<Vector3d> points;
   std::vector<std::pair<int, int>> edges;
   if (solid.kind == SolidKind::cylinder) {
-    const double step = std::acos(1 - std::min(0.5, slack / solid.radius));
+    const double step = std::acos(1 - std::min(0.5, max_inset / solid.radius));
     const int sides = std::max(16, static_cast<int>(std::ceil(M_PI / step)));
     f.side = 2 * solid.radius * std::sin(M_PI / sides);
     for (const int ring : {0, sides})
@@ -151,7 +153,7 @@ TriangleMesh tessellate(const Solid& solid, double half_side) {
   }
   if (solid.kind == SolidKind::cylinder)
     return revolve(solid, {{solid.radius, solid.half.z()}, {solid.radius, -solid.half.z()}});
-  std::vector<Vector2d> profile;  // two quarter circles, apart by the capsule's core
+  std::vector<Vector2d> profile;  // two quarter circles separated by the capsule's core
   const int steps = 16;
   for (int i = 1; i < 2 * steps; ++i) {
     const double angle = 0.5 * M_PI * i / steps;
@@ -163,4 +165,4 @@ TriangleMesh tessellate(const Solid& solid, double half_side) {
   return revolve(solid, profile);
 }
 
-}  // namespace drape
+}  // namespace drape::shapes

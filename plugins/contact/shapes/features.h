@@ -6,28 +6,28 @@
 #include "core/mesh/triangle_mesh.h"
 #include "plugins/contact/shapes/solid.h"
 
-namespace drape {
+namespace drape::shapes {
 
-/// What of a solid can touch the inside of a cloth's edge or triangle: corners and straight edges, each
-/// `offset` thick. Of a cylinder it is those of a prism that is inscribed in it.
+/// The corners and straight edges of a solid, rounded by `offset`, that the interior of a cloth edge or
+/// triangle can make contact with. A cylinder has those of an inscribed prism.
 struct Features {
   Positions points;                                   ///< k×3 [m]
   Eigen::Matrix<int, Eigen::Dynamic, 2> edges{0, 2};  ///< e×2, indices of points
   double offset = 0;                                  ///< [m]
-  double side = 0;  ///< of the prism's polygons, the length of a side [m]; 0 for other solids
+  double side = 0;  ///< side length of the prism's polygon [m]; 0 for other solids
 
-  /// With a prism that is nowhere more than `slack` [m] inside its cylinder.
-  static Features of(const Solid& solid, double slack);
+  /// The prism is nowhere more than `max_inset` [m] inside its cylinder.
+  static Features of(const Solid& solid, double max_inset);
 
-  /// Appends the points within `radius` of `centre`.
+  /// Appends the indices of points within `radius` of `centre`.
   void points_near(const Solid& solid, const Eigen::Vector3d& centre, double radius,
                    std::vector<int>& found) const;
-  /// The same with edges.
+  /// Appends the indices of edges within `radius` of `centre`.
   void edges_near(const Solid& solid, const Eigen::Vector3d& centre, double radius,
                   std::vector<int>& found) const;
 };
 
-/// A closed surface to be drawn; of a half-space a square with this half side [m].
+/// A closed surface for drawing; for a half-space a square of half side length `half_side` [m].
 TriangleMesh tessellate(const Solid& solid, double half_side);
 
-}  // namespace drape
+}  // namespace drape::shapes

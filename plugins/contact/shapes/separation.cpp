@@ -3,31 +3,30 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace drape {
+namespace drape::shapes {
 
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double hard_to_tell = 1e-7;  // [m]
-/// Steps that shrink the gap tenfold each soon come to where doubles end: from here on [m] they leave most of
-/// it.
-constexpr double hardly_any = 1e-9, most = 0.9;
+constexpr double unreliable_gap = 1e-7;  // below it a nearest point's direction is mostly round-off [m]
+/// Gaps below tiny_gap [m] keep this larger fraction: steps that shrink a gap tenfold each soon reach
+/// round-off.
+constexpr double tiny_gap = 1e-9, tiny_gap_fraction = 0.9;
 
-Corners between(const Corners& a, const Corners& b, double t) {
+Corners interpolate(const Corners& a, const Corners& b, double t) {
   Corners c;
   for (int k = 0; k < 3; ++k) c[k] = a[k] + t * (b[k] - a[k]);
   return c;
 }
 
-Vector3d middle_of(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
+Vector3d centroid(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
 
-/// The end of the time from t on in which the slab of `normal`, wide enough at t, stays at least `width`
-/// wide.
-double reach(const Solid& solid, const Corners& from, const Corners& to, double t, const Vector3d& normal,
-             double width) {
+/// The time until which the separation along `normal`, sufficient at t, stays at least `width`.
+double separation_end(const Solid& solid, const Corners& from, const Corners& to, double t,
+                      const Vector3d& normal, double width) {
   const double support = solid.support(normal);
-  const Corners now = between(from, to, t);
+  const Corners now = interpolate(from, to, t);
   double part = 1;
   for (int k = 0; k < 3; ++k) {
     const double here = normal.dot(now[k]) - support - width, end = normal.dot(to[k]) - support - width;
@@ -38,20 +37,20 @@ double reach(const Solid& solid, const Corners& from, const Corners& to, double 
 
 }  // namespace
 
-double slab(const Solid& solid, const Corners& triangle, const Vector3d& normal) {
+double separation_along(const Solid& solid, const Corners& triangle, const Vector3d& normal) {
   return std::min({normal.dot(triangle[0]), normal.dot(triangle[1]), normal.dot(triangle[2])}) -
          solid.support(normal);
 }
 
 Separation separate(const Solid& solid, const Corners& triangle) {
-  const auto with = [&](const Vector3d& n) { return Separation{n, slab(solid, triangle, n)}; };
+  const auto with = [&](const Vector3d& n) { return Separation{n, separation_along(solid, triangle, n)}; };
   if (solid.kind == SolidKind::half_space) return with(solid.axes.col(2));
   Separation best = with(solid.nearest(triangle[0]).normal);
   const auto take = [&](const Vector3d& n) {
     const Separation s = with(n);
     if (s.gap > best.gap) best = s;
   };
-  Vector3d across[3];  // edges and what they cross of the solid
+  Vector3d across[3];  // normals of each edge and the solid's edge or rim next to it
   for (int k = 0; k < 3; ++k) {
     const Vector3d &a = triangle[k], &b = triangle[(k + 1) % 3];
     const Nearest nearest = solid.nearest(a + solid.nearest_on_edge(a, b) * (b - a));
@@ -64,8 +63,9 @@ Separation separate(const Solid& solid, const Corners& triangle) {
     take(up / length);
     take(-up / length);
   }
-  // So near an edge or a rim, the direction to its nearest point is mostly rounding; that across both is not.
-  if (best.gap < hard_to_tell)
+  // Close to an edge or a rim, the direction to its nearest point is mostly round-off; the normal of both
+  // edges is accurate.
+  if (best.gap < unreliable_gap)
     for (const Vector3d& n : across)
       if (const double size = n.norm(); size > 0) {
         take(n / size);
@@ -74,29 +74,29 @@ Separation separate(const Solid& solid, const Corners& triangle) {
   return best;
 }
 
-bool touches(const Solid& solid, const Corners& triangle) {
-  return !(slab(solid, triangle, solid.nearest(middle_of(triangle)).normal) > 0) &&
+bool intersects(const Solid& solid, const Corners& triangle) {
+  return !(separation_along(solid, triangle, solid.nearest(centroid(triangle)).normal) > 0) &&
          !(separate(solid, triangle).gap > 0);
 }
 
-double advance(const Solid& solid, const Corners& from, const Corners& to, double keep) {
-  // Cheap and enough for most: one normal, and no less than `keep` of an upper bound of the distance.
-  const Nearest at_middle = solid.nearest(middle_of(from));
-  const double enough = keep * at_middle.distance;
-  if (enough > 0 && slab(solid, from, at_middle.normal) >= enough &&
-      slab(solid, to, at_middle.normal) >= enough)
+double advance(const Solid& solid, const Corners& from, const Corners& to, double min_gap_fraction) {
+  // Early exit for most pairs: one normal keeps the fraction of an upper bound of the distance.
+  const Nearest at_centroid = solid.nearest(centroid(from));
+  const double sufficient = min_gap_fraction * at_centroid.distance;
+  if (sufficient > 0 && separation_along(solid, from, at_centroid.normal) >= sufficient &&
+      separation_along(solid, to, at_centroid.normal) >= sufficient)
     return 1;
 
   Separation s = separate(solid, from);
   if (!(s.gap > 0)) return 0;
-  const double kept = std::max(keep * s.gap, std::min(most * s.gap, hardly_any));
+  const double min_gap = std::max(min_gap_fraction * s.gap, std::min(tiny_gap_fraction * s.gap, tiny_gap));
   double t = 0;
-  for (int round = 0; round < 128 && s.gap > 1.01 * kept; ++round) {
-    t = reach(solid, from, to, t, s.normal, kept);
+  for (int iteration = 0; iteration < 128 && s.gap > 1.01 * min_gap; ++iteration) {
+    t = separation_end(solid, from, to, t, s.normal, min_gap);
     if (t >= 1) return 1;
-    s = separate(solid, between(from, to, t));
+    s = separate(solid, interpolate(from, to, t));
   }
   return t;
 }
 
-}  // namespace drape
+}  // namespace drape::shapes

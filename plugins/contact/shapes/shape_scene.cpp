@@ -7,18 +7,18 @@
 
 #include "core/numerics/parallel.h"
 
-namespace drape {
+namespace drape::shapes {
 
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr int grain = 2048;
-constexpr double parallel_edges = 1e-3;  // (Li et al. 2020, eq. 18): sin² of the angle that fading begins at
-constexpr double slack = 5e-5;           // of the range: how far a cylinder's features are inside it
-constexpr double half = 0.5;             // the share of edges and of triangles' insides
+constexpr double mollifier_threshold = 1e-3;  // ε over the squared edge lengths (Li et al. 2020, eq. 18)
+constexpr double inset = 5e-5;                // of a cylinder's prism, over d̂
+constexpr double half = 0.5;                  // weight factor of edges and of triangles
 
-/// A ball that an element stays in.
+/// A bounding ball of an element's linear motion.
 struct Ball {
   Vector3d centre;
   double radius;
@@ -34,38 +34,38 @@ Ball ball_of(const int* vertices, int count, const Positions& x0, const Position
   return ball;
 }
 
-/// The candidates with one solid.
+/// Searches the candidates of one solid.
 class Finder {
  public:
   Finder(const ShapeScene& scene, int solid, const Positions& x0, const Positions& x1)
       : scene_(scene), solid_(scene.solids[solid]), features_(scene.features[solid]), x0_(x0), x1_(x1) {}
 
-  /// Those of the triangles, ascending, that the range may be entered by.
-  std::vector<int> near_triangles(const std::vector<int>& among) const {
-    std::vector<char> near(among.size());
-    parallel_for(static_cast<int>(near.size()), grain, [&](int begin, int end) {
+  /// Those of the triangles, ascending, that may come within d̂.
+  std::vector<int> triangles_near(const std::vector<int>& among) const {
+    std::vector<char> is_close(among.size());
+    parallel_for(static_cast<int>(is_close.size()), grain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
-        near[i] = is_near(ball_of(&scene_.triangles(among[i], 0), 3, x0_, x1_));
+        is_close[i] = is_near(ball_of(&scene_.triangles(among[i], 0), 3, x0_, x1_));
     });
     std::vector<int> result;
     for (std::size_t i = 0; i < among.size(); ++i)
-      if (near[i]) result.push_back(among[i]);
+      if (is_close[i]) result.push_back(among[i]);
     return result;
   }
 
   std::vector<int> vertices_of(const std::vector<int>& triangles) const {
-    return near_of(triangles, scene_.triangles, static_cast<int>(x0_.rows()),
-                   [&](int i) { return is_near(ball_of(&i, 1, x0_, x1_)); });
+    return elements_near(triangles, scene_.triangles, static_cast<int>(x0_.rows()),
+                         [&](int i) { return is_near(ball_of(&i, 1, x0_, x1_)); });
   }
   std::vector<int> edges_of(const std::vector<int>& triangles) const {
-    return near_of(triangles, scene_.triangle_edges, static_cast<int>(scene_.edges.rows()),
-                   [&](int i) { return is_near(ball_of(&scene_.edges(i, 0), 2, x0_, x1_)); });
+    return elements_near(triangles, scene_.triangle_edges, static_cast<int>(scene_.edges.rows()),
+                         [&](int i) { return is_near(ball_of(&scene_.edges(i, 0), 2, x0_, x1_)); });
   }
 
-  /// Points of the solid against insides of triangles.
-  void add_insides(const std::vector<int>& triangles, int first_point,
-                   std::vector<ContactPair>& pairs) const {
-    const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has nothing else
+  /// Adds pairs of the solid's points and triangles.
+  void add_point_triangle(const std::vector<int>& triangles, int first_point,
+                          std::vector<ContactPair>& pairs) const {
+    const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has no other pairs
     std::vector<int> found;
     for (const int i : triangles) {
       const Ball ball = ball_of(&scene_.triangles(i, 0), 3, x0_, x1_);
@@ -75,7 +75,7 @@ class Finder {
       pair.kind = PairKind::point_triangle;
       pair.offset = features_.offset;
       pair.friction = solid_.friction;
-      pair.weight = share * scene_.triangle_area[i] * part(std::sqrt(2 * scene_.triangle_area[i]));
+      pair.weight = share * scene_.triangle_area[i] * side_fraction(std::sqrt(2 * scene_.triangle_area[i]));
       for (const int point : found) {
         pair.vertices = {static_cast<int>(x0_.rows()) + first_point + point, scene_.triangles(i, 0),
                          scene_.triangles(i, 1), scene_.triangles(i, 2)};
@@ -84,8 +84,8 @@ class Finder {
     }
   }
 
-  /// Edges of the solid against those of the cloth.
-  void add_edges(const std::vector<int>& edges, int first_point, std::vector<ContactPair>& pairs) const {
+  /// Adds pairs of the solid's and the cloth's edges.
+  void add_edge_edge(const std::vector<int>& edges, int first_point, std::vector<ContactPair>& pairs) const {
     std::vector<int> found;
     for (const int i : edges) {
       const Ball ball = ball_of(&scene_.edges(i, 0), 2, x0_, x1_);
@@ -96,12 +96,12 @@ class Finder {
       pair.offset = features_.offset;
       pair.friction = solid_.friction;
       const double length = scene_.edge_length[i];
-      pair.weight = half * scene_.edge_area[i] * part(length);
+      pair.weight = half * scene_.edge_area[i] * side_fraction(length);
       const int first = static_cast<int>(x0_.rows()) + first_point;
       for (const int edge : found) {
         const int a = features_.edges(edge, 0), b = features_.edges(edge, 1);
         pair.vertices = {scene_.edges(i, 0), scene_.edges(i, 1), first + a, first + b};
-        pair.mollifier = parallel_edges * length * length *
+        pair.mollifier = mollifier_threshold * length * length *
                          (features_.points.row(b) - features_.points.row(a)).squaredNorm();
         pairs.push_back(pair);
       }
@@ -109,12 +109,14 @@ class Finder {
   }
 
  private:
-  double reach() const { return scene_.barrier.range + features_.offset; }
+  double reach() const { return scene_.barrier.dhat + features_.offset; }
   bool is_near(const Ball& ball) const {
-    return solid_.distance(ball.centre) - ball.radius < scene_.barrier.range;
+    return solid_.distance(ball.centre) - ball.radius < scene_.barrier.dhat;
   }
-  /// The part of an element of the cloth that meets one side of a cylinder's polygon.
-  double part(double length) const { return features_.side > 0 ? std::min(1.0, features_.side / length) : 1; }
+  /// The fraction of a cloth element of this length that one side of a cylinder's polygon covers.
+  double side_fraction(double length) const {
+    return features_.side > 0 ? std::min(1.0, features_.side / length) : 1;
+  }
 
   static std::vector<int> marked(const std::vector<char>& marks) {
     std::vector<int> result;
@@ -124,8 +126,8 @@ class Finder {
   }
 
   template <class IsNear>
-  static std::vector<int> near_of(const std::vector<int>& triangles, const Triangles& corners, int count,
-                                  const IsNear& is_near) {
+  static std::vector<int> elements_near(const std::vector<int>& triangles, const Triangles& corners,
+                                        int count, const IsNear& is_near) {
     std::vector<char> marks(count);
     for (const int i : triangles)
       for (int k = 0; k < 3; ++k) marks[corners(i, k)] = 1;
@@ -144,7 +146,7 @@ class Finder {
 }  // namespace
 
 ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
-                          const BarrierParameters& barrier, double keep) {
+                          const BarrierParameters& barrier, double min_gap_fraction) {
   ShapeScene s;
   s.triangles = level.rest.triangles;
   s.triangle_edges = level.topology.triangle_edges;
@@ -164,9 +166,9 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   }
   s.solids = solids;
   s.barrier = barrier;
-  s.keep = keep;
-  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, slack * barrier.range));
-  // Cylinders come last: they have more points when they grow, and contacts are known by points.
+  s.min_gap_fraction = min_gap_fraction;
+  for (const Solid& solid : solids) s.features.push_back(Features::of(solid, inset * barrier.dhat));
+  // Cylinders come last: a larger one has more points, and contacts are identified by point indices.
   s.first_point.resize(solids.size());
   for (const bool cylinders : {false, true})
     for (std::size_t k = 0; k < solids.size(); ++k) {
@@ -186,27 +188,27 @@ std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Pos
   std::vector<int> all(scene.triangles.rows());
   std::iota(all.begin(), all.end(), 0);
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
-    for (const int i : Finder(scene, k, x0, x1).near_triangles(all)) found.push_back({i, k});
+    for (const int i : Finder(scene, k, x0, x1).triangles_near(all)) found.push_back({i, k});
   return found;
 }
 
-ShapeCandidates find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& found,
-                                const Positions& x0, const Positions& x1) {
-  ShapeCandidates c;
+CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<TriangleSolidPair>& found,
+                               const Positions& x0, const Positions& x1) {
+  CandidatePairs c;
   std::size_t next = 0;
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k) {
     const Solid& solid = scene.solids[k];
     const Finder finder(scene, k, x0, x1);
     std::vector<int> triangles;
     for (; next < found.size() && found[next].solid == k; ++next) triangles.push_back(found[next].triangle);
-    triangles = finder.near_triangles(triangles);
-    finder.add_insides(triangles, scene.first_point[k], c.pairs);
+    triangles = finder.triangles_near(triangles);
+    finder.add_point_triangle(triangles, scene.first_point[k], c.pairs);
     if (solid.kind == SolidKind::sphere) continue;
     for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k, scene.vertex_area[i]});
     if (solid.kind == SolidKind::half_space) continue;
-    finder.add_edges(finder.edges_of(triangles), scene.first_point[k], c.pairs);
+    finder.add_edge_edge(finder.edges_of(triangles), scene.first_point[k], c.pairs);
   }
   return c;
 }
 
-}  // namespace drape
+}  // namespace drape::shapes

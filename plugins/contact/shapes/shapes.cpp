@@ -7,30 +7,29 @@
 #include "core/plugin/plugin.h"
 #include "plugins/contact/shapes/bound_shapes.h"
 
-namespace drape {
+namespace drape::shapes {
 
 namespace {
 
-const std::vector<std::pair<std::string, SolidKind>> words = {{"sphere", SolidKind::sphere},
-                                                              {"box", SolidKind::box},
-                                                              {"capsule", SolidKind::capsule},
-                                                              {"cylinder", SolidKind::cylinder},
-                                                              {"half_space", SolidKind::half_space}};
+const std::vector<std::pair<std::string, SolidKind>> kind_names = {{"sphere", SolidKind::sphere},
+                                                                   {"box", SolidKind::box},
+                                                                   {"capsule", SolidKind::capsule},
+                                                                   {"cylinder", SolidKind::cylinder},
+                                                                   {"half_space", SolidKind::half_space}};
 
-/// A cylinder's features are those of a prism, whose sides become more the smaller the range is: here 700
-/// 000.
-constexpr double most_radius_by_range = 5e6;
+/// A cylinder's prism has more sides the smaller d̂ is compared with the radius: 700 000 at this ratio.
+constexpr double max_radius_over_dhat = 5e6;
 
 Solid solid_of(const ShapeParameters& p, int index, double friction) {
   Solid s;
   s.kind = p.shape;
-  s.name = (p.name.empty() ? "shape " + std::to_string(index) : p.name) + ": " + word(p.shape);
+  s.name = (p.name.empty() ? "shape " + std::to_string(index) : p.name) + ": " + to_string(p.shape);
   s.centre = p.centre;
-  s.turn = p.rotate;
+  s.rotate = p.rotate;
   s.plane = p.normal;
   s.friction = p.friction.value_or(friction);
   if (p.shape == SolidKind::half_space) {
-    // Its square would underflow.
+    // The square of a smaller norm would underflow.
     if (!(p.normal.norm() > 1e-100))
       throw std::runtime_error(s.name + " needs a \"normal\" that is not zero");
   } else if (p.shape == SolidKind::box) {
@@ -39,65 +38,63 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
     s.radius = p.radius;
     if (p.shape != SolidKind::sphere) s.half.z() = p.height / 2;
   }
-  s.orient();
+  s.update_axes();
   return s;
 }
 
 }  // namespace
 
-std::string word(SolidKind kind) {
-  for (const auto& [word, own] : words)
-    if (own == kind) return word;
-  throw std::runtime_error("a kind of solid has no word");
+std::string to_string(SolidKind kind) {
+  for (const auto& [name, own] : kind_names)
+    if (own == kind) return name;
+  throw std::runtime_error("unknown kind of solid");
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
-  d.add("name", &ShapeParameters::name)
-      .meaning("what messages call it; empty: its number")
-      .source("this project");
-  d.add_choice("shape", &ShapeParameters::shape, words)
+  d.add("name", &ShapeParameters::name).meaning("name in messages; empty: its index").source("this project");
+  d.add_choice("shape", &ShapeParameters::shape, kind_names)
       .required()
-      .meaning("capsule: all points within radius of a segment; half_space: all behind a plane")
+      .meaning("capsule: all points within radius of a segment; half_space: all points behind a plane")
       .source("this project");
   d.add("centre", &ShapeParameters::centre)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("its middle; of a half_space any point of the plane")
+      .meaning("centre; of a half_space any point of its plane")
       .source("this project");
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("of a sphere, capsule or cylinder")
+      .meaning("radius of a sphere, capsule or cylinder")
       .source("this project");
   d.add("size", &ShapeParameters::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("edges of a box")
+      .meaning("edge lengths of a box")
       .source("this project");
   d.add("height", &ShapeParameters::height)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("along the z axis before it is turned: of a cylinder, or of a capsule without its round ends")
+      .meaning("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
       .source("this project");
   d.add("rotate", &ShapeParameters::rotate)
-      .unit("degrees")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("about the x axis, then y, then z")
+      .meaning("rotation about the x, then y, then z axis")
       .source("this project");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
-      .meaning("of a half_space, towards the cloth; any length")
+      .meaning("outward normal of a half_space, of any length")
       .source("this project");
   d.add("friction", &ShapeParameters::friction)
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("coefficient μ; null: that of all shapes")
+      .meaning("friction coefficient μ; null: the model's")
       .source("Li et al. 2020, section 5");
 }
 
@@ -107,54 +104,58 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("coefficient μ of Coulomb friction")
+      .meaning("Coulomb's friction coefficient μ")
       .source("Li et al. 2020, section 5");
-  d.add("range", &Parameters::range)
+  d.add("dhat", &Parameters::dhat)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(1e3)
-      .meaning("d̂, the distance below which the barrier acts")
+      .meaning("barrier activation distance d̂: the barrier acts on smaller gaps")
+      .formerly("range")
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Parameters::stiffness)
       .unit("Pa")
       .at_least(1e-9)
       .at_most(bounds::largest_modulus)
-      .meaning("κ, the barrier's; null: ten times the cloth's weight a unit of area")
+      .meaning(
+          "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
+          "weight per area")
       .source("this project");
-  d.add("slip_distance", &Parameters::slip_distance)
+  d.add("friction_smoothing_distance", &Parameters::friction_smoothing_distance)
       .unit("m")
       .at_least(1e-12)
       .at_most(1e3)
-      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
-      .source("Li et al. 2020, equation 14: ε_v h");
-  d.add("keep", &Parameters::keep)
+      .meaning("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
+      .formerly("slip_distance")
+      .source("Li et al. 2020, eq. 14");
+  d.add("min_gap_fraction", &Parameters::min_gap_fraction)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
-      .meaning("part of every gap that a step leaves")
-      .source("Li et al. 2021, additive CCD");
+      .meaning("fraction of every gap that a step must leave: s of additive CCD")
+      .formerly("keep")
+      .source("Li et al. 2021");
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
   for (const ShapeParameters& shape : p_.shapes) {
     solids_.push_back(solid_of(shape, static_cast<int>(solids_.size()), p_.friction));
     const Solid& solid = solids_.back();
-    if (solid.kind == SolidKind::cylinder && solid.radius > most_radius_by_range * p_.range)
-      throw std::runtime_error(solid.name +
-                               " has a radius of more than 5e6 times \"range\"; raise \"range\"");
+    if (solid.kind == SolidKind::cylinder && solid.radius > max_radius_over_dhat * p_.dhat)
+      throw std::runtime_error(solid.name + " has a radius of more than 5e6 times \"dhat\"; raise \"dhat\"");
   }
 }
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {
   if (solids_.empty()) return nullptr;
-  const BarrierParameters barrier{p_.range, p_.stiffness.value_or(contact_stiffness(material)),
-                                  p_.slip_distance};
-  return bind_shapes(level, solids_, barrier, p_.keep);
+  const BarrierParameters barrier{p_.dhat, p_.stiffness.value_or(contact_stiffness(material)),
+                                  p_.friction_smoothing_distance};
+  return bind_shapes(level, solids_, barrier, p_.min_gap_fraction);
 }
 
-}  // namespace drape
+}  // namespace drape::shapes
 
 DRAPE_PLUGIN(registry) {
-  registry.add<drape::ContactModel, drape::Shapes>(
-      "shapes", "Contact with balls, boxes, capsules, cylinders and half-spaces in closed form.");
+  registry.add<drape::ContactModel, drape::shapes::Shapes>(
+      "shapes", "Contact with spheres, boxes, capsules, cylinders and half-spaces in closed form.");
 }

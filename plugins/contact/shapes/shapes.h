@@ -8,9 +8,9 @@
 #include "core/plugin/parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
-namespace drape {
+namespace drape::shapes {
 
-/// One obstacle as it is written.
+/// One obstacle in a config.
 struct ShapeParameters {
   std::string name;
   SolidKind shape = SolidKind::sphere;
@@ -24,23 +24,23 @@ struct ShapeParameters {
   static void declare(Declaration<ShapeParameters>& d);
 };
 
-/// The word for a kind, as in `shape: half_space`.
-std::string word(SolidKind kind);
+/// The name of a kind in configs, as in `shape: half_space`.
+std::string to_string(SolidKind kind);
 
-/// Contact with convex obstacles in closed form; a ball then costs no triangles (see README.md).
+/// Contact with convex obstacles in closed form (see README.md).
 class Shapes final : public ContactModel {
  public:
   struct Parameters {
     std::vector<ShapeParameters> shapes;
-    double friction = 0;              ///< μ
-    double range = 1e-3;              ///< d̂
-    std::optional<double> stiffness;  ///< κ
-    double slip_distance = 1e-4;      ///< ε_v h
-    double keep = 0.1;
+    double friction = 0;                        ///< μ
+    double dhat = 1e-3;                         ///< d̂
+    std::optional<double> stiffness;            ///< κ
+    double friction_smoothing_distance = 1e-4;  ///< ε_v h
+    double min_gap_fraction = 0.1;
     static void declare(Declaration<Parameters>& d);
   };
 
-  /// Throws std::runtime_error if a half-space's normal is zero.
+  /// Throws std::runtime_error if a half-space's normal is zero or a cylinder's radius too large for d̂.
   explicit Shapes(const Parameters& parameters);
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
 
@@ -49,4 +49,4 @@ class Shapes final : public ContactModel {
   std::vector<Solid> solids_;
 };
 
-}  // namespace drape
+}  // namespace drape::shapes

@@ -7,18 +7,18 @@
 
 #include "core/mesh/turn.h"
 
-namespace drape {
+namespace drape::shapes {
 
 namespace {
 
 using Eigen::Vector3d;
 
-/// Of a box with rounding, in its own axes.
+/// For a rounded box, in local coordinates.
 Nearest nearest_to_box(const Solid& s, const Vector3d& q) {
   Nearest n;
   const Vector3d v = q - q.cwiseMax(-s.half).cwiseMin(s.half);
   const double length = v.norm();
-  if (length == 0) {  // inside the core: the nearest of its faces
+  if (length == 0) {  // inside the core: the nearest face
     Eigen::Index k;
     n.distance = (q.cwiseAbs() - s.half).maxCoeff(&k) - s.radius;
     n.normal = Vector3d::Unit(k) * (q[k] < 0 ? -1 : 1);
@@ -60,9 +60,9 @@ Nearest nearest_to_cylinder(const Solid& s, const Vector3d& q) {
   return n;
 }
 
-/// Where the monotone `slope` on [0, 1] changes its sign.
+/// The root of a monotone function on [0, 1], clamped.
 template <class Slope>
-double sign_change(const Slope& slope) {
+double monotone_root(const Slope& slope) {
   double low = 0, high = 1;
   if (slope(0.0) >= 0) return 0;
   if (slope(1.0) <= 0) return 1;
@@ -73,7 +73,7 @@ double sign_change(const Slope& slope) {
   return 0.5 * (low + high);
 }
 
-/// The slope of half the squared distance to the core is piecewise linear: the root is found exactly.
+/// The derivative of half the squared distance to the core is piecewise linear, and its root exact.
 double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vector3d& e) {
   const auto slope = [&](double t) {
     const Vector3d q = a + t * e;
@@ -84,7 +84,7 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
   if (high_slope <= 0) return 1;
   for (int k = 0; k < 3; ++k)
     for (const double side : {-half[k], half[k]}) {
-      const double t = (side - a[k]) / e[k];  // a kink, unless e[k] is 0
+      const double t = (side - a[k]) / e[k];  // a kink of the derivative, unless e[k] is 0
       if (!(t > low && t < high)) continue;
       const double here = slope(t);
       (here < 0 ? low : high) = t;
@@ -95,10 +95,10 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
 
 }  // namespace
 
-void Solid::orient() {
+void Solid::update_axes() {
   axes = kind == SolidKind::half_space
              ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), plane).toRotationMatrix()
-             : turned(turn);
+             : turned(rotate);
 }
 
 Nearest Solid::nearest(const Vector3d& p) const {
@@ -127,7 +127,7 @@ double Solid::distance(const Vector3d& p) const {
 double Solid::support(const Vector3d& n) const {
   const double middle = n.dot(centre);
   const Vector3d m = axes.transpose() * n;
-  if (kind == SolidKind::half_space)  // 1e-7: m.z() of a unit vector that far off is 1 in double
+  if (kind == SolidKind::half_space)  // 1e-7: m.z() then rounds to 1
     return m.z() > 0 && m.head<2>().norm() < 1e-7 ? middle : std::numeric_limits<double>::infinity();
   if (kind == SolidKind::cylinder) return middle + radius * m.head<2>().norm() + half.z() * std::abs(m.z());
   return middle + half.dot(m.cwiseAbs()) + radius;
@@ -137,7 +137,7 @@ double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
   const Vector3d p = to_local(a), e = axes.transpose() * (b - a);
   if (kind == SolidKind::half_space) return e.z() < 0 ? 1 : 0;
   if (kind != SolidKind::cylinder) return nearest_to_box_on_edge(half, p, e);
-  return sign_change([&](double t) {  // of half the squared distance
+  return monotone_root([&](double t) {  // derivative of half the squared distance
     const Vector3d q = p + t * e;
     const double rho = std::hypot(q.x(), q.y());
     const double out = std::max(0.0, 1 - radius / rho), up = std::abs(q.z()) - half.z();
@@ -145,4 +145,4 @@ double Solid::nearest_on_edge(const Vector3d& a, const Vector3d& b) const {
   });
 }
 
-}  // namespace drape
+}  // namespace drape::shapes

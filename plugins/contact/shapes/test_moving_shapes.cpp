@@ -6,13 +6,14 @@
 #include "plugins/contact/shapes/shapes.h"
 
 using namespace drape;
+using namespace drape::shapes;
 using Eigen::Vector3d;
 
 namespace {
 
 constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::capsule, SolidKind::cylinder,
                                SolidKind::half_space};
-constexpr double range = 1e-3;
+constexpr double dhat = 1e-3;
 
 std::mt19937 generator(5);
 double uniform(double low, double high) {
@@ -24,7 +25,7 @@ std::unique_ptr<BoundContact> bound(const std::vector<ShapeParameters>& shapes, 
                                     double friction = 0) {
   Shapes::Parameters p;
   p.shapes = shapes;
-  p.range = range;
+  p.dhat = dhat;
   p.friction = friction;
   return Shapes(p).bind(level, Material());
 }
@@ -32,8 +33,8 @@ std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& l
   return bound(std::vector{shape}, level, friction);
 }
 
-StepLimit max_move(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return dynamic_cast<const MovableObstacles&>(after).max_move(before, x);
+StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
+  return dynamic_cast<const KinematicObstacles&>(after).max_step(before, x);
 }
 
 ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, double part) {
@@ -68,46 +69,46 @@ ShapeParameters level_with(SolidKind kind, double gap) {
 
 }  // namespace
 
-TEST_CASE("shapes: a solid leaves a tenth of the range, or most of a smaller gap") {
+TEST_CASE("shapes: a solid leaves a tenth of dhat, or most of a smaller gap") {
   const Level level = square(9, 0.4);
   const Positions& x = level.rest.vertices;
   for (const SolidKind kind : kinds) {
-    INFO(word(kind));
+    INFO(to_string(kind));
     for (const double gap : {0.01, 2e-5}) {
       const ShapeParameters from = level_with(kind, gap);
       ShapeParameters to = from;
       to.centre.z() += 0.1;
-      const StepLimit limit = max_move(*bound(from, level), *bound(to, level), x);
-      const double left = 0.8 * std::min(gap, range / 8);
-      CHECK(limit.fraction == Approx((gap - left) / 0.1).epsilon(gap > range ? 2e-3 : 0.1));
-      CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(word(kind)));
+      const StepLimit limit = max_step(*bound(from, level), *bound(to, level), x);
+      const double left = 0.8 * std::min(gap, dhat / 8);
+      CHECK(limit.fraction == Approx((gap - left) / 0.1).epsilon(gap > dhat ? 2e-3 : 0.1));
+      CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(to_string(kind)));
       to.centre.z() = from.centre.z() - 3;
-      CHECK(max_move(*bound(from, level), *bound(to, level), x).fraction == 1);
-      CHECK(max_move(*bound(from, level), *bound(from, level), x).fraction == 1);
+      CHECK(max_step(*bound(from, level), *bound(to, level), x).fraction == 1);
+      CHECK(max_step(*bound(from, level), *bound(from, level), x).fraction == 1);
     }
   }
   const ShapeParameters small = level_with(SolidKind::sphere, 0.01);
   ShapeParameters large = small;
   large.radius = 0.2;
-  CHECK(max_move(*bound(small, level), *bound(large, level), x).fraction ==
-        Approx((0.01 - 0.1 * range) / 0.1).epsilon(2e-3));
+  CHECK(max_step(*bound(small, level), *bound(large, level), x).fraction ==
+        Approx((0.01 - 0.1 * dhat) / 0.1).epsilon(2e-3));
 }
 
-TEST_CASE("shapes: what slides and turns under the cloth is not held up") {
+TEST_CASE("shapes: solids that slide and rotate below the cloth are not limited") {
   const Level level = square(9, 0.4);
   for (const SolidKind kind : kinds) {
     const ShapeParameters from = level_with(kind, 1e-4);
     ShapeParameters to = from;
     to.centre.x() += 0.2;
     to.rotate.z() = 100;
-    INFO(word(kind));
-    CHECK(max_move(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
+    INFO(to_string(kind));
+    CHECK(max_step(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
   }
 }
 
-TEST_CASE("shapes: no solid passes through the cloth, however it moves; what was cut is not cut again") {
+TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step is not shortened again") {
   const Level level = square(6, 0.3);
-  int cut = 0, whole = 0, would_cross = 0, barely = 0;
+  int shortened = 0, full = 0, would_cross = 0, barely = 0;
   for (int i = 0; i < 300; ++i) {
     Positions x = level.rest.vertices;
     const double a = uniform(-20, 20), b = uniform(-20, 20);
@@ -129,8 +130,8 @@ TEST_CASE("shapes: no solid passes through the cloth, however it moves; what was
     to.normal += any(0.7);
     if (i % 7 == 0) to.radius = uniform(0.01, 0.2), to.size *= 1.5;
     const auto before = bound(from, level);
-    const StepLimit limit = max_move(*before, *bound(to, level), x);
-    CAPTURE(i, word(from.shape), limit.fraction);
+    const StepLimit limit = max_step(*before, *bound(to, level), x);
+    CAPTURE(i, to_string(from.shape), limit.fraction);
     REQUIRE(limit.fraction > 0);
     REQUIRE(limit.fraction <= 1);
     CHECK(limit.by.empty() == (limit.fraction == 1));
@@ -141,20 +142,20 @@ TEST_CASE("shapes: no solid passes through the cloth, however it moves; what was
       return found;
     };
     CHECK(crossings(0, limit.fraction, 700) == 0);
-    (limit.fraction < 1 ? cut : whole) += 1;
+    (limit.fraction < 1 ? shortened : full) += 1;
     if (limit.fraction == 1) continue;
-    CHECK(max_move(*before, *bound(blended(from, to, limit.fraction), level), x).fraction == 1);
+    CHECK(max_step(*before, *bound(blended(from, to, limit.fraction), level), x).fraction == 1);
     would_cross += crossings(limit.fraction, 1, 700) > 0;
     barely += crossings(limit.fraction, std::min(1.0, limit.fraction + 0.01), 20) > 0;
   }
-  CAPTURE(cut, whole, would_cross, barely);
-  CHECK(cut > 100);
-  CHECK(whole > 50);
-  CHECK(would_cross > 0.95 * cut);
-  CHECK(barely > 0.7 * cut);
+  CAPTURE(shortened, full, would_cross, barely);
+  CHECK(shortened > 100);
+  CHECK(full > 50);
+  CHECK(would_cross > 0.95 * shortened);
+  CHECK(barely > 0.7 * shortened);
 }
 
-TEST_CASE("shapes: an edge that is highest between two places does not pass through the cloth there") {
+TEST_CASE("shapes: an edge that is highest during a rotation does not pass through the cloth") {
   const Level level = square(5, 0.2);
   const Positions& x = level.rest.vertices;
   const double apex = 0.1 / std::sqrt(2.0), lower = apex * (1 - std::cos(2 * M_PI / 180));  // 4.3e-5 m
@@ -166,22 +167,22 @@ TEST_CASE("shapes: an edge that is highest between two places does not pass thro
     ShapeParameters to = from;
     to.rotate.y() = 47;
     REQUIRE(bound(to, level)->intersections(x).empty());
-    const double fraction = max_move(*bound(from, level), *bound(to, level), x).fraction;
+    const double fraction = max_step(*bound(from, level), *bound(to, level), x).fraction;
     CHECK(fraction > 0.01);
     CHECK((fraction == 1) == passes);
     CHECK(fraction < (passes ? 2 : 0.2));
   }
 }
 
-TEST_CASE("shapes: one that becomes another one is refused by name") {
+TEST_CASE("shapes: a solid whose kind changes is refused by name") {
   const Level level = square(3, 0.2);
   const auto before = bound(level_with(SolidKind::box, 1), level);
   CHECK_THROWS_WITH(
-      max_move(*before, *bound(level_with(SolidKind::sphere, 1), level), level.rest.vertices),
-      Catch::StartsWith("thing: sphere cannot become what it is") && Catch::EndsWith("thing: box"));
+      max_step(*before, *bound(level_with(SolidKind::sphere, 1), level), level.rest.vertices),
+      Catch::StartsWith("thing: sphere cannot replace thing: box") && Catch::EndsWith(" during a run"));
 }
 
-TEST_CASE("shapes: where displacements count from is carried along with what is touched") {
+TEST_CASE("shapes: the reference of tangential displacements is advected by solids") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -190,30 +191,30 @@ TEST_CASE("shapes: where displacements count from is carried along with what is 
     ShapeParameters to = from;
     to.centre += Vector3d(0.01, 0.003, 0);
     const auto before = bound(from, level, 0.3);
-    Positions moved_from = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-    const Positions start = moved_from;
-    dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3)).carry(*before, x, moved_from);
-    INFO(word(kind));
-    int carried = 0;
+    Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
+    const Positions start = reference;
+    dynamic_cast<const KinematicObstacles&>(*bound(to, level, 0.3)).advect(*before, x, reference);
+    INFO(to_string(kind));
+    int advected = 0;
     for (int v = 0; v < x.rows(); ++v) {
-      const Eigen::RowVector3d moved = moved_from.row(v) - start.row(v);
+      const Eigen::RowVector3d moved = reference.row(v) - start.row(v);
       if (moved.isZero(0)) continue;
-      ++carried;
+      ++advected;
       CHECK((moved - Eigen::RowVector3d(0.01, 0.003, 0)).norm() < 1e-15);
     }
-    CHECK(carried >= 1);
+    CHECK(advected >= 1);
   }
-  // A ball that turns about a horizontal axis carries what lies on it, though its centre stays.
+  // A ball that turns about a horizontal axis advects what lies on it, with a static centre.
   const ShapeParameters from = level_with(SolidKind::sphere, 0);
   ShapeParameters to = from;
   to.rotate = {0, 1, 0};
-  Positions moved_from = x;
-  dynamic_cast<const MovableObstacles&>(*bound(to, level, 0.3))
-      .carry(*bound(from, level, 0.3), x, moved_from);
-  CHECK((moved_from - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+  Positions reference = x;
+  dynamic_cast<const KinematicObstacles&>(*bound(to, level, 0.3))
+      .advect(*bound(from, level, 0.3), x, reference);
+  CHECK((reference - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
 }
 
-TEST_CASE("shapes: contacts are known by the same keys while a cylinder beside them grows") {
+TEST_CASE("shapes: contacts keep their keys while another cylinder grows") {
   const Level level = square(4, 0.5);  // larger than the box, whose edges touch it
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -221,10 +222,11 @@ TEST_CASE("shapes: contacts are known by the same keys while a cylinder beside t
     ShapeParameters roll = level_with(SolidKind::cylinder, 0.5);
     roll.radius = radius;
     const auto contact = bound({roll, level_with(SolidKind::box, 0)}, level, 0.3);
-    Slips slips;
-    contact->sweep(x, x)->build(x)->friction(x, {})->add_slips(x, slips);
+    TangentialDisplacements displacements;
+    contact->build_candidates(x, x)->build_collisions(x)->friction(x, {})->append_tangential_displacements(
+        x, displacements);
     std::vector<ContactKey> all;
-    for (const Slip& slip : slips) all.push_back(slip.contact);
+    for (const TangentialDisplacement& d : displacements) all.push_back(d.contact);
     return all;
   };
   REQUIRE(keys(0.1).size() > 10);

@@ -13,13 +13,14 @@
 #include "tests/support/kernel_check.h"
 
 using namespace drape;
+using namespace drape::shapes;
 using Eigen::Vector3d;
 
 namespace {
 
 constexpr SolidKind kinds[] = {SolidKind::sphere, SolidKind::box, SolidKind::capsule, SolidKind::cylinder,
                                SolidKind::half_space};
-constexpr double range = 1e-3, keep = 0.1, kappa = 20;
+constexpr double dhat = 1e-3, min_gap_fraction = 0.1, kappa = 20;
 
 std::mt19937 generator(7);
 double uniform(double low, double high) {
@@ -55,8 +56,8 @@ ShapeParameters level_with(SolidKind kind) {
 Shapes::Parameters with(const std::vector<ShapeParameters>& shapes, double friction = 0) {
   Shapes::Parameters p;
   p.shapes = shapes;
-  p.range = range;
-  p.keep = keep;
+  p.dhat = dhat;
+  p.min_gap_fraction = min_gap_fraction;
   p.stiffness = kappa;
   p.friction = friction;
   return p;
@@ -154,10 +155,10 @@ Positions lifted(const Level& level, double height, double x = 0, double y = 0) 
 }
 
 double energy_at(const BoundContact& bound, const Positions& x) {
-  return bound.sweep(x, x)->build(x)->value(x);
+  return bound.build_candidates(x, x)->build_collisions(x)->value(x);
 }
 Positions gradient_at(const BoundContact& bound, const Positions& x) {
-  return gradient_of(*bound.sweep(x, x)->build(x), x);
+  return gradient_of(*bound.build_candidates(x, x)->build_collisions(x), x);
 }
 
 double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
@@ -169,7 +170,7 @@ double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
   return d;
 }
 
-/// A cloth of few triangles, crumpled, its distance to the solid between 5 and 90 % of the range.
+/// A cloth of few triangles, crumpled, its distance to the solid between 5 and 90 % of d̂.
 Positions near_cloth(const Solid& s, const Level& level) {
   for (;;) {
     const Vector3d middle = s.centre + random_vector(0.15);
@@ -182,8 +183,8 @@ Positions near_cloth(const Solid& s, const Level& level) {
     for (Eigen::Index i = 0; i < x.rows(); ++i) x.row(i) += (middle + random_vector(5e-4)).transpose();
     for (int round = 0; round < 60; ++round) {
       const double d = cloth_distance(s, level, x);
-      if (d > 0.05 * range && d < 0.9 * range) return x;
-      x.rowwise() -= (d - 0.4 * range) * n.normal.transpose();
+      if (d > 0.05 * dhat && d < 0.9 * dhat) return x;
+      x.rowwise() -= (d - 0.4 * dhat) * n.normal.transpose();
     }
   }
 }
@@ -197,10 +198,10 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
     for (int i = 0; i < 3000; ++i) {
       const Vector3d p = s.centre + random_vector(0.2);
       const Nearest n = s.nearest(p);
-      INFO(word(kind) << " at " << p.transpose());
+      INFO(to_string(kind) << " at " << p.transpose());
       CHECK(s.distance(p) == Approx(n.distance).margin(1e-15));
       CHECK((n.distance <= 0) == contains(s, p));
-      CHECK(touches(s, {p, p, p}) == contains(s, p));
+      CHECK(intersects(s, {p, p, p}) == contains(s, p));
       CHECK(n.normal.norm() == Approx(1));
       CHECK(n.normal.dot(n.tangent) == Approx(0).margin(1e-14));
       if (n.distance < 1e-4) continue;
@@ -226,13 +227,13 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
   }
 }
 
-TEST_CASE("shapes: a solid's support and its drawing") {
+TEST_CASE("shapes: a solid's support function and its mesh") {
   const double volumes[] = {4.0 / 3 * M_PI * std::pow(0.06, 3), 0.1 * 0.14 * 0.08,
                             4.0 / 3 * M_PI * std::pow(0.06, 3) + M_PI * 0.06 * 0.06 * 0.1,
                             M_PI * 0.06 * 0.06 * 0.1};
   for (const SolidKind kind : kinds) {
     if (kind == SolidKind::half_space) continue;
-    INFO(word(kind));
+    INFO(to_string(kind));
     const Solid s = solid_of(some(kind));
     const TriangleMesh mesh = tessellate(s, 1);
     double volume = 0;
@@ -255,17 +256,17 @@ TEST_CASE("shapes: a solid's support and its drawing") {
   }
 }
 
-TEST_CASE("shapes: the distance of a triangle is the widest slab") {
+TEST_CASE("shapes: the distance of a triangle is the largest separation") {
   for (const SolidKind kind : kinds) {
     const Solid s = solid_of(some(kind));
     int small = 0;
     for (int i = 0; i < 300; ++i) {
       const Corners c = some_triangle(s, i % 2 ? 0.02 : 0.3);
       const double d = searched_distance(s, c), gap = separate(s, c).gap;
-      INFO(word(kind) << " " << i << " distance " << d << " slab " << gap);
+      INFO(to_string(kind) << " " << i << " distance " << d << " separation " << gap);
       CHECK(gap <= d * (1 + 1e-9) + 1e-14);
       CHECK(gap >= d * (1 - 1e-4) - 1e-10);
-      small += d < range;
+      small += d < dhat;
     }
     REQUIRE(small > 10);
   }
@@ -279,8 +280,8 @@ TEST_CASE("shapes: derivatives of the barrier") {
     const auto bound = Shapes(with({p})).bind(level, Material());
     for (int i = 0; i < 25; ++i) {
       const Positions x = near_cloth(s, level);
-      const auto set = bound->sweep(x, x)->build(x);
-      INFO(word(kind) << " state " << i << ", smallest gap " << set->smallest_gap());
+      const auto set = bound->build_candidates(x, x)->build_collisions(x);
+      INFO(to_string(kind) << " state " << i << ", smallest gap " << set->smallest_gap());
       REQUIRE(set->contact_count() > 0);
       const Positions g = gradient_of(*set, x);
       REQUIRE(g.norm() > 0);
@@ -288,9 +289,9 @@ TEST_CASE("shapes: derivatives of the barrier") {
           differences([&](const Positions& y) { return energy_at(*bound, y); }, x, 1e-8);
       CHECK((slope.transpose() - flat(g)).norm() <= 1e-5 * g.norm());
       const Eigen::MatrixXd h = dense(hessian_of(*set, x, Projection::none));
-      const Eigen::MatrixXd bend =
+      const Eigen::MatrixXd difference =
           differences([&](const Positions& y) { return gradient_at(*bound, y); }, x, 1e-8);
-      CHECK((bend - h).norm() <= 1e-4 * h.norm());
+      CHECK((difference - h).norm() <= 1e-4 * h.norm());
       const Eigen::MatrixXd clamped = dense(hessian_of(*set, x, Projection::clamp));
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(clamped);
       CHECK(eigen.eigenvalues()[0] >= -1e-10 * clamped.norm());
@@ -298,7 +299,7 @@ TEST_CASE("shapes: derivatives of the barrier") {
   }
 }
 
-TEST_CASE("shapes: the barrier sees the cloth's distance") {
+TEST_CASE("shapes: the smallest gap is the cloth's distance") {
   const Level level = square(3, 0.02), big = square(2, 0.2);
   for (const SolidKind kind : kinds) {
     const ShapeParameters p = some(kind);
@@ -307,37 +308,38 @@ TEST_CASE("shapes: the barrier sees the cloth's distance") {
       const auto bound = Shapes(with({p})).bind(*l, Material());
       for (int i = 0; i < 150; ++i) {
         const Positions x = near_cloth(s, *l);
-        const double distance = cloth_distance(s, *l, x), seen = bound->sweep(x, x)->build(x)->smallest_gap();
-        INFO(word(kind) << " state " << i << " distance " << distance << " seen " << seen);
+        const double distance = cloth_distance(s, *l, x),
+                     seen = bound->build_candidates(x, x)->build_collisions(x)->smallest_gap();
+        INFO(to_string(kind) << " state " << i << " distance " << distance << " seen " << seen);
         CHECK(seen >= distance - 1e-12);
-        CHECK(seen <= distance + (kind == SolidKind::cylinder ? 6e-5 * range : 1e-9));
+        CHECK(seen <= distance + (kind == SolidKind::cylinder ? 6e-5 * dhat : 1e-9));
       }
     }
   }
 }
 
-TEST_CASE("shapes: flat cloth on a face is carried by κ |b'| of its area") {
+TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
   const Level level = square(5, 0.04);
   for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
     const auto bound = Shapes(with({level_with(kind)})).bind(level, Material());
     for (const double s : {0.05, 0.5, 0.9}) {
-      const Positions x = lifted(level, s * range), g = gradient_at(*bound, x);
-      INFO(word(kind) << " at " << s);
+      const Positions x = lifted(level, s * dhat), g = gradient_at(*bound, x);
+      INFO(to_string(kind) << " at " << s);
       CHECK(-g.col(2).sum() == Approx(-kappa * barrier(s).first * 0.04 * 0.04).epsilon(1e-9));
       CHECK(g.leftCols(2).norm() <= 1e-12 * g.norm());
     }
-    CHECK(energy_at(*bound, lifted(level, 1.001 * range)) == 0);
+    CHECK(energy_at(*bound, lifted(level, 1.001 * dhat)) == 0);
     // The material's own stiffness leaves the gap that core/contact/stiffness.h tells.
     Shapes::Parameters own = with({level_with(kind)});
     own.stiffness.reset();
     const Material cotton;
     const double weight = cotton.area_density() * 9.81 * 0.04 * 0.04;
-    const Positions rest = lifted(level, 0.82853 * range);
+    const Positions rest = lifted(level, 0.82853 * dhat);
     CHECK(-gradient_at(*Shapes(own).bind(level, cotton), rest).col(2).sum() == Approx(weight).epsilon(1e-3));
   }
 }
 
-TEST_CASE("shapes: sliding changes forces without jumps") {
+TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square(4, 0.03);
   for (const SolidKind kind : kinds) {
     ShapeParameters p = level_with(kind);
@@ -352,8 +354,8 @@ TEST_CASE("shapes: sliding changes forces without jumps") {
         double jump = 0, force = 0;
         Positions last;
         for (int i = 0; i <= steps; ++i) {
-          const double way = 0.12 * i / steps;
-          const Positions g = gradient_at(*bound, lifted(level, 0.4 * range, way, 0.31 * way));
+          const double shift = 0.12 * i / steps;
+          const Positions g = gradient_at(*bound, lifted(level, 0.4 * dhat, shift, 0.31 * shift));
           if (i > 0) jump = std::max(jump, (g - last).norm());
           force = std::max(force, g.norm());
           last = g;
@@ -362,14 +364,14 @@ TEST_CASE("shapes: sliding changes forces without jumps") {
         return jump / force;
       };
       const double coarse = largest_jump(2000), fine = largest_jump(16000);
-      INFO(word(kind) << (lying ? " lying" : "") << ": " << coarse << " → " << fine);
+      INFO(to_string(kind) << (lying ? " lying" : "") << ": " << coarse << " → " << fine);
       CHECK(fine < std::max(0.25 * coarse, 1e-12));  // 0 on a plane
       CHECK(fine < 0.03);
     }
   }
 }
 
-TEST_CASE("shapes: a step never lets a triangle touch") {
+TEST_CASE("shapes: a step never leads to an intersection") {
   int cut = 0, free = 0, loose = 0;
   for (const SolidKind kind : kinds) {
     ShapeParameters p = some(kind);
@@ -381,21 +383,21 @@ TEST_CASE("shapes: a step never lets a triangle touch") {
       const Vector3d through = 2.2 * (s.centre - (from[0] + from[1] + from[2]) / 3);
       const double turn = i % 5 ? 0.02 : 0.5, size = i % 7 ? 1 : 10;
       for (Vector3d& q : to) q += size * (through + random_vector(turn));
-      const double start = searched_distance(s, from), part = advance(s, from, to, keep);
-      INFO(word(kind) << " " << i << ": " << part);
+      const double start = searched_distance(s, from), part = advance(s, from, to, min_gap_fraction);
+      INFO(to_string(kind) << " " << i << ": " << part);
       CHECK(part >= 0);
       CHECK(part <= 1);
       (part < 1 ? cut : free) += 1;
       for (int k = 1; k <= 20; ++k) {
         Corners now;
         for (int c = 0; c < 3; ++c) now[c] = from[c] + part * k / 20 * (to[c] - from[c]);
-        CHECK(searched_distance(s, now) >= keep * start * (1 - 1e-3) - 1e-11);
+        CHECK(searched_distance(s, now) >= min_gap_fraction * start * (1 - 1e-3) - 1e-11);
       }
-      // Not more careful than needed, unless it rolls a long way about an edge.
+      // Not overly conservative, except for long rolling motions about an edge.
       if (part < 1) {
         Corners now;
         for (int c = 0; c < 3; ++c) now[c] = from[c] + part * (to[c] - from[c]);
-        loose += searched_distance(s, now) > 1.1 * keep * start;
+        loose += searched_distance(s, now) > 1.1 * min_gap_fraction * start;
       }
     }
   }
@@ -404,7 +406,7 @@ TEST_CASE("shapes: a step never lets a triangle touch") {
   CHECK(loose < 0.01 * cut);
 }
 
-TEST_CASE("shapes: the sweep's step, in words") {
+TEST_CASE("shapes: max_step names the blocking pair") {
   const Level level = square(2, 0.1);  // two triangles
   ShapeParameters p = level_with(SolidKind::sphere);
   p.name = "ball";
@@ -412,25 +414,26 @@ TEST_CASE("shapes: the sweep's step, in words") {
   p.centre = {0.01, -0.02, -0.002};
   const auto bound = Shapes(with({p})).bind(level, Material());
   const Positions x0 = lifted(level, 0.01), x1 = lifted(level, -0.09);
-  const StepLimit limit = bound->sweep(x0, x1)->max_step();
+  const StepLimit limit = bound->build_candidates(x0, x1)->max_step();
   CHECK(limit.fraction == Approx(0.09).epsilon(1e-9));
   CHECK(limit.by == "cloth triangle 0 and ball: sphere");
   CHECK(bound->intersections(x0).empty());
   CHECK(bound->intersections(x1).empty());  // it is on the other side
-  const auto touches = bound->intersections(lifted(level, -0.001));
-  REQUIRE(touches.size() == 1);
-  CHECK(touches[0].first == "cloth triangle 0");
-  CHECK(touches[0].second == "ball: sphere");
-  const StepLimit away = bound->sweep(x0, lifted(level, 1))->max_step();
+  const auto found = bound->intersections(lifted(level, -0.001));
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].first == "cloth triangle 0");
+  CHECK(found[0].second == "ball: sphere");
+  const StepLimit away = bound->build_candidates(x0, lifted(level, 1))->max_step();
   CHECK(away.fraction == 1);
   CHECK(away.by.empty());
-  const auto far = bound->sweep(lifted(level, 1), lifted(level, 2))->build(lifted(level, 1.5));
+  const auto far =
+      bound->build_candidates(lifted(level, 1), lifted(level, 2))->build_collisions(lifted(level, 1.5));
   CHECK(far->contact_count() == 0);
   CHECK(far->smallest_gap() == std::numeric_limits<double>::infinity());
   CHECK(bound->obstacles().size() == 1);
 }
 
-TEST_CASE("shapes: a sweep's sets are those of the places themselves") {
+TEST_CASE("shapes: collisions at a state do not depend on the motion of the candidates") {
   const Level level = square(9, 0.16);
   std::vector<ShapeParameters> all;
   for (const SolidKind kind : kinds) all.push_back(some(kind));
@@ -444,11 +447,11 @@ TEST_CASE("shapes: a sweep's sets are those of the places themselves") {
   for (int i = 0; i < 12; ++i) {
     Positions x1 = x0;
     x1.col(2).array() -= 0.05;
-    const auto sweep = bound->sweep(x0, x1);
-    const double part = sweep->max_step().fraction;
+    const auto candidates = bound->build_candidates(x0, x1);
+    const double part = candidates->max_step().fraction;
     const Positions x = x0 + part * (x1 - x0);
     CHECK(bound->intersections(x).empty());
-    const auto set = sweep->build(x);
+    const auto set = candidates->build_collisions(x);
     contacts += set->contact_count();
     CHECK(set->value(x) == Approx(energy_at(*bound, x)).epsilon(1e-12));
     CHECK((gradient_of(*set, x) - gradient_at(*bound, x)).norm() <= 1e-12 * gradient_at(*bound, x).norm());
@@ -476,16 +479,16 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     if (kind == SolidKind::sphere) p.centre.z() = -p.radius;
     if (kind == SolidKind::box) p.friction = 0.3;  // its own
     const auto bound = Shapes(with({p}, kind == SolidKind::box ? 0.0 : 0.3)).bind(level, Material());
-    const Positions x = lifted(level, 0.4 * range);
-    const auto set = bound->sweep(x, x)->build(x);
+    const Positions x = lifted(level, 0.4 * dhat);
+    const auto set = bound->build_candidates(x, x)->build_collisions(x);
     const double normal = -gradient_of(*set, x).col(2).sum();
-    INFO(word(kind));
+    INFO(to_string(kind));
     REQUIRE(normal > 0);
-    // The normal forces themselves: on a sphere they lean by up to 0.14 rad, the range over its curvature.
+    // The normal forces themselves: on a sphere they lean by up to 0.14 rad, d̂ over its curvature.
     const double all = normal * (kind == SolidKind::sphere ? 1.01 : 1 + 1e-12);
     double last = 0;
-    for (const double slip : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
-      const auto friction = set->friction(lifted(level, 0.4 * range, -slip), {});
+    for (const double u : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
+      const auto friction = set->friction(lifted(level, 0.4 * dhat, -u), {});
       REQUIRE(friction);
       const Positions g = gradient_of(*friction, x);
       const double force = g.col(0).sum();  // the gradient is against the motion's force
@@ -495,7 +498,7 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     }
     CHECK(last == Approx(0.3 * normal).epsilon(kind == SolidKind::sphere ? 0.01 : 1e-12));
     const auto smooth = Shapes(with({level_with(kind)})).bind(level, Material());
-    CHECK(smooth->sweep(x, x)->build(x)->friction(x, {}) == nullptr);
+    CHECK(smooth->build_candidates(x, x)->build_collisions(x)->friction(x, {}) == nullptr);
   }
 }
 
@@ -510,16 +513,16 @@ TEST_CASE("shapes: parameters") {
   p.name.clear();
   const auto bound = Shapes(with({p})).bind(level, Material());
   CHECK(bound->intersections(lifted(level, -0.01)).empty());
-  const auto touches = bound->intersections(lifted(level, 0.01));
-  REQUIRE(touches.size() == 8);
-  CHECK(touches[7].second == "shape 0: half_space");
+  const auto found = bound->intersections(lifted(level, 0.01));
+  REQUIRE(found.size() == 8);
+  CHECK(found[7].second == "shape 0: half_space");
   Material foil;
   foil.density = 1e-9;
   CHECK(contact_stiffness(foil) == Approx(9.81e-5));
   CHECK(contact_stiffness(Material()) == Approx(10 * 472.6 * 3.18e-4 * 9.81));
 }
 
-TEST_CASE("shapes: gaps as small as doubles have them are told at edges and rims") {
+TEST_CASE("shapes: gaps near round-off are resolved at edges and rims") {
   for (const SolidKind kind : {SolidKind::box, SolidKind::cylinder}) {
     const ShapeParameters p = some(kind);
     const Solid s = solid_of(p);
@@ -534,9 +537,9 @@ TEST_CASE("shapes: gaps as small as doubles have them are told at edges and rims
         const Vector3d near = on + gap * up;
         const Corners c{s.to_world(near - 0.3 * edge), s.to_world(near + 0.7 * edge),
                         s.to_world(near + 0.02 * up)};
-        INFO(word(kind) << " " << i << ", gap " << gap << ", slab " << separate(s, c).gap);
+        INFO(to_string(kind) << " " << i << ", gap " << gap << ", separation " << separate(s, c).gap);
         CHECK(separate(s, c).gap == Approx(gap).epsilon(1e-3).margin(2e-16));
-        CHECK(!touches(s, c));
+        CHECK(!intersects(s, c));
       }
     }
   }

@@ -6,19 +6,19 @@
 #include "core/contact/pair_contacts.h"
 #include "plugins/contact/shapes/solid.h"
 
-namespace drape {
+namespace drape::shapes {
 
-/// A vertex of the cloth that may come near a solid.
-struct VertexPair {
+/// A cloth vertex and a solid that may come within d̂.
+struct VertexSolidPair {
   int vertex;
   int solid;
-  double weight;  ///< area that it stands for [m²]
+  double weight;  ///< the vertex's rest area [m²]
 };
 
-/// The energy κ d̂ Σ weight b(gap / d̂) over those of `pairs` within range at x, by the solids' own distance:
-/// its Hessian has the axes normal, tangent and normal × tangent, so that it needs no decomposition.
-std::unique_ptr<ContactSet> make_vertex_contacts(const Positions& x, const std::vector<Solid>& solids,
-                                                 const std::vector<VertexPair>& pairs,
+/// The barrier potential κ d̂ Σ weight b(gap / d̂) over those `pairs` within d̂ at x, with the solids'
+/// closed-form distance. The eigenvectors of its Hessian are known: normal, tangent and normal × tangent.
+std::unique_ptr<Collisions> make_vertex_contacts(const Positions& x, const std::vector<Solid>& solids,
+                                                 const std::vector<VertexSolidPair>& pairs,
                                                  const BarrierParameters& parameters);
 
-}  // namespace drape
+}  // namespace drape::shapes

@@ -197,7 +197,8 @@ methods: {pcs: {}}
     x(i, 2) = 0.5e-3 + 2e-4 * std::sin(30 * x(i, 0) + 20 * x(i, 1));
   }
   const double shell = s.model().value(s.scene->hierarchy.prolong(x, 0, 2, s.scene->hierarchy.prolongations));
-  const double barrier = problem.models[0]->contacts()[0]->sweep(x, x)->build(x)->value(x);
+  const double barrier =
+      problem.models[0]->contacts()[0]->build_candidates(x, x)->build_collisions(x)->value(x);
   const double limit = problem.models[0]->limits()[0]->value(x);
   REQUIRE(barrier > 0);
   REQUIRE(limit > 0);

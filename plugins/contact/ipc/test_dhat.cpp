@@ -4,15 +4,16 @@
 #include "plugins/contact/ipc/ipc.h"
 
 using namespace drape;
+using namespace drape::ipc;
 
-TEST_CASE("ipc: a range across the whole cloth is refused before its pairs take all memory") {
+TEST_CASE("ipc: a dhat larger than the cloth is refused before its pairs exceed memory") {
   const Level level = Level::of(0, grid({1, 1}, 80, 80, Diagonals::one_way));
   Ipc::Parameters p;
   p.self_contact = true;
-  p.range = 2 / 79.0;  // two edges
+  p.dhat = 2 / 79.0;  // two edges
   CHECK_NOTHROW(Ipc(p).bind(level, Material()));
-  p.range = 1000;
+  p.dhat = 1000;
   CHECK_THROWS_WITH(Ipc(p).bind(level, Material()),
                     Catch::Contains("more than 50 million pairs of the resting cloth's triangles are within "
-                                    "\"range\" of each other"));
+                                    "\"dhat\" of each other"));
 }

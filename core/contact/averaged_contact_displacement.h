@@ -6,18 +6,18 @@
 
 namespace drape {
 
-/// How far vertices are taken along by what touches them: of each the mean over its contacts, by weight [m].
-class MeanMoves {
+/// The weighted mean displacement [m] of the obstacle points that each vertex is in contact with.
+class AveragedContactDisplacement {
  public:
-  explicit MeanMoves(Eigen::Index vertices)
+  explicit AveragedContactDisplacement(Eigen::Index vertices)
       : weighted_(Positions::Zero(vertices, 3)), weights_(Eigen::VectorXd::Zero(vertices)) {}
 
-  void add(int vertex, const Eigen::Vector3d& move, double weight) {
-    weighted_.row(vertex) += weight * move;
+  void add(int vertex, const Eigen::Vector3d& displacement, double weight) {
+    weighted_.row(vertex) += weight * displacement;
     weights_[vertex] += weight;
   }
-  /// Moves the rows of x (n×3) that something was added for.
-  void move(Positions& x) const {
+  /// Adds the mean to the rows of x (n×3) of vertices with contacts.
+  void add_to(Positions& x) const {
     for (Eigen::Index v = 0; v < x.rows(); ++v)
       if (weights_[v] > 0) x.row(v) += weighted_.row(v) / weights_[v];
   }

@@ -1,4 +1,4 @@
-#include "plugins/contact/ipc/sound_mesh.h"
+#include "plugins/contact/ipc/validated_mesh.h"
 
 #include <functional>
 #include <stdexcept>
@@ -6,9 +6,9 @@
 
 #include "core/mesh/check.h"
 #include "core/mesh/io.h"
-#include "plugins/contact/ipc/kept.h"
+#include "plugins/contact/ipc/weak_cache.h"
 
-namespace drape {
+namespace drape::ipc {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,7 +38,7 @@ TriangleMesh icosahedron() {
   return mesh;
 }
 
-/// Every triangle in four, new vertices on the unit sphere.
+/// Splits every triangle in four and projects new vertices onto the unit sphere.
 TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
   const int n = static_cast<int>(coarse.vertices.rows());
   const Topology topology = Topology::of(coarse.triangles, n);
@@ -60,32 +60,33 @@ TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
 
 struct Named {
   std::string key;
-  SoundMesh sound;
+  ValidatedMesh validated;
 };
 
-/// What `make` makes, once.
-std::shared_ptr<const SoundMesh> kept(const std::string& key, const std::function<TriangleMesh()>& make) {
-  static Kept<Named> all;
+/// The mesh from make(), cached under a key.
+std::shared_ptr<const ValidatedMesh> cached(const std::string& key,
+                                            const std::function<TriangleMesh()>& make) {
+  static WeakCache<Named> all;
   const auto found = all.find_or_make([&](const Named& named) { return named.key == key; },
                                       [&] {
                                         Named named{key, {make(), {}}};
-                                        const TriangleMesh& mesh = named.sound.mesh;
-                                        named.sound.topology = Topology::of(
+                                        const TriangleMesh& mesh = named.validated.mesh;
+                                        named.validated.topology = Topology::of(
                                             mesh.triangles, static_cast<int>(mesh.vertices.rows()));
                                         return named;
                                       });
-  return {found, &found->sound};
+  return {found, &found->validated};
 }
 
 }  // namespace
 
-std::shared_ptr<const SoundMesh> sound_mesh_of(const fs::path& file) {
+std::shared_ptr<const ValidatedMesh> load_validated_mesh(const fs::path& file) {
   std::error_code none;
   std::string key = fs::absolute(file, none).string();
   const auto size = fs::file_size(file, none);
-  const auto changed = fs::last_write_time(file, none).time_since_epoch().count();
-  key += " " + std::to_string(size) + " " + std::to_string(changed);
-  return kept(key, [&] {
+  const auto modified = fs::last_write_time(file, none).time_since_epoch().count();
+  key += " " + std::to_string(size) + " " + std::to_string(modified);
+  return cached(key, [&] {
     TriangleMesh mesh = read_mesh(file);
     if (const auto faults = check_mesh(mesh); !faults.empty())
       throw std::runtime_error(file.string() + ": " + faults[0]);
@@ -93,14 +94,14 @@ std::shared_ptr<const SoundMesh> sound_mesh_of(const fs::path& file) {
   });
 }
 
-std::shared_ptr<const SoundMesh> unit_box() { return kept("box", box); }
+std::shared_ptr<const ValidatedMesh> unit_box() { return cached("box", box); }
 
-std::shared_ptr<const SoundMesh> unit_sphere(int subdivisions) {
-  return kept("sphere " + std::to_string(subdivisions), [&] {
+std::shared_ptr<const ValidatedMesh> unit_sphere(int subdivisions) {
+  return cached("sphere " + std::to_string(subdivisions), [&] {
     TriangleMesh mesh = icosahedron();
     for (int i = 0; i < subdivisions; ++i) mesh = split_on_sphere(mesh);
     return mesh;
   });
 }
 
-}  // namespace drape
+}  // namespace drape::ipc

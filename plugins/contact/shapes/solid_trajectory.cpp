@@ -1,0 +1,153 @@
+#include "plugins/contact/shapes/solid_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/contact/averaged_contact_displacement.h"
+#include "core/contact/contact_kernel.h"
+#include "core/contact/nonlinear_ccd.h"
+
+namespace drape::shapes {
+
+namespace {
+
+using Eigen::Vector3d;
+
+template <class T>
+T interpolate(const T& a, const T& b, double t) {
+  return (1 - t) * a + t * b;
+}
+
+/// The largest distance from the centre of a point that rotates with the axes. The rounding does not rotate.
+double lever_arm(const Solid& s) {
+  return s.kind == SolidKind::cylinder ? std::hypot(s.radius, s.half.z()) : s.half.norm();
+}
+
+/// A lower bound of a triangle's distance: that of its bounding ball.
+double ball_distance(const Solid& solid, const Corners& triangle) {
+  const Vector3d centroid = (triangle[0] + triangle[1] + triangle[2]) / 3;
+  double radius = 0;
+  for (const Vector3d& corner : triangle) radius = std::max(radius, (corner - centroid).norm());
+  return solid.distance(centroid) - radius;
+}
+
+/// The first t in [0, 1] with a + b t + c t² ≤ 0, 1 if there is none.
+double first_root(double a, double b, double c) {
+  if (!(a > 0)) return 0;
+  const double discriminant = b * b - 4 * a * c;
+  if (discriminant < 0 || (b >= 0 && c >= 0)) return 1;
+  // a > 0: the smallest positive root, without cancellation.
+  const double root = std::sqrt(discriminant);
+  const double t = b < 0 ? 2 * a / (root - b) : (-b - root) / (2 * c);
+  return t > 0 ? std::min(t, 1.0) : 1;
+}
+
+}  // namespace
+
+// p = c + R q with q and the angles of R linear in t: |R'| ≤ ω, |R''| ≤ ω², ω the sum of the angles' changes.
+SolidTrajectory::SolidTrajectory(const Solid& from, const Solid& to) : from_(from), to_(to) {
+  const double omega = (to.rotate - from.rotate).cwiseAbs().sum() * (M_PI / 180);
+  const double size = std::max(lever_arm(from), lever_arm(to));
+  const double growth = (to.half - from.half).norm() + std::abs(to.radius - from.radius);
+  acceleration_bound_ = omega * omega * size + 2 * omega * growth;
+  displacement_bound_ = (to.centre - from.centre).norm() + omega * size + growth;
+}
+
+bool SolidTrajectory::is_static() const {
+  return from_.centre == to_.centre && from_.half == to_.half && from_.radius == to_.radius &&
+         (from_.kind == SolidKind::half_space ? from_.plane == to_.plane : from_.rotate == to_.rotate);
+}
+
+Solid SolidTrajectory::at(double t) const {
+  Solid s;
+  s.kind = from_.kind;
+  s.centre = interpolate(from_.centre, to_.centre, t);
+  s.half = interpolate(from_.half, to_.half, t);
+  s.radius = interpolate(from_.radius, to_.radius, t);
+  s.rotate = interpolate(from_.rotate, to_.rotate, t);
+  s.update_axes();
+  return s;
+}
+
+double SolidTrajectory::gap(const Corners& triangle, double dhat) const {
+  const double lower_bound = ball_distance(from_, triangle);
+  return lower_bound > dhat ? lower_bound : separate(from_, triangle).gap;
+}
+
+double SolidTrajectory::advance(const Corners& triangle, double min_gap, int max_iterations) const {
+  if (!(min_gap > 0)) return 0;
+  if (from_.kind == SolidKind::half_space) return advance_plane(triangle, min_gap);
+  if (ball_distance(from_, triangle) > displacement_bound_ + 2 * min_gap) return 1;
+  const auto widest = [&](double t) {
+    const Separation s = separate(at(t), triangle);
+    return SeparatingPlane{s.normal, s.gap};
+  };
+  const auto separation = [&](const Vector3d& n, double t) { return separation_along(at(t), triangle, n); };
+  return nonlinear_ccd(widest, separation, min_gap, acceleration_bound_, max_iterations);
+}
+
+// |N| is convex in t, and its linear interpolant an upper bound: (gap - min_gap) |N| ≥ N · (p - c) - min_gap
+// |N| is bounded below by a quadratic polynomial.
+double SolidTrajectory::advance_plane(const Corners& triangle, double min_gap) const {
+  const double length = from_.plane.norm(), longer = to_.plane.norm() - length;
+  const Vector3d normal_change = to_.plane - from_.plane, displacement = to_.centre - from_.centre;
+  double fraction = 1;
+  for (const Vector3d& corner : triangle) {
+    const Vector3d p = corner - from_.centre;
+    fraction =
+        std::min(fraction, first_root(from_.plane.dot(p) - min_gap * length,
+                                      normal_change.dot(p) - from_.plane.dot(displacement) - min_gap * longer,
+                                      -normal_change.dot(displacement)));
+  }
+  return fraction;
+}
+
+std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from,
+                                                const std::vector<Solid>& to) {
+  if (from.size() != to.size()) throw std::runtime_error("shapes cannot appear or vanish during a run");
+  std::vector<SolidTrajectory> trajectories;
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    if (from[i].kind != to[i].kind)
+      throw std::runtime_error(to[i].name + " cannot replace " + from[i].name + " during a run");
+    trajectories.emplace_back(from[i], to[i]);
+  }
+  return trajectories;
+}
+
+void advect_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
+                        Positions& reference) {
+  AveragedContactDisplacement mean(x.rows());  // weighted by friction force
+  const auto add = [&](int vertex, int solid, const Vector3d& touched, double weight) {
+    const Vector3d local = scene.solids[solid].to_local(touched);
+    mean.add(vertex, to[solid].to_world(local) - touched, weight);
+  };
+  const CandidatePairs candidates = find_candidates(scene, find_triangles(scene, x, x), x, x);
+  const double dhat = scene.barrier.dhat;
+  for (const VertexSolidPair& pair : candidates.vertices) {
+    const Vector3d p = x.row(pair.vertex);
+    const Solid& solid = scene.solids[pair.solid];
+    const Nearest nearest = solid.nearest(p);
+    if (nearest.distance < dhat && solid.friction > 0)
+      add(pair.vertex, pair.solid, p - nearest.distance * nearest.normal,
+          -pair.weight * solid.friction * barrier(nearest.distance / dhat).first);
+  }
+  const int n = static_cast<int>(x.rows());
+  for (const ContactPair& pair : candidates.pairs) {
+    const PairPositions at = positions_of(pair, x, scene.obstacle_points);
+    if (pair.friction == 0 || !is_within_dhat(pair, at, dhat)) continue;
+    const Contact contact = contact_at(pair, at, dhat);
+    const bool first_is_cloth = pair.vertices[0] < n;
+    Vector3d touched = (first_is_cloth ? 1 : -1) * pair.offset * contact.normal;
+    for (int k = 0; k < 4; ++k)
+      if (pair.vertices[k] >= n) touched += std::abs(contact.closest.c[k]) * at.col(k);
+    const int solid = scene.solid_of_point[pair.vertices[first_is_cloth ? 3 : 0] - n];
+    for (int k = 0; k < 4; ++k)
+      if (pair.vertices[k] < n)
+        add(pair.vertices[k], solid, touched,
+            std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
+  }
+  mean.add_to(reference);
+}
+
+}  // namespace drape::shapes
