@@ -24,7 +24,7 @@ struct LevelRecord {
   int level = 0;
   std::string status, message;
   Figure vertices, triangles, steps, newton_iterations, seconds, flops;
-  bool afresh = false;               ///< begun from the scene's start: what came before is not in it
+  bool from_initial_state = false;   ///< begun from the scene's start: what came before is not in it
   Figure energy, energy_on_finest;   ///< [J]
   Figure decrement, force_residual;  ///< [m/s], [1]
   Figure largest_stretch, intersections, smallest_gap;

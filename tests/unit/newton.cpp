@@ -140,7 +140,7 @@ TEST_CASE("A run says how it ended", "[newton]") {
   p.max_steps = 2;
   p.step_size = 0.01;
   LevelResult r = c.solve(p, 0.4);
-  REQUIRE(r.outcome == Outcome::out_of_steps);
+  REQUIRE(r.outcome == Outcome::max_steps_reached);
   REQUIRE(r.steps == 2);
   REQUIRE(r.message.find("max_steps = 2") != std::string::npos);
 
@@ -196,22 +196,22 @@ TEST_CASE("Forces that are not numbers are no equilibrium") {
 
 namespace {
 
-/// Changes that change nothing, each of them followed by one step.
-class Idle : public Conditions {
+/// Increments that change nothing, each followed by one implicit step.
+class Idle : public LoadStepping {
  public:
-  int changes() const override { return 3; }
-  bool settles() const override { return false; }
-  void begin(int, bool) override { change_ = 0; }
-  ConditionsState state() const override { return {change_, {}}; }
-  void restore(int, const ConditionsState& state) override { change_ = state.change; }
-  int change() const override { return change_; }
-  bool made() const override { return true; }
-  double time() const override { return change_; }
-  StepLimit advance(int, const Positions&) override { return ++change_, StepLimit(); }
+  int increment_count() const override { return 3; }
+  bool equilibrates() const override { return false; }
+  void begin(int, bool) override { increment_ = 0; }
+  LoadSteppingState state() const override { return {increment_, {}}; }
+  void restore(int, const LoadSteppingState& state) override { increment_ = state.increment; }
+  int increment() const override { return increment_; }
+  bool complete() const override { return true; }
+  double time() const override { return increment_; }
+  StepLimit advance(int, const Positions&) override { return ++increment_, StepLimit(); }
   bool advance_by(double, int, const Positions&) override { return false; }
 
  private:
-  int change_ = 0;
+  int increment_ = 0;
 };
 
 }  // namespace
@@ -233,7 +233,7 @@ TEST_CASE("Steps from where nothing is left to gain lead nowhere, and no fault i
       const LevelResult r = minimise(objective, x, p, {Stopwatch(), c.observer, false, {}, nullptr, &idle});
       INFO(r.message);
       CHECK(r.outcome == Outcome::converged);
-      CHECK(r.conditions.change == 3);
+      CHECK(r.load_stepping.increment == 3);
       CHECK((r.x - x).cwiseAbs().maxCoeff() < 1e-12);
     }
 }
@@ -242,9 +242,9 @@ TEST_CASE("A matrix kept over several iterations reaches the same minimum with f
           "[newton]") {
   Case fresh, kept;
   NewtonParameters p = tight();
-  p.refresh = 1;
+  p.hessian_update_interval = 1;
   const LevelResult a = fresh.solve(p, 0.4);
-  p.refresh = 3;
+  p.hessian_update_interval = 3;
   const LevelResult b = kept.solve(p, 0.4);
   REQUIRE(a.outcome == Outcome::converged);
   REQUIRE(b.outcome == Outcome::converged);
@@ -260,7 +260,7 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
   p.step_growth = 1;
   p.max_steps = 20;
   const LevelResult r = patient.solve(p, 0.4);
-  REQUIRE(r.outcome == Outcome::out_of_steps);  // so damped, it is under way
+  REQUIRE(r.outcome == Outcome::max_steps_reached);  // so damped, it is under way
   for (const IterationRow& row : patient.observer.rows) {
     REQUIRE(row.step_size == 0.01);
     REQUIRE(row.iteration < 10);
@@ -313,7 +313,7 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
     const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
     CAPTURE(int(form), r.steps);
     CHECK(r.outcome == Outcome::infeasible);
-    CHECK(r.message.find("nothing holds the cloth: it has moved on by ") == 0);
+    CHECK(r.message.find("nothing holds the cloth: it has drifted by ") == 0);
     CHECK(r.steps < 100);
   }
 }
@@ -321,7 +321,7 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
 TEST_CASE(
     "A cloth that comes to lie without a force is at equilibrium, though nothing is left to measure by") {
   Case c;
-  const std::vector<HeldVertex> held = {{0, c.level.rest.vertices.row(0), 0}};
+  const std::vector<DirichletVertex> held = {{0, c.level.rest.vertices.row(0), 0}};
   c.centres = c.level.rest.vertices;  // the held vertex is in its place
   c.centres.bottomRows(15).array() += 0.01;
   c.centres(0, 2) += 1e-12;  // but for a rounding
@@ -343,12 +343,12 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
     bool checkpoint_due() override { return true; }
     void checkpoint(const NewtonState& state) override { states.push_back(state); }
   };
-  for (const int refresh : {1, 3})
+  for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
       for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
         Case c;
         NewtonParameters p = tight();
-        p.refresh = refresh;
+        p.hessian_update_interval = interval;
         p.iterations_per_step = iterations;
         p.form = form;
         p.decrement_tolerance = 1e-7;
@@ -359,7 +359,7 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
         PlainObjective first(model);
         const LevelResult expected =
             minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
-        CAPTURE(refresh, iterations, int(form), expected.message);
+        CAPTURE(interval, iterations, int(form), expected.message);
         REQUIRE(expected.outcome == Outcome::converged);
         REQUIRE(whole.states.size() > 4);
         int kept_factors = 0;
@@ -387,6 +387,6 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
             REQUIRE(a.force_residual == b.force_residual);
           }
         }
-        REQUIRE((kept_factors > 0) == (refresh > 1));
+        REQUIRE((kept_factors > 0) == (interval > 1));
       }
 }

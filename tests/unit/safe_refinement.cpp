@@ -31,7 +31,7 @@ struct TwoLevels {
     for (const std::string& contact : contacts)
       models_of_contact.push_back(make_plugin_from<ContactModel>(contact));
     for (const Level& level : hierarchy.levels) {
-      std::vector<HeldVertex> held;
+      std::vector<DirichletVertex> held;
       for (const int v : pins) held.push_back({v, level.rest.vertices.row(v), 0});
       models.push_back(
           std::make_unique<LevelModel>(level, Material(), own, std::move(held), models_of_contact));
@@ -41,7 +41,7 @@ struct TwoLevels {
     }
   }
   /// Holds other vertices of the finer level than the pins.
-  void hold(std::vector<HeldVertex> held) {
+  void hold(std::vector<DirichletVertex> held) {
     *models[1] = LevelModel(hierarchy.levels[1], Material(), energies_, std::move(held), contacts_);
   }
 
@@ -61,7 +61,7 @@ struct TwoLevels {
   std::size_t beyond_limit(int level, const Positions& x) const {
     std::size_t count = 0;
     for (const BoundEnergy* limit : models[level]->limits())
-      count += dynamic_cast<const StretchLimited&>(*limit).beyond(x).size();
+      count += dynamic_cast<const StretchLimited&>(*limit).violations(x).size();
     return count;
   }
 };
@@ -235,10 +235,10 @@ TEST_CASE("Triangles that cannot be within the strain limit are named") {
   CHECK(refined.x.row(1) == cloth.place.transpose());
   REQUIRE(cloth.beyond_limit(1, refined.x) > 0);
   CHECK_THAT(refined.fault,
-             Catch::Matches("the refined state is beyond the strain limit: triangle [0-9]+, stretched to "
+             Catch::Matches("the refined state violates the strain limit: triangle [0-9]+, stretched to "
                             "[12]\\.[0-9]+ \\(limit 1\\.1\\).*"));
   const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
-  const std::string first = to_string(limit.beyond(refined.x)[0], 1.1);
+  const std::string first = to_string(limit.violations(refined.x)[0], 1.1);
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
 }
 
@@ -254,10 +254,10 @@ TEST_CASE("A level that cannot be begun from the coarser one is begun from the s
       silent);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
-  CHECK_FALSE(results[1].afresh);                   // what it took to try counts
+  CHECK_FALSE(results[1].from_initial_state);       // what it took to try counts
   CHECK(results[1].outcome != Outcome::converged);  // what tears at it is still there
   CHECK_THAT(results[1].message,
-             Catch::Matches("the refined state is beyond the strain limit: triangle .*; the level is begun "
+             Catch::Matches("the refined state violates the strain limit: triangle .*; the level starts "
                             "from the scene's start instead; .*"));
   CHECK(cloth.beyond_limit(1, results[1].x) == 0);
 }

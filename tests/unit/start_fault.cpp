@@ -92,5 +92,5 @@ TEST_CASE("what is not finite at the start is named: the energy, the triangle, t
   CHECK(fault({{"stiff", given(inf, 1)}}, start) ==
         "energy stiff is not, though no triangle is degenerate" + units);
   start.row(2)[1] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 is at no finite place; change the start");
+  CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 has no finite position; change the start");
 }

@@ -77,7 +77,7 @@ class BoundPressure final : public BoundEnergy {
   /// across w on both vertices, n = w/|w|, and |M| = |p| |w| / 6 times it.
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     const bool clamp = projection.kind == Projection::clamp;
-    const double lifted = projection.is_exact() ? 0 : clamp ? projection.share / 2 : projection.share;
+    const double lifted = projection.is_exact() ? 0 : clamp ? projection.blend / 2 : projection.blend;
     const Vector origin = origin_at(x);
     order_.for_each_chunk([&](int c) {
       for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {

@@ -257,7 +257,7 @@ TEST_CASE("strain_limit: a start beyond the limit is named, can be left out, and
   const auto all = bound_to(level);
   Positions x = level.rest.vertices;
   x(0, 0) -= 0.1;  // a corner
-  const auto beyond = limited(*all).beyond(x);
+  const auto beyond = limited(*all).violations(x);
   REQUIRE(!beyond.empty());
   REQUIRE(static_cast<int>(beyond.size()) < level.triangle_count());
   CHECK(limited(*all).limit() == limit);
@@ -269,16 +269,16 @@ TEST_CASE("strain_limit: a start beyond the limit is named, can be left out, and
 
   std::vector<char> skipped(level.triangle_count(), 0);
   for (const auto& triangle : beyond) skipped[triangle.triangle] = 1;
-  const auto left = limited(*all).without(skipped);
-  CHECK(limited(*left).beyond(x).empty());
+  const auto left = limited(*all).restricted(skipped);
+  CHECK(limited(*left).violations(x).empty());
   CHECK(std::isfinite(left->value(x)));
   CHECK(left->stencils().rows() == level.triangle_count() - static_cast<int>(beyond.size()));
   CHECK(filter(*left).max_step(x, level.rest.vertices).fraction == 1);
   CHECK(filter(*left).max_step(x, 1.5 * x).fraction < 1);
-  const auto none = limited(*left).without(std::vector<char>(level.triangle_count(), 1));
+  const auto none = limited(*left).restricted(std::vector<char>(level.triangle_count(), 1));
   CHECK(none->value(1e3 * x) == 0);
   CHECK(filter(*none).max_step(x, 1e3 * x).fraction == 1);
-  CHECK_THROWS_WITH(limited(*all).without({0, 1}), Catch::Contains("2 flags for 24 triangles"));
+  CHECK_THROWS_WITH(limited(*all).restricted({0, 1}), Catch::Contains("2 flags for 24 triangles"));
 }
 
 TEST_CASE("strain_limit: same bits with any number of threads") {

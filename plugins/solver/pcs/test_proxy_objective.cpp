@@ -159,7 +159,7 @@ TEST_CASE("A proxy that relaxes becomes the plain energy of its level, once", "[
   const auto parts = proxy_parts(f.problem, 0, 2, 1, interpolation);
   const Positions x = f.state(0);
   ProxyObjective never(f.problem, 0, parts, ProxyMatrix::galerkin);
-  CHECK_FALSE(never.relax());
+  CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
   ProxyObjective proxy(f.problem, 0, parts, ProxyMatrix::galerkin, true);
   PlainObjective plain(*f.problem.models[0]);
@@ -168,8 +168,8 @@ TEST_CASE("A proxy that relaxes becomes the plain energy of its level, once", "[
   proxy.gradient(x, g);
   REQUIRE((g - expected).norm() > 1e-3 * expected.norm());
   proxy.matrix(x, Projection::clamp);
-  REQUIRE(proxy.relax());
-  CHECK_FALSE(proxy.relax());
+  REQUIRE(proxy.switch_to_plain());
+  CHECK_FALSE(proxy.switch_to_plain());
   CHECK_FALSE(proxy.is_proxy());
   CHECK(proxy.gradient(x, g) == plain.gradient(x, expected));
   CHECK(g == expected);

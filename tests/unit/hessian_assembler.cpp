@@ -1,4 +1,4 @@
-#include "core/numerics/sum_matrix.h"
+#include "core/numerics/hessian_assembler.h"
 
 #include <catch2/catch.hpp>
 
@@ -56,7 +56,7 @@ struct Chain {
   std::shared_ptr<const BlockPattern> pattern = BlockPattern::of(n, {springs.stencils()});
   BlockMatrix matrix{pattern};
   Positions x = Positions::Zero(n, 3);
-  SumMatrix sum;
+  HessianAssembler sum;
 
   const BlockMatrix& with(const Springs& passing, const std::vector<const BoundEnergy*>& lasting = {}) {
     matrix.set_zero();
@@ -69,7 +69,7 @@ struct Chain {
 
 }  // namespace
 
-TEST_CASE("elements that the pattern has room for are added in place", "[sum_matrix]") {
+TEST_CASE("elements that the pattern has room for are added in place", "[hessian_assembler]") {
   Chain chain;
   const Springs near({{3, 4}, {7, 6}, {0, -1}});
   const BlockMatrix& sum = chain.with(near);
@@ -77,7 +77,7 @@ TEST_CASE("elements that the pattern has room for are added in place", "[sum_mat
   CHECK(dense(sum) == chain.springs.expected(Chain::n) + near.expected(Chain::n));
 }
 
-TEST_CASE("elements that it has no room for are added all the same", "[sum_matrix]") {
+TEST_CASE("elements that it has no room for are added all the same", "[hessian_assembler]") {
   Chain chain;
   const Springs far({{11, 2}, {5, 0}, {3, 4}}), lasting({{8, 9}, {2, -1}});
   const Eigen::MatrixXd expected =
@@ -86,7 +86,7 @@ TEST_CASE("elements that it has no room for are added all the same", "[sum_matri
   CHECK(dense(chain.with(far, {&lasting})) == expected);  // nothing is left over from the last time
 }
 
-TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone", "[sum_matrix]") {
+TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone", "[hessian_assembler]") {
   Chain chain;
   const auto first = chain.with(Springs({{2, 9}})).pattern;
   CHECK(first != chain.pattern);
@@ -103,7 +103,8 @@ TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone
   CHECK(dense(chain.with(again)) == chain.springs.expected(Chain::n) + again.expected(Chain::n));
 }
 
-TEST_CASE("from the room that it had, a matrix grows and forgets as if it had gone on", "[sum_matrix]") {
+TEST_CASE("from the room that it had, a matrix grows and forgets as if it had gone on",
+          "[hessian_assembler]") {
   // Contacts that come, slide, lie idle for long and come again.
   std::vector<Springs> passing;
   for (int k = 0; k < 60; ++k)
@@ -111,7 +112,7 @@ TEST_CASE("from the room that it had, a matrix grows and forgets as if it had go
                          : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
                                       : std::vector<std::pair<int, int>>{});
   Chain whole;
-  std::vector<SumMatrix::Room> rooms;
+  std::vector<HessianAssembler::Room> rooms;
   std::vector<std::vector<int>> columns;
   std::size_t most = 0, shrunk = 0;
   for (const Springs& springs : passing) {

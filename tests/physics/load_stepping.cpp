@@ -12,11 +12,11 @@ namespace {
 struct Changes : Observer {
   explicit Changes(const Solved& solved) : s(solved) {}
   const Solved& s;
-  std::vector<ChangeRow> rows;
+  std::vector<IncrementRow> rows;
   std::vector<Positions> states;
   std::size_t intersections = 0;
 
-  void change_finished(const ChangeRow& row, const Positions& x) override {
+  void increment_finished(const IncrementRow& row, const Positions& x) override {
     rows.push_back(row);
     states.push_back(x);
   }
@@ -92,7 +92,7 @@ methods: {newton: {}}
   REQUIRE(s.levels[0].outcome == Outcome::converged);
   REQUIRE(changes.rows.size() == 13);
   row("\nEnergy [J] of a ribbon, its end turned");
-  for (const ChangeRow& r : changes.rows)
+  for (const IncrementRow& r : changes.rows)
     row("%8.3f %14.8f %6d steps", 60 * (r.time <= 1 ? r.time : 2 - r.time), r.energy, r.steps);
   const double before = changes.rows.front().energy, twisted = changes.rows[6].energy;
   REQUIRE(std::abs(twisted - before) > 0.1 * std::abs(before));
@@ -151,7 +151,7 @@ methods: {pcs: {}}
     CHECK(level.outcome == Outcome::infeasible);
     CHECK_THAT(level.message,
                Catch::StartsWith("pin 0 stopped 0.0") &&
-                   Catch::Contains(" short of its place (vertex 44), held by cloth triangle ") &&
+                   Catch::Contains(" short of its target (vertex 44), blocked by cloth triangle ") &&
                    Catch::EndsWith("and ball: sphere; the rest of the cloth is at equilibrium"));
     CHECK(level.force_residual <= 1e-3);
     const double above = level.x.row(44).norm() - 0.2;
@@ -193,7 +193,7 @@ methods: {pcs: {}}
   CHECK(s.model().material().density == 100);
   const auto& limit = dynamic_cast<const StretchLimited&>(*s.model().limits()[0]);
   CHECK(limit.limit() == 1.05);
-  CHECK(limit.beyond(s.x()).empty());
+  CHECK(limit.violations(s.x()).empty());
 }
 
 TEST_CASE("A floor that rises under a cloth lifts it, and one that closes in is stopped", "[physics]") {
@@ -230,6 +230,7 @@ methods: {newton: {}}
   Changes on_the_way(closing);
   run(closing, on_the_way);
   CHECK(closing.levels[0].outcome == Outcome::infeasible);
-  CHECK_THAT(closing.levels[0].message, Catch::Contains("cannot be reached") && Catch::Contains("lid: box"));
+  CHECK_THAT(closing.levels[0].message,
+             Catch::Contains("cannot be completed") && Catch::Contains("lid: box"));
   CHECK(on_the_way.intersections == 0);
 }
