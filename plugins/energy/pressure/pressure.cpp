@@ -16,8 +16,8 @@ using Vector = Eigen::Vector3d;
 ///
 ///     V = Σ det(a, b, c - d) / 18,   ∂V/∂a = Σ b × (c - d) / 12,   ∂²V/∂a∂b = -[c - d]× / 6.
 ///
-/// Every triangle gives each of its edges a third of its det / 6. At the border d is the centre. By edges the
-/// Hessian does not depend on the origin, and its projection has a closed form.
+/// Every triangle contributes a third of its det / 6 to each edge. At the border d is the centre. In this
+/// form the Hessian does not depend on the origin, and its projection has a closed form.
 class BoundPressure final : public BoundEnergy {
  public:
   BoundPressure(double pressure, Vector centre, const Level& level)
@@ -112,8 +112,8 @@ class BoundPressure final : public BoundEnergy {
 
   static double determinant(const Edge& edge) { return edge.a.dot(edge.b.cross(edge.across)); }
 
-  /// A closed surface's volume does not depend on it: a place on the cloth, so that far away is as exact as
-  /// near.
+  /// Origin of the coordinates, on the cloth: keeps accuracy far from the global origin. A closed surface's
+  /// volume does not depend on it.
   Vector origin_at(const Positions& x) const { return closed_ ? Vector(x.row(0)) : centre_; }
 
   double energy(const Sums& sums) const {

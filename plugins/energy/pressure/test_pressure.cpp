@@ -64,7 +64,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
   const Positions x = noisy(level.rest.vertices, 0.1, 4);
   const auto energy = bound(level, -30);
   const Eigen::MatrixXd exact = dense(hessian_of(*energy, x, Projection::none));
-  for (const double share : {1.0, 0.3}) {
+  for (const double blend : {1.0, 0.3}) {
     Eigen::MatrixXd clamped = Eigen::MatrixXd::Zero(12, 12), absolute = clamped;
     int edges = 0;
     for (int i = 0; i < 4; ++i)
@@ -75,7 +75,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
         edges += one.norm() > 0;
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(one);
         const auto with = [&](const Eigen::VectorXd& lifted) {
-          const Eigen::VectorXd values = (1 - share) * eigen.eigenvalues() + share * lifted;
+          const Eigen::VectorXd values = (1 - blend) * eigen.eigenvalues() + blend * lifted;
           return Eigen::MatrixXd(eigen.eigenvectors() * values.asDiagonal() *
                                  eigen.eigenvectors().transpose());
         };
@@ -83,7 +83,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
         absolute += with(eigen.eigenvalues().cwiseAbs());
       }
     REQUIRE(edges == 5);
-    const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, share})); };
+    const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, blend})); };
     CHECK((found(Projection::clamp) - clamped).norm() <= 1e-12 * exact.norm());
     CHECK((found(Projection::absolute) - absolute).norm() <= 1e-12 * exact.norm());
   }
