@@ -251,7 +251,7 @@ TEST_CASE("a metric that cannot measure a state leaves a note, and the run goes 
   }
 }
 
-TEST_CASE("levels that are handed on as the experiment asks leave a converged run") {
+TEST_CASE("a run with levels refined at early_refinement_tolerance counts as converged") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Ended ended =

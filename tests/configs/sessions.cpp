@@ -171,7 +171,7 @@ TEST_CASE("So has one whose iterations share a matrix, and one of several of the
   }
 }
 
-TEST_CASE("So has one of the static form, with every projection made in full") {
+TEST_CASE("So has one of the static form, with the full projection") {
   const Scratch folder;
   write_sheets(folder);
   const Overrides statics =
@@ -179,7 +179,7 @@ TEST_CASE("So has one of the static form, with every projection made in full") {
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
 }
 
-TEST_CASE("So has one whose conditions change, held vertices being pulled and obstacles moved") {
+TEST_CASE("So has one under load stepping, with a Dirichlet penalty and moving obstacles") {
   // The ball rises into the sheets, which are held at two corners, one of which is moved, and become softer.
   const std::string schedule = R"(
 pins:
@@ -223,7 +223,7 @@ methods: {pcs: {}}
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
 }
 
-TEST_CASE("So has one with a level that is begun from the scene's start, conditions changing") {
+TEST_CASE("So has one under load stepping with a level that starts from the scene's start") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;

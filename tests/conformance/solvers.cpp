@@ -85,10 +85,8 @@ TEST_CASE("Solvers give the same bits from run to run, and with any number of th
   }
 }
 
-TEST_CASE(
-    "A level that a finer one goes on from is handed on at the force residual that "
-    "early_refinement_tolerance asks",
-    "[conformance]") {
+TEST_CASE("A level whose state starts the next one is refined at early_refinement_tolerance",
+          "[conformance]") {
   for (const std::string& name : solvers()) {
     INFO(name);
     const bool on_its_own = name == "newton";  // each level from the scene's start
@@ -108,7 +106,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("A level is handed on at a part of the residual that its state leaves on the next one",
+TEST_CASE("A level is refined at early_refinement_ratio of the residual of its prolonged state",
           "[conformance]") {
   std::string yaml = hanging_square("cascadic");
   yaml.replace(yaml.find("force_tolerance"), 0, "early_refinement_ratio: 0.05, ");
@@ -117,17 +115,17 @@ TEST_CASE("A level is handed on at a part of the residual that its state leaves 
   const Problem problem = s.scene->problem();
   const auto weights = s.experiment.methods[0].second->interpolation(problem.hierarchy);
   for (int l = 0; l < 2; ++l) {
-    const Positions above = problem.prolong(weights[l], l, s.levels[l].x);
+    const Positions prolonged = problem.prolong(weights[l], l, s.levels[l].x);
     INFO("level " << l << ": " << s.levels[l].message);
     CHECK(s.levels[l].outcome == Outcome::refined_early_at_tolerance);
-    CHECK(s.levels[l].force_residual < 0.05 * problem.models[l + 1]->force_residual(above));
+    CHECK(s.levels[l].force_residual < 0.05 * problem.models[l + 1]->force_residual(prolonged));
     CHECK(s.levels[l].force_residual > tolerance);
   }
   CHECK(s.levels[2].outcome == Outcome::converged);
   CHECK(s.model().force_residual(s.x()) <= tolerance * (1 + 1e-9));
 }
 
-TEST_CASE("Every solver goes on when asked to refine early, on every level but the finest", "[conformance]") {
+TEST_CASE("Every solver refines early on request, on every level but the finest", "[conformance]") {
   struct Impatient : Observer {
     int asked = 0;
     bool refine_requested() override { return ++asked % 3 == 0; }

@@ -23,7 +23,7 @@ std::string strip(double membrane, double bending,
 
 }  // namespace
 
-TEST_CASE("Stiff narrow strips end at the rounding floor, however they come there", "[physics]") {
+TEST_CASE("Stiff narrow strips end at the rounding floor, along either path", "[physics]") {
   for (const double bending : {1e7, 1e9}) {  // once without any descent, once with idle steps until max_steps
     const Solved s = solve_yaml(strip(1e9, bending));
     const LevelResult& r = s.levels.back();
@@ -38,7 +38,7 @@ TEST_CASE("Stiff narrow strips end at the rounding floor, however they come ther
   }
 }
 
-TEST_CASE("Under a schedule the next increment begins at the rounding floor", "[physics]") {
+TEST_CASE("Under a schedule the rounding floor counts as equilibrium", "[physics]") {
   const Solved s = solve_yaml(
       strip(1e9, 1e9,
             "newton: {force_tolerance: 1e-10, max_steps: 700}\n"

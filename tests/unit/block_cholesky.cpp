@@ -181,7 +181,7 @@ TEST_CASE("Block Cholesky gives the same bits with any number of threads", "[cho
   REQUIRE((ax + 0.1 * first - b).norm() < 1e-10 * b.norm());
 }
 
-TEST_CASE("Block Cholesky keeps its analysis until the pattern or the fixed vertices change", "[cholesky]") {
+TEST_CASE("Block Cholesky reuses its analysis until the pattern or the fixed vertices change", "[cholesky]") {
   const BlockMatrix a = random_matrix(30, 1);
   std::vector<char> fixed(30, 0);
   BlockCholesky cholesky;
@@ -219,7 +219,7 @@ TEST_CASE("Block Cholesky refuses an indefinite matrix wherever it is so, and th
   REQUIRE(x == expected);
 }
 
-TEST_CASE("Block Cholesky tells definite from indefinite up to rounding", "[cholesky]") {
+TEST_CASE("Block Cholesky detects indefinite matrices up to round-off", "[cholesky]") {
   for (const auto& [n, stencils] : {std::pair(144, shell(12, 4)), std::pair(120, tangle(120, 500, 4))}) {
     const BlockMatrix a = random_matrix(n, stencils, 6);
     const double smallest =

@@ -4,7 +4,7 @@
 
 using namespace drape;
 
-TEST_CASE("the worst outcome of a method's levels is told, whatever their order") {
+TEST_CASE("the worst outcome of a method's levels does not depend on their order") {
   CHECK(worse_of(Outcome::converged, Outcome::refined_early_at_tolerance) == Outcome::converged);
   CHECK(worse_of(Outcome::converged_to_rounding, Outcome::converged) == Outcome::converged_to_rounding);
   CHECK(worse_of(Outcome::stalled, Outcome::refined_early_on_request) == Outcome::stalled);

@@ -26,7 +26,7 @@ Positions noisy(const Positions& x, double size, unsigned seed) {
   return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
 }
 
-/// Six times the volume, triangle by triangle, the cone from the border to the centre with it.
+/// Six times the volume by triangles, including the cone from the border to the centre.
 double six_volumes(const Level& level, const Positions& x, const Eigen::Vector3d& centre) {
   double sum = 0;
   for (int t = 0; t < level.triangle_count(); ++t) {
@@ -100,7 +100,7 @@ TEST_CASE("pressure: a closed mesh feels no net force and no torque, wherever it
     torque += Eigen::Vector3d(x.row(i)).cross(Eigen::Vector3d(near.row(i)));
   CHECK(torque.norm() <= 1e-14 * near.norm());
 
-  // 1 km away, rounded to a grid that both places have, nothing is lost.
+  // Translated by 1 km on a common grid of doubles: no digits are lost.
   Positions rounded = (x * 1048576).array().round().matrix() / 1048576, away = rounded;
   away.rowwise() += Eigen::RowVector3d(1024, -512, 256);
   CHECK(energy->value(away) == energy->value(rounded));

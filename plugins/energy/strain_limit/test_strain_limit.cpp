@@ -190,7 +190,7 @@ TEST_CASE("strain_limit: a stretched sheet has the energy of its volume, and +in
   }
 }
 
-TEST_CASE("strain_limit: a step ends where a tenth of the room is left, and never beyond the limit") {
+TEST_CASE("strain_limit: a filtered step leaves a tenth of the margin and never violates the limit") {
   const Level level = square();
   const auto energy = bound_to(level);
   const Positions x0 = moved(level.rest.vertices, 0.002, 1);
@@ -202,7 +202,8 @@ TEST_CASE("strain_limit: a step ends where a tenth of the room is left, and neve
     const StepLimit step = filter(*energy).max_step(x0, x1);
     REQUIRE(step.fraction > 0);
     REQUIRE(step.fraction < 1);
-    // All keep to their bounds; the one that ends the step would not go a hundred-thousandth further.
+    // All triangles stay within their bounds; the limiting one would violate its bound a hundred-thousandth
+    // further.
     double slack = -1;
     int tight = -1;
     const Positions end = x0 + step.fraction * (x1 - x0), beyond = x0 + 1.00001 * step.fraction * (x1 - x0);
@@ -252,7 +253,7 @@ TEST_CASE("strain_limit: rigid motions and shrinking take full steps") {
   CHECK(filter(*energy).max_step(x0, 0.2 * x0).fraction == 1);
 }
 
-TEST_CASE("strain_limit: a start beyond the limit is named, can be left out, and the rest still limits") {
+TEST_CASE("strain_limit: violations are listed, can be excluded, and the rest still limits") {
   const Level level = square();
   const auto all = bound_to(level);
   Positions x = level.rest.vertices;
