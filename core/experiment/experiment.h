@@ -93,7 +93,7 @@ struct KeyParameters {
   static void declare(Declaration<KeyParameters>& d);
 };
 
-/// Conditions that change while a level is solved.
+/// Load stepping: parameters that change while a level is solved.
 struct ScheduleParameters {
   double duration = 0;
   int steps = 1;

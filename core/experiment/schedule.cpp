@@ -16,11 +16,11 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Sections that conditions are; the others say what is computed, and how.
+/// Sections whose parameters may change over pseudo-time.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "pins", "handles"};
-/// A change is tried at most so often, in ever smaller parts, before it is left for later.
-constexpr int most_tries = 30;
-constexpr double smallest_part = 1e-6;
+/// An increment is tried at most so often, in ever smaller fractions, before it waits for equilibrium.
+constexpr int max_tries = 30;
+constexpr double min_fraction = 1e-6;
 
 /// A number or a list of them; empty for anything else.
 std::vector<double> numbers_of(const ConfigNode& node) {
@@ -77,8 +77,8 @@ double duration_of(const ScheduleParameters& p) {
   return duration;
 }
 
-/// The way of the obstacles from one model to the other with the cloth at x.
-StepLimit obstacles_way(const LevelModel& from, const LevelModel& to, const Positions& x) {
+/// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
+StepLimit obstacle_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
   StepLimit limit;
   for (std::size_t k = 0; k < to.contacts().size(); ++k) {
     if (to.contacts()[k] == from.contacts()[k]) continue;
@@ -115,7 +115,7 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("steps", &ScheduleParameters::steps)
       .at_least(1)
       .at_most(1e6)
-      .meaning("changes of the conditions in that time, evenly spaced")
+      .meaning("number of equal increments")
       .source("supplement, section 4");
   d.add("settle", &ScheduleParameters::settle)
       .meaning("to equilibrium after every change; if not, one implicit step. After the last always");
@@ -242,14 +242,14 @@ LoadState Schedule::load_state(const std::vector<double>& numbers,
   return m;
 }
 
-LevelModel Schedule::model_under(const LoadState& m, int level) const {
+LevelModel Schedule::model_for(const LoadState& m, int level) const {
   const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
   return {own,        m.parameters.material,
           m.energies, dirichlet_vertices(m.parameters, own, coarsest, scene_.starts[level]),
           m.contacts, scene_.models[level].get()};
 }
 
-void Schedule::go_to(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers) {
+void Schedule::set_state(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers) {
   now_ = std::move(state);
   made_from_ = std::move(made_from);
   effective_ = std::move(numbers);
@@ -266,20 +266,20 @@ void Schedule::restore(int level, const LoadSteppingState& state) {
   increment_ = state.increment;
   std::vector<std::string> made_from;
   LoadState then = load_state(state.values, made_from);
-  go_to(std::move(then), std::move(made_from), state.values);
+  set_state(std::move(then), std::move(made_from), state.values);
   bind_from(level);
 }
 
 void Schedule::bind_from(int level) {
   for (std::size_t l = level; l < scene_.models.size(); ++l)
-    *scene_.models[l] = model_under(now_, static_cast<int>(l));
+    *scene_.models[l] = model_for(now_, static_cast<int>(l));
 }
 
 StepLimit Schedule::advance(int level, const Positions& x) {
   if (complete()) ++increment_;
   StepLimit limit;
   double part = 1;
-  for (int tries = 0; tries < most_tries && part >= smallest_part; ++tries) {
+  for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
     StepLimit allowed = try_fraction(part, level, x);
     if (allowed.fraction == 1) {
       limit.fraction = part;
@@ -303,13 +303,13 @@ StepLimit Schedule::try_fraction(double fraction, int level, const Positions& x)
       numbers[c] = effective_[c] + fraction * (numbers[c] - effective_[c]);
   std::vector<std::string> made_from;
   LoadState next = load_state(numbers, made_from);
-  LevelModel model = model_under(next, level);
+  LevelModel model = model_for(next, level);
   if (std::string refused = strain_limit_violations(model.limits(), x, 1); !refused.empty())
     return {0.5, std::move(refused)};
-  if (StepLimit way = obstacles_way(*scene_.models[level], model, x); way.fraction < 1) return way;
+  if (StepLimit limit = obstacle_limit(*scene_.models[level], model, x); limit.fraction < 1) return limit;
   *scene_.models[level] = std::move(model);
   update_energies_above(level, next);
-  go_to(std::move(next), std::move(made_from), std::move(numbers));
+  set_state(std::move(next), std::move(made_from), std::move(numbers));
   return {};
 }
 

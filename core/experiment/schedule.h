@@ -38,15 +38,15 @@ class Schedule final : public LoadStepping {
 
  private:
   std::vector<double> wanted(int increment) const;
-  /// With the numbers of all keys, one after another. What does not change is shared with now_.
+  /// The state for the numbers of all keys, one after another. Shares with now_ all that is equal.
   LoadState load_state(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
-  LevelModel model_under(const LoadState& state, int level) const;
-  /// Makes a part of what is left of the increment if a cloth at x allows it. 1 if so; if not, how much of
-  /// the part it may allow.
+  LevelModel model_for(const LoadState& state, int level) const;
+  /// Applies a fraction of the remaining increment if a cloth at x allows it. Returns 1 if so, else an
+  /// estimate of the feasible part of that fraction.
   StepLimit try_fraction(double fraction, int level, const Positions& x);
-  /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
+  /// Updates energies on finer levels, which a proxy may evaluate; their contacts are not in use yet.
   void update_energies_above(int level, const LoadState& next);
-  void go_to(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers);
+  void set_state(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers);
   void bind_from(int level);
 
   const Experiment experiment_;
@@ -56,8 +56,8 @@ class Schedule final : public LoadStepping {
   double duration_;
   int increment_ = 0;
   std::vector<double> effective_;
-  LoadState now_;                       // of effective_
-  std::vector<std::string> made_from_;  // texts of the nodes that now_'s plugins were made from
+  LoadState now_;                       // for effective_
+  std::vector<std::string> made_from_;  // YAML of now_'s plugins
 };
 
 }  // namespace drape

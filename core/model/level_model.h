@@ -78,9 +78,8 @@ class LevelModel {
   /// residual_scale.
   double force_residual(const Positions& x) const;
 
-  /// What a gradient's norm is divided by: the external load, or without one the forces that hold the
-  /// fixed vertices, which are none where the cloth comes to lie without a force: then a thousandth of its
-  /// weight.
+  /// Scale of the force residual [N]: the external load; without a load the reaction forces at fixed
+  /// vertices, but at least a thousandth of the cloth's weight.
   double residual_scale(const Positions& x, const Positions& gradient) const;
 
  private:

@@ -281,7 +281,7 @@ class Newton {
     if (result_.steps == 0 || load_stepping_ || dirichlet_.active() || dirichlet_.infeasible()) return false;
     if (result_.force_residual < p_.early_refinement_tolerance) return true;
     return p_.early_refinement_ratio > 0 && result_.steps % residual_check_interval == 0 &&
-           result_.force_residual < p_.early_refinement_ratio * run_.residual_above(result_.x);
+           result_.force_residual < p_.early_refinement_ratio * run_.residual_on_next_level(result_.x);
   }
 
   /// At the equilibrium of a proxy: continues with the plain energy, like a new start. False if there is

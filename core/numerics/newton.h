@@ -19,7 +19,7 @@ struct LevelRun {
   LoadStepping* load_stepping = nullptr;     ///< null without a schedule
   std::string remark = {};                   ///< beginning of the result's message
   /// Force residual of a state, prolonged to the next level; 0 if it is infeasible there.
-  std::function<double(const Positions& x)> residual_above = {};
+  std::function<double(const Positions& x)> residual_on_next_level = {};
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps

@@ -56,7 +56,7 @@ std::vector<LevelResult> solve_progressively(
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping, remark};
       std::unique_ptr<Objective> next;
-      run.residual_above = [&](const Positions& x) {
+      run.residual_on_next_level = [&](const Positions& x) {
         if (!next) next = objective(l + 1);
         return residual_at(*next, problem.prolong(weights[l], l, x));
       };

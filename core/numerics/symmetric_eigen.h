@@ -20,9 +20,9 @@ struct SymmetricMatrix {
       for (int i = 0; i <= j; ++i) (*this)(i, j) = m(i, j);
   }
 
-  static constexpr int place(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
-  T& operator()(int i, int j) { return upper[place(i, j)]; }
-  const T& operator()(int i, int j) const { return upper[place(i, j)]; }
+  static constexpr int index(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
+  T& operator()(int i, int j) { return upper[index(i, j)]; }
+  const T& operator()(int i, int j) const { return upper[index(i, j)]; }
 };
 
 namespace eigen_detail {
