@@ -74,12 +74,12 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
-/// A change of conditions, where it ended.
+/// The end of an increment of load stepping.
 struct ConditionRow {
   Figure time, steps, energy;  ///< pseudo-time; the others as of a level
 };
 
-/// All changes of one level of one method, in order.
+/// All increments of one level of one method, in order.
 struct ConditionSeries {
   std::string method;
   int level = 0;
