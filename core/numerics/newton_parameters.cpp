@@ -54,8 +54,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e12)
       .meaning(
           "refine a level as soon as its force residual falls below this; 0 waits for convergence. Applies "
-          "to "
-          "levels whose state starts the next one, and not under a schedule")
+          "to levels whose state starts the next one, and not under a schedule")
       .source("PCS section 4: a level may be refined before it has converged");
   d.add("early_refinement_ratio", &NewtonParameters::early_refinement_ratio)
       .formerly("refine_ratio")
@@ -64,8 +63,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .meaning(
           "refine a level as soon as its force residual falls below this fraction of the residual that its "
           "prolonged state has on the next level; 0 waits for convergence. Applies to levels whose state "
-          "starts "
-          "the next one, and not under a schedule")
+          "starts the next one, and not under a schedule")
       .source("nested iteration: Hackbusch 1985, chapter 5; a departure from the paper");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
