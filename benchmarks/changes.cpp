@@ -56,8 +56,8 @@ std::string schedule() {
 /// Keeps what level 0 came to, and ends the method with it.
 class LevelZero : public Observer {
  public:
-  std::vector<ChangeRow> rows;
-  void change_finished(const ChangeRow& row, const Positions&) override {
+  std::vector<IncrementRow> rows;
+  void increment_finished(const IncrementRow& row, const Positions&) override {
     if (row.level == 0) rows.push_back(row);
   }
   void level_finished(const LevelResult& result) override {
@@ -84,7 +84,7 @@ int run(const char* result_file, const std::string& side) {
   std::printf("%-28s %-9s %8s %12s %10s %14s\n", "change", "method", "steps", "ms a step", "seconds",
               "energy [J]");
   for (std::size_t k = 0; k <= std::size(changes); ++k) rows.push_back({});
-  std::vector<std::vector<ChangeRow>> all;
+  std::vector<std::vector<IncrementRow>> all;
   const char* methods[] = {"pcs", "newton"};
   for (const char* name : methods)
     for (const auto& [own, solver] : e->methods)
@@ -98,7 +98,7 @@ int run(const char* result_file, const std::string& side) {
     rows[k]["change"] = what;
     for (std::size_t m = 0; m < all.size(); ++m) {
       if (k >= all[m].size()) continue;
-      const ChangeRow& r = all[m][k];
+      const IncrementRow& r = all[m][k];
       const double ms = 1e3 * r.seconds / std::max(r.steps, 1);
       std::printf("%-28s %-9s %8d %12.2f %10.3f %14.8f\n", what, methods[m], r.steps, ms, r.seconds,
                   r.energy);

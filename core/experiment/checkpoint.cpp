@@ -11,29 +11,30 @@ bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
 // What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
 
 template <class A>
-void fields(A& a, ConditionsState& s) {
-  a(s.change, s.numbers);
+void fields(A& a, LoadSteppingState& s) {
+  a(s.increment, s.values);
 }
 
 template <class A>
-void fields(A& a, HardPositions::Memory& m) {
-  a(m.missing, m.stiffness, m.best, m.idle, m.given_up, m.pulled, m.held_by);
+void fields(A& a, DirichletEnforcer::State& m) {
+  a(m.unsatisfied, m.stiffness, m.best, m.idle, m.infeasible, m.released, m.blocked_by);
 }
 
 template <class A>
-void fields(A& a, ChangeBegun& c) {
+void fields(A& a, IncrementStart& c) {
   a(c.steps, c.iterations, c.seconds);
 }
 
 template <class A>
-void fields(A& a, ChangeResponse& r) {
-  a(r.from, r.to, r.part);
+void fields(A& a, IncrementResponse& r) {
+  a(r.from, r.predicted, r.fraction);
 }
 
 template <class A>
 void fields(A& a, LevelResult& r) {
-  a(r.level, r.outcome, r.message, r.x, r.afresh, r.steps, r.iterations, r.factorisations, r.analyses,
-    r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap, r.conditions);
+  a(r.level, r.outcome, r.message, r.x, r.from_initial_state, r.steps, r.iterations, r.factorisations,
+    r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap,
+    r.load_stepping);
 }
 
 template <class A>
@@ -47,26 +48,26 @@ void fields(A& a, ContactMemory& m) {
 }
 
 template <class A>
-void fields(A& a, Objective::PatternMemory& m) {
-  a(m.room.blocks, m.room.idle, m.smooth_alone, m.gone);
+void fields(A& a, Objective::PatternState& m) {
+  a(m.extra.blocks, m.extra.idle, m.smooth_only, m.invalidated);
 }
 
 template <class A>
 void fields(A& a, BlockCholesky::Analysis& m) {
-  a(m.fixed, m.given, m.order, m.ordered_flops, m.count);
+  a(m.fixed, m.reused_ordering, m.ordering, m.ordering_flops, m.count);
 }
 
 template <class A>
-void fields(A& a, IdleSteps::Memory& m) {
+void fields(A& a, IdleSteps::State& m) {
   a(m.steps, m.energy, m.residual);
 }
 
 template <class A>
 void fields(A& a, NewtonState& s) {
-  a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.projection_share, s.decrements, s.held_by,
-    s.relaxed, s.positions, s.changed_at, s.response, s.times_held_up, s.iterations_of_step, s.strained_for,
-    s.slowed, s.idle, s.begun_at, s.contacts, s.pattern, s.analysis, s.factor_age, s.factor_shift,
-    s.factor_values);
+  a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.psd_blend, s.decrements, s.limited_by,
+    s.switched_to_plain, s.dirichlet, s.increment_start, s.response, s.blocked_increments,
+    s.iterations_of_step, s.stall_count, s.backed_off, s.idle, s.initial_centroid, s.contacts, s.pattern,
+    s.analysis, s.factor_age, s.factor_shift, s.factor_values);
 }
 
 template <class A>

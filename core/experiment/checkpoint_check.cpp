@@ -71,34 +71,34 @@ class Check {
   void result(const LevelResult& r) const {
     positions(r.x, r.level, "the state of level " + std::to_string(r.level));
     require(r.steps >= 0 && r.iterations >= 0 && r.factorisations >= 0 && r.analyses >= 0, "negative counts");
-    conditions(r.conditions);
+    load_stepping(r.load_stepping);
   }
 
-  void conditions(const ConditionsState& s) const {
+  void load_stepping(const LoadSteppingState& s) const {
     if (!scene_.schedule) return;
-    require(s.change >= 0 && s.change <= scene_.schedule->changes() &&
-                s.numbers.size() == scene_.schedule->state().numbers.size(),
-            "the schedule's conditions");
+    require(s.increment >= 0 && s.increment <= scene_.schedule->increment_count() &&
+                s.values.size() == scene_.schedule->state().values.size(),
+            "the schedule's increment");
   }
 
   void under_way(const NewtonState& s) const {
     const int level = c_.state.level, n = static_cast<int>(s.so_far.x.rows());
     require(s.so_far.level == level, "the level under way");
     result(s.so_far);
-    const std::size_t held = scene_.models[level]->held().size();
-    for (const int k : s.positions.missing)
-      require(k >= 0 && static_cast<std::size_t>(k) < held, "a held vertex that there is not");
-    require(s.step_size > 0 && s.iterations_of_step > 0 && s.factor_age >= 0 && s.projection_share >= 0 &&
-                s.projection_share < projection_share_count,
+    const std::size_t held = scene_.models[level]->dirichlet().size();
+    for (const int k : s.dirichlet.unsatisfied)
+      require(k >= 0 && static_cast<std::size_t>(k) < held, "a Dirichlet vertex out of range");
+    require(s.step_size > 0 && s.iterations_of_step > 0 && s.factor_age >= 0 && s.psd_blend >= 0 &&
+                s.psd_blend < psd_blend_count,
             "the settings of the step");
-    for (const Positions* x : {&s.response.from, &s.response.to})
-      if (x->rows() > 0) positions(*x, level, "the answer to a change");
+    for (const Positions* x : {&s.response.from, &s.response.predicted})
+      if (x->rows() > 0) positions(*x, level, "the response to an increment");
     contacts(s.contacts, level);
-    const SumMatrix::Room& room = s.pattern.room;
-    require(room.blocks.size() == room.idle.size() &&
-                ascends(room.blocks, [](const auto& block) { return block; }),
+    const HessianAssembler::ExtraPattern& extra = s.pattern.extra;
+    require(extra.blocks.size() == extra.idle.size() &&
+                ascends(extra.blocks, [](const auto& block) { return block; }),
             "the matrix's pattern");
-    for (const auto& [i, j] : room.blocks) require(i >= 0 && i < j && j < n, "the matrix's pattern");
+    for (const auto& [i, j] : extra.blocks) require(i >= 0 && i < j && j < n, "the matrix's pattern");
     factor(s, n);
   }
 
@@ -116,18 +116,18 @@ class Check {
 
   void factor(const NewtonState& s, int n) const {
     const BlockCholesky::Analysis& a = s.analysis;
-    require(a.count >= 0, "the order of the factor");
+    require(a.count >= 0, "the factor's ordering");
     if (a.count == 0) return;
-    require(static_cast<int>(a.fixed.size()) == n, "the order of the factor");
-    for (const std::vector<int>* order : {&a.given, &a.order}) {
-      if (order->empty()) continue;
-      std::vector<int> sorted = *order, free;
+    require(static_cast<int>(a.fixed.size()) == n, "the factor's ordering");
+    for (const std::vector<int>* ordering : {&a.reused_ordering, &a.ordering}) {
+      if (ordering->empty()) continue;
+      std::vector<int> sorted = *ordering, free;
       std::sort(sorted.begin(), sorted.end());
       for (int v = 0; v < n; ++v)
         if (!a.fixed[v]) free.push_back(v);
-      require(sorted == free, "the order of the factor");
+      require(sorted == free, "the factor's ordering");
     }
-    require(s.factor_values.empty() || !s.pattern.gone, "the factor");
+    require(s.factor_values.empty() || !s.pattern.invalidated, "the factor");
   }
 
   void recorder(const RecorderState& s) const {

@@ -29,7 +29,7 @@ struct ErrorTarget {
 StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
                        const ErrorTarget& target, const std::function<void(const std::string&)>& fault);
 
-/// The energy of the finest level in a state carried up to it by these weights, [l]: n_{l+1} × n_l [J].
+/// The energy of the finest level in a state prolonged to it by these weights, [l]: n_{l+1} × n_l [J].
 double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
                         const Positions& x);
 

@@ -93,7 +93,7 @@ struct KeyParameters {
   static void declare(Declaration<KeyParameters>& d);
 };
 
-/// Conditions that change while a level is solved.
+/// Load stepping: parameters that change while a level is solved.
 struct ScheduleParameters {
   double duration = 0;
   int steps = 1;
@@ -177,8 +177,8 @@ struct Scene {
   std::vector<NamedEnergy> energies;  ///< that the models were bound from, handles among them
   std::vector<std::unique_ptr<LevelModel>> models;
   std::vector<Positions> starts;
-  std::optional<Positions> reference;    ///< on the finest level, where the experiment names a file with it
-  std::unique_ptr<Conditions> schedule;  ///< null where the experiment has none
+  std::optional<Positions> reference;      ///< on the finest level, where the experiment names a file with it
+  std::unique_ptr<LoadStepping> schedule;  ///< null where the experiment has none
 
   Problem problem() const;
 };

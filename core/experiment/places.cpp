@@ -33,7 +33,7 @@ class Handles final : public Energy {
   EnergyRole role() const override { return EnergyRole::position; }
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
-    std::vector<PositionPenalty::Pull> pulls;
+    std::vector<PositionPenalty::Term> terms;
     for (const HandleParameters& handle : handles_) {
       const std::vector<int> own = vertices_of(handle, level, coarsest_);
       double own_area = 0, coarse_area = 0;
@@ -41,13 +41,13 @@ class Handles final : public Energy {
       for (int v : vertices_of(handle, coarsest_, coarsest_)) coarse_area += coarsest_.vertex_area[v];
       const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
       for (int v : own)
-        pulls.push_back(
+        terms.push_back(
             {v,
              handle.moved() ? handle.place(level.rest.vertices.row(v))
                             : start_.place(level.rest.vertices.row(v)),
              stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
     }
-    return std::make_unique<PositionPenalty>(std::move(pulls));
+    return std::make_unique<PositionPenalty>(std::move(terms));
   }
 
  private:
@@ -102,16 +102,16 @@ void check_places(const Experiment& e, const Level& coarsest, ConfigErrors& erro
     check_place("handle", k, p.handles[k], place("handles", k), coarsest, errors);
 }
 
-std::vector<HeldVertex> held_vertices(const ExperimentParameters& p, const Level& level,
-                                      const Level& coarsest, const Positions& start) {
-  std::vector<HeldVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
+std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
+                                                const Level& coarsest, const Positions& start) {
+  std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k)
     for (int v : vertices_of(p.pins[k], level, coarsest))
       by_vertex[v] = {
           v, p.pins[k].moved() ? p.pins[k].place(level.rest.vertices.row(v)) : Eigen::Vector3d(start.row(v)),
           static_cast<int>(k)};
-  std::vector<HeldVertex> held;
-  for (const HeldVertex& h : by_vertex)
+  std::vector<DirichletVertex> held;
+  for (const DirichletVertex& h : by_vertex)
     if (h.vertex >= 0) held.push_back(h);
   return held;
 }

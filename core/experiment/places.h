@@ -14,8 +14,8 @@ void check_places(const Experiment& experiment, const Level& coarsest, ConfigErr
 
 /// The held vertices of a level: each where its last pin has it, or where `start` (n×3) does if that pin does
 /// not move it.
-std::vector<HeldVertex> held_vertices(const ExperimentParameters& parameters, const Level& level,
-                                      const Level& coarsest, const Positions& start);
+std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
+                                                const Level& coarsest, const Positions& start);
 
 /// The handles as an energy, which pulls as hard on every level; null without a handle. `coarsest` must
 /// outlive it.

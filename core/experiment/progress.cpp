@@ -20,7 +20,7 @@ std::string first_two(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Progress::Progress(double tolerance, int levels, bool quiet, const Conditions* conditions,
+Progress::Progress(double tolerance, int levels, bool quiet, const LoadStepping* conditions,
                    std::vector<std::string> changing)
     : tolerance_(tolerance),
       levels_(levels),
@@ -52,11 +52,12 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
 /// tolerance; of a schedule increments as well, of which the beginning is one.
 void Progress::take_note(const IterationRow& row) {
   const bool scheduled = conditions_ && row.time;
-  const int increment = scheduled ? conditions_->change() : 0, last = scheduled ? conditions_->changes() : 0;
+  const int increment = scheduled ? conditions_->increment() : 0,
+            last = scheduled ? conditions_->increment_count() : 0;
   if (first_residual_ == 0 || increment != increment_) first_residual_ = best_residual_ = row.force_residual;
   increment_ = increment;
   best_residual_ = std::min(best_residual_, row.force_residual);
-  const bool is_solved = !scheduled || conditions_->settles() || increment == last;
+  const bool is_solved = !scheduled || conditions_->equilibrates() || increment == last;
   const double decades = std::log(first_residual_ / tolerance_);
   const double part = decades > 0 ? std::log(first_residual_ / best_residual_) / decades : 1;
   done_ = std::max(done_, (increment + (is_solved ? std::clamp(part, 0.0, 1.0) : 0)) / (last + 1));
@@ -68,7 +69,7 @@ std::string Progress::line(const IterationRow& row) const {
   for (int k = 0; k < width; ++k) bar += k < done_ * width ? "█" : "░";
   char text[256];
   if (conditions_ && row.time) {
-    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, conditions_->changes());
+    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, conditions_->increment_count());
     increment = text + changing_ + " ";
   }
   if (const std::optional<double> seconds = to_go_.seconds()) {

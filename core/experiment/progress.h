@@ -15,7 +15,7 @@ class Progress : public Observer {
  public:
   /// `tolerance` of the force residual is where the bar is full; `levels` how many there are. Under
   /// `conditions` that change, of the parameters `changing`, it is full after the last of them.
-  Progress(double tolerance, int levels, bool quiet, const Conditions* conditions = nullptr,
+  Progress(double tolerance, int levels, bool quiet, const LoadStepping* conditions = nullptr,
            std::vector<std::string> changing = {});
 
   void method_started(const std::string& method);
@@ -35,7 +35,7 @@ class Progress : public Observer {
   double tolerance_;
   int levels_;
   bool quiet_, terminal_, drawn_ = false;
-  const Conditions* conditions_;
+  const LoadStepping* conditions_;
   std::string changing_, method_;
   Stopwatch level_clock_;
   double last_draw_ = 0;

@@ -202,7 +202,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
                 {"steps", r.steps},
                 {"newton_iterations", r.iterations},
-                {"afresh", r.afresh},
+                {"from_initial_state", r.from_initial_state},
                 {"factorisations", r.factorisations},
                 {"flops", r.flops},
                 {"analyses", r.analyses},
@@ -218,16 +218,16 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   return entry;
 }
 
-void Recorder::change_finished(const ChangeRow& r, const Positions&) {
-  method_entry()["changes"].push_back({{"level", r.level},
-                                       {"change", r.change},
-                                       {"time", r.time},
-                                       {"steps", r.steps},
-                                       {"newton_iterations", r.iterations},
-                                       {"seconds", r.seconds},
-                                       {"energy", finite_or_null(r.energy)},
-                                       {"force_residual", finite_or_null(r.force_residual)},
-                                       {"farthest_missing", r.farthest_missing}});
+void Recorder::increment_finished(const IncrementRow& r, const Positions&) {
+  method_entry()["increments"].push_back({{"level", r.level},
+                                          {"increment", r.increment},
+                                          {"time", r.time},
+                                          {"steps", r.steps},
+                                          {"newton_iterations", r.iterations},
+                                          {"seconds", r.seconds},
+                                          {"energy", finite_or_null(r.energy)},
+                                          {"force_residual", finite_or_null(r.force_residual)},
+                                          {"max_constraint_violation", r.max_constraint_violation}});
 }
 
 void Recorder::level_finished(const LevelResult& r) {
@@ -242,7 +242,7 @@ void Recorder::level_finished(const LevelResult& r) {
   const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
   if (frames_.any())
     entry["levels"].back()["frames"] =
-        errors_.add(method_, r, frames_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
+        errors_.add(method_, r, frames_.end_level(work, r.x), r.from_initial_state ? Work() : spent_, spent_);
   states_.push_back(state);
   spent_ = spent_ + work;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;

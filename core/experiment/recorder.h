@@ -66,7 +66,7 @@ class Recorder : public Observer {
 
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
-  void change_finished(const ChangeRow& row, const Positions& x) override;
+  void increment_finished(const IncrementRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
   /// Whether no state that was looked at had an intersection.

@@ -57,8 +57,8 @@ class RunObserver : public Observer {
     progress_.iteration(row, x);
     if (view_) view_->iteration(row, x);
   }
-  void change_finished(const ChangeRow& row, const Positions& x) override {
-    recorder_.change_finished(row, x);
+  void increment_finished(const IncrementRow& row, const Positions& x) override {
+    recorder_.increment_finished(row, x);
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
@@ -195,7 +195,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   std::vector<std::string> changing;
   for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.set);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
-                    problem.conditions, changing);
+                    problem.load_stepping, changing);
   RunObserver observer(recorder, session, progress, options.view, options.stop);
 
   bool all_converged = begun.all_converged, cancelled = false;
@@ -226,7 +226,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     recorder.method_finished(results, failure);
     bool converged = !failure;
     for (const LevelResult& r : results) {
-      converged = converged && ended_as_asked(r.outcome);
+      converged = converged && succeeded(r.outcome);
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
     all_converged = all_converged && converged;

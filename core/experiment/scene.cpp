@@ -185,9 +185,10 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, To
   if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
     const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
-    std::vector<HeldVertex> held = held_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    std::vector<DirichletVertex> held =
+        dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
-    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    for (const DirichletVertex& h : held) start.row(h.vertex) = h.target.transpose();
     if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {

@@ -16,11 +16,11 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Sections that conditions are; the others say what is computed, and how.
+/// Sections whose parameters may change over pseudo-time.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "pins", "handles"};
-/// A change is tried at most so often, in ever smaller parts, before it is left for later.
-constexpr int most_tries = 30;
-constexpr double smallest_part = 1e-6;
+/// An increment is tried at most so often, in ever smaller fractions, before it waits for equilibrium.
+constexpr int max_tries = 30;
+constexpr double min_fraction = 1e-6;
 
 /// A number or a list of them; empty for anything else.
 std::vector<double> numbers_of(const ConfigNode& node) {
@@ -77,8 +77,8 @@ double duration_of(const ScheduleParameters& p) {
   return duration;
 }
 
-/// The way of the obstacles from one model to the other with the cloth at x.
-StepLimit obstacles_way(const LevelModel& from, const LevelModel& to, const Positions& x) {
+/// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
+StepLimit obstacle_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
   StepLimit limit;
   for (std::size_t k = 0; k < to.contacts().size(); ++k) {
     if (to.contacts()[k] == from.contacts()[k]) continue;
@@ -115,7 +115,7 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("steps", &ScheduleParameters::steps)
       .at_least(1)
       .at_most(1e6)
-      .meaning("changes of the conditions in that time, evenly spaced")
+      .meaning("number of equal increments")
       .source("supplement, section 4");
   d.add("settle", &ScheduleParameters::settle)
       .meaning("to equilibrium after every change; if not, one implicit step. After the last always");
@@ -190,19 +190,20 @@ Schedule::Schedule(Experiment experiment, Scene& scene)
   effective_ = wanted(0);
   now_.energies = scene.energies;
   now_.contacts = experiment_.contacts;
-  now_.parameters = moment(effective_, made_from_).parameters;
+  now_.parameters = load_state(effective_, made_from_).parameters;
 }
 
-std::vector<double> Schedule::wanted(int change) const {
+std::vector<double> Schedule::wanted(int increment) const {
   std::vector<double> all;
   for (std::size_t k = 0; k < p_.keys.size(); ++k) {
-    const std::vector<double> own = value_at(p_.keys[k], values_[k], duration_ * change / p_.steps);
+    const std::vector<double> own = value_at(p_.keys[k], values_[k], duration_ * increment / p_.steps);
     all.insert(all.end(), own.begin(), own.end());
   }
   return all;
 }
 
-Moment Schedule::moment(const std::vector<double>& numbers, std::vector<std::string>& made_from) const {
+LoadState Schedule::load_state(const std::vector<double>& numbers,
+                               std::vector<std::string>& made_from) const {
   ConfigNode config = experiment_.resolved;
   ConfigErrors errors;
   const double* at = numbers.data();
@@ -210,7 +211,7 @@ Moment Schedule::moment(const std::vector<double>& numbers, std::vector<std::str
     set_path(config, p_.keys[k].set, node_of(p_.keys[k], at), Location(), errors);
     at += values_[k][0].size();
   }
-  Moment m;
+  LoadState m;
   static const Schema schema = schema_of<ExperimentParameters>();
   schema.read(&m.parameters, config, errors);
   made_from.clear();
@@ -241,15 +242,15 @@ Moment Schedule::moment(const std::vector<double>& numbers, std::vector<std::str
   return m;
 }
 
-LevelModel Schedule::model_under(const Moment& m, int level) const {
+LevelModel Schedule::model_for(const LoadState& m, int level) const {
   const Level &own = scene_.hierarchy.levels[level], &coarsest = scene_.hierarchy.levels[0];
   return {own,        m.parameters.material,
-          m.energies, held_vertices(m.parameters, own, coarsest, scene_.starts[level]),
+          m.energies, dirichlet_vertices(m.parameters, own, coarsest, scene_.starts[level]),
           m.contacts, scene_.models[level].get()};
 }
 
-void Schedule::go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers) {
-  now_ = std::move(moment);
+void Schedule::set_state(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers) {
+  now_ = std::move(state);
   made_from_ = std::move(made_from);
   effective_ = std::move(numbers);
 }
@@ -261,25 +262,25 @@ void Schedule::begin(int level, bool from_start) {
     bind_from(level);
 }
 
-void Schedule::restore(int level, const ConditionsState& state) {
-  change_ = state.change;
+void Schedule::restore(int level, const LoadSteppingState& state) {
+  increment_ = state.increment;
   std::vector<std::string> made_from;
-  Moment then = moment(state.numbers, made_from);
-  go_to(std::move(then), std::move(made_from), state.numbers);
+  LoadState then = load_state(state.values, made_from);
+  set_state(std::move(then), std::move(made_from), state.values);
   bind_from(level);
 }
 
 void Schedule::bind_from(int level) {
   for (std::size_t l = level; l < scene_.models.size(); ++l)
-    *scene_.models[l] = model_under(now_, static_cast<int>(l));
+    *scene_.models[l] = model_for(now_, static_cast<int>(l));
 }
 
 StepLimit Schedule::advance(int level, const Positions& x) {
-  if (made()) ++change_;
+  if (complete()) ++increment_;
   StepLimit limit;
   double part = 1;
-  for (int tries = 0; tries < most_tries && part >= smallest_part; ++tries) {
-    StepLimit allowed = make_part(part, level, x);
+  for (int tries = 0; tries < max_tries && part >= min_fraction; ++tries) {
+    StepLimit allowed = try_fraction(part, level, x);
     if (allowed.fraction == 1) {
       limit.fraction = part;
       return limit;
@@ -291,35 +292,35 @@ StepLimit Schedule::advance(int level, const Positions& x) {
   return limit;
 }
 
-bool Schedule::advance_by(double part, int level, const Positions& x) {
-  return make_part(part, level, x).fraction == 1;
+bool Schedule::advance_by(double fraction, int level, const Positions& x) {
+  return try_fraction(fraction, level, x).fraction == 1;
 }
 
-StepLimit Schedule::make_part(double part, int level, const Positions& x) {
-  std::vector<double> numbers = wanted(change_);
-  if (part < 1)
+StepLimit Schedule::try_fraction(double fraction, int level, const Positions& x) {
+  std::vector<double> numbers = wanted(increment_);
+  if (fraction < 1)
     for (std::size_t c = 0; c < numbers.size(); ++c)
-      numbers[c] = effective_[c] + part * (numbers[c] - effective_[c]);
+      numbers[c] = effective_[c] + fraction * (numbers[c] - effective_[c]);
   std::vector<std::string> made_from;
-  Moment next = moment(numbers, made_from);
-  LevelModel model = model_under(next, level);
-  if (std::string refused = beyond_limits(model.limits(), x, 1); !refused.empty())
+  LoadState next = load_state(numbers, made_from);
+  LevelModel model = model_for(next, level);
+  if (std::string refused = strain_limit_violations(model.limits(), x, 1); !refused.empty())
     return {0.5, std::move(refused)};
-  if (StepLimit way = obstacles_way(*scene_.models[level], model, x); way.fraction < 1) return way;
+  if (StepLimit limit = obstacle_limit(*scene_.models[level], model, x); limit.fraction < 1) return limit;
   *scene_.models[level] = std::move(model);
-  change_energies_above(level, next);
-  go_to(std::move(next), std::move(made_from), std::move(numbers));
+  update_energies_above(level, next);
+  set_state(std::move(next), std::move(made_from), std::move(numbers));
   return {};
 }
 
-void Schedule::change_energies_above(int level, const Moment& next) {
+void Schedule::update_energies_above(int level, const LoadState& next) {
   bool same = next.parameters.material == now_.parameters.material;
   for (std::size_t k = 0; k < next.energies.size(); ++k)
     same = same && next.energies[k].energy == now_.energies[k].energy;
   if (same) return;
   for (std::size_t l = level + 1; l < scene_.models.size(); ++l) {
     LevelModel& model = *scene_.models[l];
-    LevelModel changed(model.level(), next.parameters.material, next.energies, model.held(), {}, &model);
+    LevelModel changed(model.level(), next.parameters.material, next.energies, model.dirichlet(), {}, &model);
     changed.take_contacts(model);
     model = std::move(changed);
   }

@@ -12,8 +12,8 @@ void set_first_keys(ConfigNode& source);
 /// change, times, and values that their parameters refuse.
 void check_schedule(const Experiment& experiment, ConfigErrors& errors);
 
-/// What a level model is made of under the conditions of a moment.
-struct Moment {
+/// The parameters, energies and contact models at one point of the pseudo-time.
+struct LoadState {
   ExperimentParameters parameters;
   std::vector<NamedEnergy> energies;  ///< handles among them
   std::vector<std::shared_ptr<ContactModel>> contacts;
@@ -21,32 +21,32 @@ struct Moment {
 
 /// The keyed parameters of an experiment over pseudo-time, and the models of a scene under them. Refers to
 /// the scene, which owns it.
-class Schedule final : public Conditions {
+class Schedule final : public LoadStepping {
  public:
   Schedule(Experiment experiment, Scene& scene);
 
-  int changes() const override { return p_.steps; }
-  bool settles() const override { return p_.settle; }
+  int increment_count() const override { return p_.steps; }
+  bool equilibrates() const override { return p_.settle; }
   void begin(int level, bool from_start) override;
-  ConditionsState state() const override { return {change_, effective_}; }
-  void restore(int level, const ConditionsState& state) override;
-  int change() const override { return change_; }
-  bool made() const override { return effective_ == wanted(change_); }
-  double time() const override { return duration_ * change_ / p_.steps; }
+  LoadSteppingState state() const override { return {increment_, effective_}; }
+  void restore(int level, const LoadSteppingState& state) override;
+  int increment() const override { return increment_; }
+  bool complete() const override { return effective_ == wanted(increment_); }
+  double time() const override { return duration_ * increment_ / p_.steps; }
   StepLimit advance(int level, const Positions& x) override;
-  bool advance_by(double part, int level, const Positions& x) override;
+  bool advance_by(double fraction, int level, const Positions& x) override;
 
  private:
-  std::vector<double> wanted(int change) const;
-  /// With the numbers of all keys, one after another. What does not change is shared with now_.
-  Moment moment(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
-  LevelModel model_under(const Moment& moment, int level) const;
-  /// Makes a part of what is left of the change if a cloth at x allows it. 1 if so; if not, how much of the
-  /// part it may allow.
-  StepLimit make_part(double part, int level, const Positions& x);
-  /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
-  void change_energies_above(int level, const Moment& next);
-  void go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers);
+  std::vector<double> wanted(int increment) const;
+  /// The state for the numbers of all keys, one after another. Shares with now_ all that is equal.
+  LoadState load_state(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
+  LevelModel model_for(const LoadState& state, int level) const;
+  /// Applies a fraction of the remaining increment if a cloth at x allows it. Returns 1 if so, else an
+  /// estimate of the feasible part of that fraction.
+  StepLimit try_fraction(double fraction, int level, const Positions& x);
+  /// Updates energies on finer levels, which a proxy may evaluate; their contacts are not in use yet.
+  void update_energies_above(int level, const LoadState& next);
+  void set_state(LoadState state, std::vector<std::string> made_from, std::vector<double> numbers);
   void bind_from(int level);
 
   const Experiment experiment_;
@@ -54,10 +54,10 @@ class Schedule final : public Conditions {
   const ScheduleParameters& p_;                           // experiment_'s
   std::vector<std::vector<std::vector<double>>> values_;  // of each key at each of its times
   double duration_;
-  int change_ = 0;
+  int increment_ = 0;
   std::vector<double> effective_;
-  Moment now_;                          // of effective_
-  std::vector<std::string> made_from_;  // texts of the nodes that now_'s plugins were made from
+  LoadState now_;                       // for effective_
+  std::vector<std::string> made_from_;  // YAML of now_'s plugins
 };
 
 }  // namespace drape

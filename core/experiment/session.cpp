@@ -119,7 +119,7 @@ bool is_complete(const fs::path& folder) { return results_of(folder).value("comp
 bool methods_ended_as_asked(const fs::path& folder) {
   const RunData run = read_run(folder);
   return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
-                                     [](const MethodRecord& m) { return ended_as_asked(m.status); });
+                                     [](const MethodRecord& m) { return succeeded(m.status); });
 }
 
 void refuse_damaged_results(const fs::path& folder) {

@@ -13,7 +13,7 @@ namespace {
 struct EmbeddedPoint {
   int triangle = -1;
   Eigen::Vector3d weights = Eigen::Vector3d::Zero();          ///< barycentric, of its projection to the plane
-  double distance = std::numeric_limits<double>::infinity();  ///< from the triangle's lines and plane [m]
+  double distance = std::numeric_limits<double>::infinity();  ///< from the triangle [m]
 };
 
 EmbeddedPoint embed(const TriangleMesh& rest, int triangle, const Eigen::Vector3d& point) {
@@ -42,8 +42,8 @@ double longest_side(const TriangleMesh& rest, int triangle) {
 }  // namespace
 
 ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine_rest) {
-  constexpr double unmoved =
-      1e-6;  // of the longest side of a triangle beside it: rounding of the refiner's sums
+  // Relative to the longest side of an adjacent triangle: round-off of the refiner's sums.
+  constexpr double unmoved = 1e-6;
   const TriangleMesh& rest = coarse.rest;
   const int n = coarse.vertex_count();
   const auto fine_count = static_cast<int>(fine_rest.rows());

@@ -4,10 +4,12 @@
 
 namespace drape {
 
-/// Linear interpolation over the coarse rest shape (n_f × n_c, rows sum to 1): each fine vertex follows the
-/// coarse triangle that its rest position lies in, or nearest to it, so that a state keeps its strains when
-/// it is carried up. `fine_rest` (n_f × 3, in m) is in the order of Refinement. Where a fine vertex rests at
-/// its parent, or in the middle of its parent edge, its row is that of midpoint_refinement.
+/// Linear interpolation over the coarse rest shape (n_f × n_c, rows sum to 1).
+///
+/// Each fine vertex follows the coarse triangle that contains its rest position, or the nearest one. A
+/// prolonged state therefore keeps its strains. `fine_rest` (n_f × 3) [m] is in the order of Refinement. A
+/// fine vertex that rests at its parent, or at the midpoint of its parent edge, gets its row of
+/// midpoint_refinement.
 ProlongationMatrix rest_interpolation(const Level& coarse, const Positions& fine_rest);
 
 }  // namespace drape

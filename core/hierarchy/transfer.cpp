@@ -5,7 +5,7 @@
 namespace drape {
 
 Transfer::Transfer(const ProlongationMatrix& weights)
-    : down_(rows_of(weights)), up_(rows_of(ProlongationMatrix(weights.transpose()))) {}
+    : prolong_(rows_of(weights)), restrict_(rows_of(ProlongationMatrix(weights.transpose()))) {}
 
 Transfer::Rows Transfer::rows_of(const ProlongationMatrix& matrix) {
   Rows rows;

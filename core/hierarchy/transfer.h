@@ -7,16 +7,16 @@
 
 namespace drape {
 
-/// A prolongation made ready to be applied many times: y = P x and g_c = Pᵀ g_f, threaded, without
-/// allocation and with the same bits for any number of threads.
+/// A prolongation prepared for repeated use: y = P x and g_c = Pᵀ g_f, threaded, without allocation and
+/// bitwise reproducible for any number of threads.
 class Transfer {
  public:
   explicit Transfer(const ProlongationMatrix& weights);
 
-  /// fine = P coarse (n_f × 3); `fine` is resized when needed.
-  void prolong(const Positions& coarse, Positions& fine) const { apply(down_, coarse, fine); }
+  /// fine = P coarse (n_f × 3); resizes `fine` if needed.
+  void prolong(const Positions& coarse, Positions& fine) const { apply(prolong_, coarse, fine); }
   /// coarse = Pᵀ fine (n_c × 3).
-  void restrict(const Positions& fine, Positions& coarse) const { apply(up_, fine, coarse); }
+  void restrict(const Positions& fine, Positions& coarse) const { apply(restrict_, fine, coarse); }
 
  private:
   struct Rows {
@@ -26,7 +26,7 @@ class Transfer {
   static Rows rows_of(const ProlongationMatrix& matrix);
   static void apply(const Rows& rows, const Positions& x, Positions& y);
 
-  Rows down_, up_;
+  Rows prolong_, restrict_;
 };
 
 }  // namespace drape

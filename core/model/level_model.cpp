@@ -25,14 +25,14 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
 double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
 
 LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
-                       std::vector<HeldVertex> held,
+                       std::vector<DirichletVertex> dirichlet,
                        const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before)
     : level_(&level),
       material_(material),
-      held_(std::move(held)),
+      dirichlet_(std::move(dirichlet)),
       fixed_(level.vertex_count(), 0),
       masses_(material.area_density() * level.vertex_area) {
-  for (const HeldVertex& h : held_) fixed_[h.vertex] = 1;
+  for (const DirichletVertex& d : dirichlet_) fixed_[d.vertex] = 1;
   bind_energies(energies, before);
   for (const Term& term : terms_)
     if (term.role == EnergyRole::external && !term.is_linear()) load_is_constant_ = false;
@@ -53,8 +53,8 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
       Stencils own = term.energy->stencils();
       if (old && own != old->energy->stencils())
         throw std::runtime_error("energy " + e.name +
-                                 " has other stencils under other conditions; they may not depend on a "
-                                 "parameter that a schedule changes");
+                                 " changes its stencils with a parameter that a schedule changes; "
+                                 "stencils must stay the same");
       if (old) term.slots = old->slots;
       stencils.push_back(std::move(own));
       terms_.push_back(std::move(term));
@@ -201,8 +201,8 @@ double LevelModel::external_force_norm(const Positions& x) const {
 
 namespace {
 
-/// Without a load, forces of this part of the weight that the cloth would have are still some.
-constexpr double least_part_of_weight = 1e-3;
+/// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
+constexpr double min_weight_fraction = 1e-3;
 
 }  // namespace
 
@@ -212,7 +212,7 @@ double LevelModel::residual_scale(const Positions& x, const Positions& gradient)
   for (int i = 0; i < masses_.size(); ++i)
     if (!fixed_[i]) weight += masses_[i] * masses_[i];
   constexpr double gravity = 9.81;  // [m/s²]
-  return std::max({norm_where(gradient, fixed_, 1), least_part_of_weight * gravity * std::sqrt(weight),
+  return std::max({norm_where(gradient, fixed_, 1), min_weight_fraction * gravity * std::sqrt(weight),
                    std::numeric_limits<double>::min()});
 }
 

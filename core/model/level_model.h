@@ -14,42 +14,43 @@
 
 namespace drape {
 
-/// An energy under the name it was chosen by.
+/// An energy and the name that the experiment gives it.
 struct NamedEnergy {
   std::string name;
   std::shared_ptr<const Energy> energy;
 };
 
-/// A vertex held at a place.
-struct HeldVertex {
+/// A vertex with a prescribed position.
+struct DirichletVertex {
   int vertex = 0;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< [m]
-  int pin = 0;                                      ///< which of the experiment's pins holds it
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m]
+  int pin = 0;                                       ///< index of its pin in the experiment
 };
 
-/// The plain model of one level: the sum E_l of its energies, what keeps it apart from itself and others, its
-/// lumped masses and its held vertices (docs/method.md, section 1), under the conditions of one moment. Under
-/// others it is another one, assigned to it. Refers to `level`, which must outlive it.
+/// The plain model of one level at one point of the pseudo-time: the sum E_l of its energies, its contacts,
+/// its lumped masses and its Dirichlet vertices (docs/method.md, section 1). Load stepping assigns another
+/// model to it. Refers to `level`, which must outlive it.
 class LevelModel {
  public:
-  /// No vertex may be held twice. What `before`, a model of the same level under other conditions, has in
-  /// common is shared with it. Throws std::runtime_error where an energy's stencils are others there: a
-  /// pattern is for all conditions.
+  /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
+  /// pseudo-time, all that is equal. Throws std::runtime_error if an energy's stencils differ from those in
+  /// `before`: the sparsity pattern must not change over time.
   LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
-             std::vector<HeldVertex> held, const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
+             std::vector<DirichletVertex> dirichlet,
+             const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
              const LevelModel* before = nullptr);
 
-  /// Has the contacts of another model of the level.
+  /// Takes over the contacts of another model of the same level.
   void take_contacts(const LevelModel& other);
 
   const Level& level() const { return *level_; }
   const Material& material() const { return material_; }
-  const std::vector<HeldVertex>& held() const { return held_; }
-  /// One flag a vertex: 1 where it is held.
+  const std::vector<DirichletVertex>& dirichlet() const { return dirichlet_; }
+  /// One flag a vertex: 1 where it has a Dirichlet condition.
   const std::vector<char>& fixed() const { return fixed_; }
   const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
 
-  /// Ψ_l and the external energies, or those of them that play one of the `roles`; never the limits [J].
+  /// Ψ_l and the external energies, or those of the given roles; never the limits [J].
   double value(const Positions& x, Roles roles = Roles::all()) const;
   /// Overwrites g (n×3) with its gradient [N], fixed vertices included, and returns the value.
   double gradient(const Positions& x, Positions& g, Roles roles = Roles::all()) const;
@@ -59,44 +60,43 @@ class LevelModel {
   /// Adds `factor` times that to the matrix.
   void add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
                    double factor) const;
-  /// The Energy::midpoint_factor that all energies of a role have; none where they differ or have none.
+  /// The common Energy::midpoint_factor of all energies of a role; none where they differ or have none.
   std::optional<double> midpoint_factor(EnergyRole role) const;
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }
-  /// Empty where nothing is to be kept apart.
+  /// Empty without contact.
   const BoundContacts& contacts() const { return contacts_; }
 
   /// Energy of each term, limits included, in the order given, and of the contacts if there are any [J].
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
-  /// Norm over free vertices of the external forces at x [N], summed over the external energies: loads
-  /// that balance each other are still the scale of what is to be balanced.
+  /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance
+  /// each other still set the scale of the residual.
   double load_norm(const Positions& x) const;
   /// ‖∇E_l(x)‖ over the load, on free vertices [1], without friction (docs/method.md, section 2); see
   /// residual_scale.
   double force_residual(const Positions& x) const;
 
-  /// What a gradient's norm is divided by: the external load, or without one the forces that hold the
-  /// fixed vertices, which are none where the cloth comes to lie without a force: then a thousandth of its
-  /// weight.
+  /// Scale of the force residual [N]: the external load; without a load the reaction forces at fixed
+  /// vertices, but at least a thousandth of the cloth's weight.
   double residual_scale(const Positions& x, const Positions& gradient) const;
 
  private:
   struct Term {
     std::string name;
     EnergyRole role;
-    std::shared_ptr<const Energy> kind;  // that it was bound from
+    std::shared_ptr<const Energy> kind;  // the energy that was bound
     std::shared_ptr<const BoundEnergy> energy;
-    std::shared_ptr<const BlockSlots> slots;  // null where the energy is linear, and of a limit
+    std::shared_ptr<const BlockSlots> slots;  // null for linear energies and limits
 
     bool is_linear() const { return role != EnergyRole::limit && !slots; }
   };
-  /// The sum of the linear energies of one role: one pass over their forces does for all of them.
+  /// Sum of the linear energies of one role, so that one pass evaluates all of them.
   struct LinearSum {
     EnergyRole role;
     Positions gradient;
-    double at_origin = 0;  // where all x are 0
+    double at_origin = 0;  // value at x = 0
   };
 
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
@@ -108,18 +108,18 @@ class LevelModel {
 
   const Level* level_;
   Material material_;
-  std::vector<HeldVertex> held_;
+  std::vector<DirichletVertex> dirichlet_;
   std::vector<char> fixed_;
   Eigen::VectorXd masses_;
   std::vector<Term> terms_;
   std::vector<const BoundEnergy*> limits_;
-  std::vector<std::shared_ptr<ContactModel>> contact_kinds_;  // that contacts_ were bound from
-  std::vector<std::shared_ptr<const BoundContact>> bound_;    // of each of them; null where it binds nothing
-  BoundContacts contacts_;                                    // those that are not null
+  std::vector<std::shared_ptr<ContactModel>> contact_kinds_;  // those that contacts_ come from
+  std::vector<std::shared_ptr<const BoundContact>> bound_;    // one for each kind; may be null
+  BoundContacts contacts_;                                    // the non-null ones
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<LinearSum> linear_;
   bool load_is_constant_ = true;   // whether every external energy is linear
-  double constant_load_norm_ = 0;  // then the norm of its forces
+  double constant_load_norm_ = 0;  // if so, the norm of their forces [N]
 };
 
 /// Norm of the rows of g whose vertex is free (fixed[i] == 0).

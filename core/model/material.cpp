@@ -9,7 +9,7 @@ void Material::declare(Declaration<Material>& d) {
       .unit("kg/m³")
       .at_least(1e-6)
       .at_most(1e6)
-      .meaning("ρ, mass of a unit of volume")
+      .meaning("ρ, mass per volume")
       .source("supplement, Table 2");
   d.add("thickness", &Material::thickness)
       .unit("m")

@@ -4,7 +4,7 @@
 
 namespace drape {
 
-/// One isotropic cloth. Moduli are bulk (Young) moduli, as in the supplement's Table 2.
+/// An isotropic cloth material. Moduli are Young's moduli of the bulk, as in the supplement's Table 2.
 struct Material {
   double density = 472.6;         ///< ρ [kg/m³]
   double thickness = 3.18e-4;     ///< d [m]
@@ -15,7 +15,7 @@ struct Material {
   static void declare(Declaration<Material>& d);
   bool operator==(const Material&) const = default;
 
-  /// Mass of a unit of area, ρ d [kg/m²].
+  /// Mass per area, ρ d [kg/m²].
   double area_density() const { return density * thickness; }
 };
 

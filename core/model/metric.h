@@ -14,7 +14,7 @@ class LevelModel;
 
 enum class Better { lower, higher, neither };
 
-/// One figure, with its unit and which way is better.
+/// One value, with its unit and the better direction.
 struct MetricValue {
   std::string name;
   double value = 0;
@@ -22,7 +22,7 @@ struct MetricValue {
   Better better = Better::lower;
 };
 
-/// One scalar a vertex of the fine level, for pictures.
+/// One scalar for each vertex of the fine level, for pictures.
 struct MetricField {
   std::string name;
   Eigen::VectorXd values;
@@ -34,18 +34,18 @@ struct MetricResult {
   std::vector<MetricField> fields;
 };
 
-/// Whether a metric looks at one state or at two.
+/// Whether a metric measures one state or a pair.
 enum class MetricScope {
-  state,  ///< one level's state
-  pair    ///< a coarse state, carried up to the fine level by its method's interpolation, against a fine one
+  state,  ///< the state of one level
+  pair    ///< a coarse state, prolonged to the fine level by its method, against a fine state
 };
 
-/// What a metric may look at: a state on one level and, for pairs, another on the same level.
+/// Input of a metric: a state on one level and, for pairs, another on the same level.
 struct MetricInput {
   const Level& level;                ///< the (fine) level; area weights are level.vertex_area
   const LevelModel& model;           ///< the plain model of that level
-  const Positions& x;                ///< n×3, the state on it; of a pair, the finer one
-  const Positions* other = nullptr;  ///< n×3, pairs only: what is measured against x
+  const Positions& x;                ///< n×3 [m], the state; of a pair, the fine one
+  const Positions* other = nullptr;  ///< n×3 [m], pairs only: the prolonged coarse state
 };
 
 /// A measure of a state or of a pair of states. Evaluation is const and stateless.

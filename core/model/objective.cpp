@@ -4,7 +4,7 @@
 
 namespace drape {
 
-double Objective::kept_smooth_gradient(const Positions& x, Positions& g) {
+double Objective::cached_smooth_gradient(const Positions& x, Positions& g) {
   if (evaluated_at_.rows() != x.rows() || evaluated_at_ != x) {
     smooth_energy_ = smooth_gradient(x, smooth_gradient_);
     evaluated_at_ = x;
@@ -14,7 +14,7 @@ double Objective::kept_smooth_gradient(const Positions& x, Positions& g) {
 }
 
 double Objective::gradient(const Positions& x, Positions& g) {
-  double sum = kept_smooth_gradient(x, g);
+  double sum = cached_smooth_gradient(x, g);
   for (std::size_t k = 0; k < limits_.size() && std::isfinite(sum); ++k)
     sum += limits_[k]->add_gradient(x, g);
   if (penalty_) sum += penalty_->add_gradient(x, g);
@@ -29,23 +29,23 @@ double Objective::plain_energy(const Positions& x) {
 
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {
   BlockMatrix& smooth = smooth_matrix(x, projection);
-  std::vector<const BoundEnergy*> local = contacts_.energies(x);
-  smooth_alone_ = local.empty() && limits_.empty() && !penalty_;
-  gone_ = false;
-  if (smooth_alone_) return smooth;
-  std::vector<const BoundEnergy*> lasting = limits_;
-  if (penalty_) lasting.push_back(penalty_);
-  return sum_.add(smooth, lasting, local, x, projection);
+  std::vector<const BoundEnergy*> transient = contacts_.energies(x);
+  smooth_only_ = transient.empty() && limits_.empty() && !penalty_;
+  invalidated_ = false;
+  if (smooth_only_) return smooth;
+  std::vector<const BoundEnergy*> persistent = limits_;
+  if (penalty_) persistent.push_back(penalty_);
+  return assembler_.add(smooth, persistent, transient, x, projection);
 }
 
-void Objective::forget_room() {
-  gone_ = gone_ || !(smooth_alone_ || sum_.room().blocks.empty());
-  sum_ = SumMatrix();
+void Objective::invalidate_pattern() {
+  invalidated_ = invalidated_ || !(smooth_only_ || assembler_.extra().blocks.empty());
+  assembler_ = HessianAssembler();
 }
 
 void Objective::smooth_pattern_changed() {
-  gone_ = true;
-  sum_ = SumMatrix();
+  invalidated_ = true;
+  assembler_ = HessianAssembler();
 }
 
 void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
@@ -54,12 +54,12 @@ void Objective::model_changed(const BoundContacts& before, const Positions& from
   contacts_.update_obstacles(before, from, x);
 }
 
-std::shared_ptr<const BlockPattern> Objective::restore(PatternMemory memory, const Positions& x) {
+std::shared_ptr<const BlockPattern> Objective::restore(PatternState state, const Positions& x) {
   const std::shared_ptr<const BlockPattern> smooth = smooth_matrix(x, Projection::none).pattern;
-  const std::shared_ptr<const BlockPattern>& whole = sum_.restore(smooth, std::move(memory.room));
-  smooth_alone_ = memory.smooth_alone;
-  gone_ = memory.gone;
-  return gone_ ? nullptr : smooth_alone_ ? smooth : whole;
+  const std::shared_ptr<const BlockPattern>& whole = assembler_.restore(smooth, std::move(state.extra));
+  smooth_only_ = state.smooth_only;
+  invalidated_ = state.invalidated;
+  return invalidated_ ? nullptr : smooth_only_ ? smooth : whole;
 }
 
 StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {
@@ -70,8 +70,8 @@ StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {
       if (own.fraction < limit.fraction) limit = std::move(own);
     }
   if (!contacts_.any()) return limit;
-  const StepLimit apart = contacts_.max_step(x0, x0 + limit.fraction * (x1 - x0));
-  if (apart.fraction < 1) limit = {limit.fraction * apart.fraction, apart.by};
+  const StepLimit contact = contacts_.max_step(x0, x0 + limit.fraction * (x1 - x0));
+  if (contact.fraction < 1) limit = {limit.fraction * contact.fraction, contact.by};
   return limit;
 }
 

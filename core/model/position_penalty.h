@@ -6,15 +6,16 @@
 
 namespace drape {
 
-/// Σ_k w_k/2 ‖x_k − x̃_k‖²: vertices pulled to places (supplement, section 4, equation 1; w_k = κ_B m_k).
+/// Quadratic penalty Σ_k w_k/2 ‖x_k − x̃_k‖² that pulls vertices to targets x̃ (supplement, section 4,
+/// equation 1; w_k = κ_B m_k).
 class PositionPenalty final : public BoundEnergy {
  public:
-  struct Pull {
+  struct Term {
     int vertex = 0;
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< x̃ [m]
-    double weight = 0;                                ///< w [N/m]
+    Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< x̃ [m]
+    double weight = 0;                                 ///< w [N/m]
   };
-  explicit PositionPenalty(std::vector<Pull> pulls) : pulls_(std::move(pulls)) {}
+  explicit PositionPenalty(std::vector<Term> terms) : terms_(std::move(terms)) {}
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;
@@ -22,7 +23,7 @@ class PositionPenalty final : public BoundEnergy {
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override;
 
  private:
-  std::vector<Pull> pulls_;
+  std::vector<Term> terms_;
 };
 
 }  // namespace drape

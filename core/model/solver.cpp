@@ -4,9 +4,9 @@
 
 namespace drape {
 
-Positions Problem::carry_up(const ProlongationMatrix& weights, int level, const Positions& x) const {
+Positions Problem::prolong(const ProlongationMatrix& weights, int level, const Positions& x) const {
   Positions y = weights * x;
-  for (const HeldVertex& h : models[level + 1]->held()) y.row(h.vertex) = h.place.transpose();
+  for (const DirichletVertex& d : models[level + 1]->dirichlet()) y.row(d.vertex) = d.target.transpose();
   return y;
 }
 
@@ -20,8 +20,8 @@ std::vector<LevelResult> ResumableSolver::solve(const Problem& problem, Observer
 
 Outcome worse_of(Outcome a, Outcome b) {
   constexpr Outcome rising[] = {Outcome::converged_to_rounding,
-                                Outcome::refined_early,
-                                Outcome::out_of_steps,
+                                Outcome::refined_early_on_request,
+                                Outcome::max_steps_reached,
                                 Outcome::stalled,
                                 Outcome::infeasible,
                                 Outcome::cancelled};
@@ -35,26 +35,26 @@ bool has_converged(const std::string& outcome) {
   return outcome == to_string(Outcome::converged) || outcome == to_string(Outcome::converged_to_rounding);
 }
 
-bool ended_as_asked(const std::string& outcome) {
-  return has_converged(outcome) || outcome == to_string(Outcome::handed_on);
+bool succeeded(const std::string& outcome) {
+  return has_converged(outcome) || outcome == to_string(Outcome::refined_early_at_tolerance);
 }
 
 const char* to_string(Outcome outcome) {
   switch (outcome) {
     case Outcome::converged:
       return "converged";
-    case Outcome::out_of_steps:
-      return "out_of_steps";
+    case Outcome::max_steps_reached:
+      return "max_steps_reached";
     case Outcome::stalled:
       return "stalled";
     case Outcome::cancelled:
       return "cancelled";
     case Outcome::infeasible:
       return "infeasible";
-    case Outcome::refined_early:
-      return "refined_early";
-    case Outcome::handed_on:
-      return "handed_on";
+    case Outcome::refined_early_on_request:
+      return "refined_early_on_request";
+    case Outcome::refined_early_at_tolerance:
+      return "refined_early_at_tolerance";
     case Outcome::converged_to_rounding:
       return "converged_to_rounding";
   }

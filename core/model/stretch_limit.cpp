@@ -12,15 +12,16 @@ std::string to_string(const StretchedTriangle& stretched, double limit) {
   return text;
 }
 
-std::string beyond_limits(const std::vector<const BoundEnergy*>& energies, const Positions& x,
-                          std::size_t most_named) {
+std::string strain_limit_violations(const std::vector<const BoundEnergy*>& energies, const Positions& x,
+                                    std::size_t most_named) {
   std::string text;
   for (const BoundEnergy* energy : energies)
     if (const auto* limit = dynamic_cast<const StretchLimited*>(energy)) {
-      const std::vector<StretchedTriangle> beyond = limit->beyond(x);
-      for (std::size_t k = 0; k < std::min(beyond.size(), most_named); ++k)
-        text += (text.empty() ? "" : ", ") + to_string(beyond[k], limit->limit());
-      if (beyond.size() > most_named) text += " and " + std::to_string(beyond.size() - most_named) + " more";
+      const std::vector<StretchedTriangle> violations = limit->violations(x);
+      for (std::size_t k = 0; k < std::min(violations.size(), most_named); ++k)
+        text += (text.empty() ? "" : ", ") + to_string(violations[k], limit->limit());
+      if (violations.size() > most_named)
+        text += " and " + std::to_string(violations.size() - most_named) + " more";
     }
   return text;
 }

@@ -28,12 +28,12 @@ struct Cholmod {
     cholmod_free_factor(&factor, &common);
     cholmod_finish(&common);
   }
-  /// In this order, or without one in METIS's.
-  void analyse(std::vector<int> order) {
+  /// Symbolic analysis with this ordering, or with METIS's if it is empty.
+  void analyse(std::vector<int> ordering) {
     cholmod_free_factor(&factor, &common);
-    common.method[0].ordering = order.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
-    factor = order.empty() ? cholmod_analyze(graph, &common)
-                           : cholmod_analyze_p(graph, order.data(), nullptr, 0, &common);
+    common.method[0].ordering = ordering.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
+    factor = ordering.empty() ? cholmod_analyze(graph, &common)
+                              : cholmod_analyze_p(graph, ordering.data(), nullptr, 0, &common);
     require(factor, "symbolic analysis");
   }
   void require(const void* result, const char* what) const {
@@ -43,16 +43,16 @@ struct Cholmod {
   }
 };
 
-/// An order that was good for another pattern is kept while it costs less than this many times as much as it
-/// did there: to find a new one takes longer than several factorisations.
-constexpr double worn = 1.5;
+/// An ordering from another pattern is reused while the factorisation costs at most this many times as much
+/// as it did there: computing a new one takes longer than several factorisations.
+constexpr double max_flops_growth = 1.5;
 
-/// The order of vertices as indices into `free`.
-std::vector<int> places_in(const std::vector<int>& free, const std::vector<int>& order, int vertices) {
-  std::vector<int> index(vertices, -1), places;
+/// The ordering of vertices as indices into `free`.
+std::vector<int> indices_in(const std::vector<int>& free, const std::vector<int>& ordering, int vertices) {
+  std::vector<int> index(vertices, -1), indices;
   for (std::size_t i = 0; i < free.size(); ++i) index[free[i]] = static_cast<int>(i);
-  for (int v : order) places.push_back(index[v]);
-  return places;
+  for (int v : ordering) indices.push_back(index[v]);
+  return indices;
 }
 
 /// The graph of the free vertices, by their index in `free`.
@@ -95,44 +95,45 @@ SupernodalTree tree_of(const cholmod_factor& factor) {
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
-  std::vector<int> order;
-  if (fixed == fixed_) order.swap(order_);
+  std::vector<int> ordering;
+  if (fixed == fixed_) ordering.swap(ordering_);
   pattern_ = std::move(pattern);
   fixed_ = fixed;
   ++analyses_;
-  lay_out(std::move(order), worn * ordered_flops_);
+  order_and_analyse(std::move(ordering), max_flops_growth * ordering_flops_);
 }
 
 void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis) {
   pattern_ = std::move(pattern);
   fixed_ = std::move(analysis.fixed);
   analyses_ = analysis.count;
-  order_ = std::move(analysis.order);
+  ordering_ = std::move(analysis.ordering);
   has_factor_ = false;
-  if (pattern_) lay_out(std::move(analysis.given), std::numeric_limits<double>::infinity());
-  ordered_flops_ = analysis.ordered_flops;
+  if (pattern_)
+    order_and_analyse(std::move(analysis.reused_ordering), std::numeric_limits<double>::infinity());
+  ordering_flops_ = analysis.ordering_flops;
 }
 
-void BlockCholesky::lay_out(std::vector<int> order, double most_flops) {
+void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flops) {
   has_factor_ = false;
   std::vector<int> free;
   for (int v = 0; v < pattern_->rows(); ++v)
     if (!fixed_[v]) free.push_back(v);
   flops_ = entries_ = 0;
-  if (free.empty()) return order_.clear();
+  if (free.empty()) return ordering_.clear();
 
   Cholmod c;
   make_graph(*pattern_, free, c);
-  given_ = std::move(order);
-  if (!given_.empty()) c.analyse(places_in(free, given_, pattern_->rows()));
-  if (given_.empty() || c.common.fl > most_flops) {
-    given_.clear();
+  reused_ordering_ = std::move(ordering);
+  if (!reused_ordering_.empty()) c.analyse(indices_in(free, reused_ordering_, pattern_->rows()));
+  if (reused_ordering_.empty() || c.common.fl > max_flops) {
+    reused_ordering_.clear();
     c.analyse({});
-    ordered_flops_ = c.common.fl;
+    ordering_flops_ = c.common.fl;
   }
   const auto* permutation = static_cast<const int*>(c.factor->Perm);
-  order_.clear();
-  for (std::size_t p = 0; p < free.size(); ++p) order_.push_back(free[permutation[p]]);
+  ordering_.clear();
+  for (std::size_t p = 0; p < free.size(); ++p) ordering_.push_back(free[permutation[p]]);
   for (std::size_t p = 0; p < free.size(); ++p)
     for (int k = 0; k < 3; ++k) {
       const double column = 3.0 * static_cast<const int*>(c.factor->ColCount)[p] - k;
@@ -140,7 +141,7 @@ void BlockCholesky::lay_out(std::vector<int> order, double most_flops) {
       flops_ += column * column;
     }
   try {
-    factor_.lay_out(tree_of(*c.factor), *pattern_, order_);
+    factor_.set_structure(tree_of(*c.factor), *pattern_, ordering_);
   } catch (const std::bad_alloc&) {
     throw std::runtime_error("sparse Cholesky: no memory for a factor of " + std::to_string(entries_ * 8e-9) +
                              " GB; use a coarser mesh");
@@ -148,19 +149,19 @@ void BlockCholesky::lay_out(std::vector<int> order, double most_flops) {
 }
 
 bool BlockCholesky::factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
-  return has_factor_ = order_.empty() || factor_.factorise(matrix, shift);
+  return has_factor_ = ordering_.empty() || factor_.factorise(matrix, shift);
 }
 
 void BlockCholesky::solve(const Positions& right_hand_side, Positions& solution) {
   solution.setZero(right_hand_side.rows(), 3);
-  if (order_.empty()) return;
+  if (ordering_.empty()) return;
   if (!has_factor_) throw std::logic_error("sparse Cholesky: solve before a successful factorise");
   x_.resize(unknowns());
-  for (std::size_t p = 0; p < order_.size(); ++p)
-    for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(order_[p], c);
+  for (std::size_t p = 0; p < ordering_.size(); ++p)
+    for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(ordering_[p], c);
   factor_.solve(x_);
-  for (std::size_t p = 0; p < order_.size(); ++p)
-    for (int c = 0; c < 3; ++c) solution(order_[p], c) = x_[3 * p + c];
+  for (std::size_t p = 0; p < ordering_.size(); ++p)
+    for (int c = 0; c < 3; ++c) solution(ordering_[p], c) = x_[3 * p + c];
 }
 
 }  // namespace drape

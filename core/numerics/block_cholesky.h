@@ -11,57 +11,60 @@
 namespace drape {
 
 /// Sparse Cholesky factorisation of a symmetric block matrix plus a diagonal, without the rows and columns of
-/// fixed vertices. Vertices are ordered by nested dissection (METIS) and gathered into supernodes by CHOLMOD
-/// (Chen, Davis, Hager and Rajamanickam 2008); SupernodalFactor does the numbers. Supernodes are kept
-/// until the pattern changes, the order until it has become a bad one for it or the fixed vertices change.
+/// fixed vertices.
+///
+/// CHOLMOD orders vertices by nested dissection (METIS) and forms supernodes (Chen, Davis, Hager and
+/// Rajamanickam 2008); SupernodalFactor does the numeric factorisation. A new pattern gets a new symbolic
+/// analysis but reuses the ordering, until that costs too much or the fixed vertices change.
 class BlockCholesky {
  public:
-  /// What an analysis was made from, the same pattern with which gives the same layout, and came to.
+  /// Input and result of a symbolic analysis. With the same pattern it gives the same layout.
   struct Analysis {
     std::vector<char> fixed;
-    std::vector<int> given;    ///< order of the free vertices that was kept; empty where one was found
-    std::vector<int> order;    ///< that came of it
-    double ordered_flops = 0;  ///< what it cost where it was found
-    int count = 0;             ///< of analyses so far, this one with them; 0 where none was made
+    std::vector<int>
+        reused_ordering;        ///< ordering of the free vertices from before; empty if it was computed
+    std::vector<int> ordering;  ///< the resulting one
+    double ordering_flops = 0;  ///< cost of the factorisation when the ordering was computed
+    int count = 0;              ///< analyses so far, including this one
   };
 
   /// Orders and analyses; does nothing when called again with the same pattern and flags.
   /// `fixed` has one flag a vertex. Throws std::runtime_error when memory runs out.
   void analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed);
 
-  /// Factorises A + diag(shift_i I₃); shift has one entry a vertex [N/m]. False when the sum is not
-  /// positive definite: there is no factor then.
+  /// Factorises A + diag(shift_i I₃); shift has one entry a vertex [N/m]. Returns false, without a factor, if
+  /// the sum is not positive definite.
   bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
 
   /// Solves with the last factor; n×3 right-hand side and solution, whose fixed rows are zero.
   void solve(const Positions& right_hand_side, Positions& solution);
 
-  Analysis analysis() const { return {fixed_, given_, order_, ordered_flops_, analyses_}; }
-  /// Is laid out as after that analysis of the pattern, without a factor. Where the pattern is null, being
-  /// used no more, there is only the order to begin the next analysis from.
+  Analysis analysis() const { return {fixed_, reused_ordering_, ordering_, ordering_flops_, analyses_}; }
+  /// Restores the layout that this analysis of the pattern gave, without a factor. If the pattern is null,
+  /// since it was invalidated, restores only the ordering for the next analysis.
   void restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis);
 
   bool has_factor() const { return has_factor_; }
-  int unknowns() const { return 3 * static_cast<int>(order_.size()); }
-  /// Floating-point operations of one numeric factorisation, and entries of the factor, without the zeros
-  /// that supernodes bring.
+  int unknowns() const { return 3 * static_cast<int>(ordering_.size()); }
+  /// Floating-point operations of one numeric factorisation, and entries of the factor; both without the
+  /// explicit zeros of supernodes.
   double flops() const { return flops_; }
   double factor_entries() const { return entries_; }
-  /// How many times an analysis was made.
+  /// Number of symbolic analyses.
   int analyses() const { return analyses_; }
 
  private:
-  /// In `order`, as long as that costs no more; else in one that is found.
-  void lay_out(std::vector<int> order, double most_flops);
+  /// Uses `ordering` if the factorisation then costs at most `max_flops`, else computes one.
+  void order_and_analyse(std::vector<int> ordering, double max_flops);
 
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<char> fixed_;
-  std::vector<int> order_;  // order_[p] is the vertex at place p
-  std::vector<int> given_;  // what order_ was made from; empty where it was found
+  std::vector<int> ordering_;         // ordering_[p] is the vertex at position p
+  std::vector<int> reused_ordering_;  // input of the analysis; empty if ordering_ was computed
   SupernodalFactor factor_;
   Eigen::VectorXd x_;
   double flops_ = 0, entries_ = 0;
-  double ordered_flops_ = 0;  // of CHOLMOD's count, when order_ was found
+  double ordering_flops_ = 0;  // CHOLMOD's count when the ordering was computed
   bool has_factor_ = false;
   int analyses_ = 0;
 };

@@ -9,7 +9,7 @@
 namespace drape {
 namespace {
 
-/// For each vertex the rows of one stencil array that it occurs in (a counting sort).
+/// Rows of one stencil array that contain each vertex (a counting sort).
 struct VertexElements {
   std::vector<int> start, rows;
 
@@ -40,7 +40,7 @@ void require_vertices(int vertex_count, const Stencils& stencils) {
     }
 }
 
-/// Columns j ≥ i of some rows, and where each row ends among them.
+/// Columns j ≥ i of some rows, and the end of each row among them.
 struct RowColumns {
   std::vector<int> columns, ends;
 };
@@ -94,7 +94,7 @@ std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
 BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> columns_in)
     : row_start(std::move(row_start_in)), columns(std::move(columns_in)) {
   if (row_start.empty() || row_start.front() != 0 || row_start.back() != blocks())
-    throw std::runtime_error("block pattern: row starts must lead from 0 to the number of columns");
+    throw std::runtime_error("block pattern: row starts must run from 0 to the number of columns");
   for (int i = 0; i < rows(); ++i) {
     bool good = row_start[i] < row_start[i + 1] && columns[row_start[i]] == i;
     for (int b = row_start[i] + 1; good && b < row_start[i + 1]; ++b)
@@ -107,8 +107,8 @@ BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> colum
 
 int BlockPattern::find(int i, int j) const {
   const auto begin = columns.begin() + row_start[i], end = columns.begin() + row_start[i + 1];
-  const auto place = std::lower_bound(begin, end, j);
-  return place != end && *place == j ? static_cast<int>(place - columns.begin()) : -1;
+  const auto found = std::lower_bound(begin, end, j);
+  return found != end && *found == j ? static_cast<int>(found - columns.begin()) : -1;
 }
 
 BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> p) : pattern(std::move(p)) {

@@ -7,14 +7,14 @@
 
 namespace drape {
 
-/// m×k vertex indices, one row an element; -1 where an element has fewer vertices.
+/// m×k vertex indices, one row for each element; -1 where an element has fewer vertices.
 using Stencils = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Sparsity of a symmetric matrix of 3×3 blocks, one block row a vertex. Only blocks (i, j) with
-/// i ≤ j are kept, row by row, columns ascending; every diagonal block is present. Immutable.
+/// Sparsity of a symmetric matrix of 3×3 blocks, one block row for each vertex. Stores blocks (i, j) with i ≤
+/// j row by row, columns ascending; every diagonal block is present. Immutable.
 class BlockPattern {
  public:
-  /// The union of the pairs (i, j) that occur together in a row of any of the stencils.
+  /// All pairs (i, j) that occur together in a row of any of the stencils.
   static std::shared_ptr<const BlockPattern> of(int vertex_count, const std::vector<Stencils>& stencils);
 
   /// From rows of ascending columns j ≥ i, diagonal first.
@@ -22,7 +22,7 @@ class BlockPattern {
 
   int rows() const { return static_cast<int>(row_start.size()) - 1; }
   int blocks() const { return static_cast<int>(columns.size()); }
-  /// Index of block (i, j), i ≤ j; -1 where the pattern has none.
+  /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
   int find(int i, int j) const;
 
   const std::vector<int> row_start;  ///< rows() + 1
@@ -43,26 +43,26 @@ struct BlockMatrix {
                 Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const;
 };
 
-/// Where the blocks of one energy's elements go in a pattern; made once, when the pattern is.
+/// Indices in a pattern of the blocks of one energy's elements, computed once.
 class BlockSlots {
  public:
   BlockSlots(const BlockPattern& pattern, const Stencils& stencils);
 
  private:
   friend class BlockSink;
-  int pairs_;               // k(k+1)/2 block pairs an element
-  std::vector<int> slots_;  // block index, bitwise complemented where it is to be transposed, or no_block
-  static constexpr int no_block = std::numeric_limits<int>::min();  // of a pair with a missing vertex
+  int pairs_;               // k(k+1)/2 for each element
+  std::vector<int> slots_;  // block index, bitwise complemented if transposed, or no_block
+  static constexpr int no_block = std::numeric_limits<int>::min();  // a pair with a missing vertex
 };
 
 /// Adds elements' 3×3 blocks to a matrix. Concurrent calls are safe for elements that share no vertex.
 class BlockSink {
  public:
-  /// What is added is multiplied by `factor`.
+  /// `factor` multiplies all added blocks.
   BlockSink(const BlockSlots& slots, BlockMatrix& matrix, double factor = 1)
       : slots_(slots.slots_.data()), pairs_(slots.pairs_), values_(matrix.values.data()), factor_(factor) {}
 
-  /// The same for a part of an energy, whose elements begin at row `first` of the stencils.
+  /// A sink for the elements from row `first` of the stencils on.
   BlockSink from(int first) const {
     BlockSink part = *this;
     part.slots_ += static_cast<std::ptrdiff_t>(first) * pairs_;

@@ -6,12 +6,12 @@
 
 namespace drape {
 
-/// The signed angle θ between the normals of triangles (0, 1, 2) and (1, 0, 3), positive where vertex 3 lies
-/// behind the first triangle, and its derivatives. A function of the vectors e = x₁ - x₀, u = x₂ - x₀, v = x₃
-/// - x₀. T is double or a Pack.
+/// Signed dihedral angle θ between the normals of triangles (0, 1, 2) and (1, 0, 3), positive if vertex 3
+/// lies behind the first triangle, with its derivatives by e = x₁ - x₀, u = x₂ - x₀ and v = x₃ - x₀. T is
+/// double or a Pack.
 ///
-/// θ = φ(e, u) - φ(e, v) + π, φ being the azimuth about the axis e, so that first and second derivatives are
-/// those of φ twice (the same as in Tamstorf & Grinspun 2013, "Discrete bending forces and their Jacobians").
+/// θ = φ(e, u) - φ(e, v) + π with the azimuth φ about the axis e, so all derivatives come from those of φ.
+/// They equal those of Tamstorf & Grinspun 2013, "Discrete bending forces and their Jacobians".
 template <class T>
 class DihedralAngle {
  public:
@@ -21,7 +21,7 @@ class DihedralAngle {
   /// From e, u, v.
   explicit DihedralAngle(const Vector* x) : axis_(x[0]), u_(axis_, x[1]), v_(axis_, x[2]) {
     using std::atan2;
-    // v is h_v m_v and a part along the axis, so that n_u·m_v = n_u·v / h_v.
+    // v is h_v m_v plus a component along the axis, so n_u·m_v = n_u·v / h_v.
     angle_ = atan2(-v_.inverse_height * u_.n.dot(x[2]), -u_.n.dot(v_.n));
   }
 
@@ -34,12 +34,12 @@ class DihedralAngle {
     g[2] = v_.by_point() * -scale;
   }
 
-  /// The upper blocks of the 9×9 matrix stiffness ∇θ ∇θᵀ + moment ∇²θ by (e, u, v), put together from its two
-  /// symmetric 4×4 parts, upper triangles, after `map` has changed them.
+  /// Upper blocks of the 9×9 matrix stiffness ∇θ ∇θᵀ + moment ∇²θ by (e, u, v). It is assembled from two
+  /// symmetric 4×4 parts after `map` has been applied to each part's upper triangle.
   ///
-  /// By e, q = u - s_u e and r = v - s_v e (the points' distances from their feet) the second derivatives of
-  /// φ are those of n·q m·q / h² + n·e t·q / (h ‖e‖) + n·e m·e / (2 ‖e‖²), so that (n_u·q, m_u·q, n_v·r,
-  /// m_v·r) and (n_u·e, m_u·e, t·q, t·r) do not meet. Stretching along e changes nothing.
+  /// In e, q = u - s_u e and r = v - s_v e (the points' offsets from their feet) the second derivatives of φ
+  /// are those of n·q m·q / h² + n·e t·q / (h ‖e‖) + n·e m·e / (2 ‖e‖²), which decouples (n_u·q, m_u·q,
+  /// n_v·r, m_v·r) from (n_u·e, m_u·e, t·q, t·r). Stretch along e has no effect.
   template <class Map>
   void hessian(const T& stiffness, const T& moment, Eigen::Matrix<T, 9, 9>& h, const Map& map) const {
     const Azimuth &u = u_, &v = v_;
@@ -92,7 +92,7 @@ class DihedralAngle {
   };
 
   /// The azimuth φ(e, p) of a point about the axis, in the frame t, n, m: n normal to both,
-  /// m = n × t towards the point, h the distance, s the foot's place along e (0 … 1 on the edge).
+  /// m = n × t towards the point, h the distance, s the foot's parameter along e (0 … 1 on the edge).
   struct Azimuth {
     T s, inverse_height;
     Vector n, m;

@@ -16,7 +16,8 @@
 
 namespace drape {
 
-/// A kernel's Hessian at the differences d, projected: as a whole, or in the parts that the kernel has it in.
+/// A kernel's projected Hessian at the differences d. The projection acts on the whole, or on each of the
+/// kernel's independent parts.
 template <class Kernel, int Size, class T>
 void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projection projection,
                        SymmetricMatrix<Size, T>& h) {
@@ -40,7 +41,8 @@ void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projectio
   }
 }
 
-/// The sum of one kernel over many elements: gathering, threads, projection and scattering, once for all.
+/// Sum of one kernel over many elements. Gathering, threading, projection and scattering live here for all
+/// kernels.
 ///
 /// A Kernel has `vertices` (k), `convex` (no projection needed), `Rest` (a fixed-size vector of doubles) and,
 /// for T double or Pack, of the k - 1 differences d_i = x_i - x_0 and the element's rest numbers,
@@ -49,18 +51,18 @@ void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projectio
 ///     T gradient(const Vector3<T>* d, const T* rest, Vector3<T>* g);      // by d_i; returns the value
 ///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h);     // upper 3×3 blocks
 ///
-/// A kernel whose Hessian falls into independent parts in coordinates of its own may also have
+/// A kernel whose Hessian decouples into independent parts in suitable coordinates may also have
 ///
 ///     void hessian(const Vector3<T>* d, const T* rest, Matrix<T>& h, const Map& map);
 ///
-/// which calls map(part) on each, a small symmetric matrix whose upper triangle counts, and puts together
-/// what map leaves: the projection is then made in those coordinates, and is much cheaper.
+/// which calls map(part) on each small symmetric part (upper triangle) and assembles the results. The
+/// projection then acts in those coordinates and is much cheaper.
 ///
-/// A value that is not a number counts as +∞.
+/// NaN values count as +∞.
 template <class Kernel, int W = native_pack_width>
 class ElementEnergy final : public BoundEnergy {
  public:
-  /// Elements m×k, the rest numbers of each, and an order of theirs.
+  /// Vertices m×k of the elements, their rest data, and an order of the elements.
   ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order)
       : order_(std::move(order)), stencils_(in_order(elements, order_)) {
     for (int c = 0; c < order_.chunks(); ++c) {
@@ -70,15 +72,14 @@ class ElementEnergy final : public BoundEnergy {
         Elements pack{{stencils_, first, end}, {}};
         for (int lane = 0; lane < W; ++lane)
           for (int r = 0; r < rest_size; ++r)
-            pack.rest[r].v[lane] = rest[order_.elements[pack.place(lane)]][r];
+            pack.rest[r].v[lane] = rest[order_.elements[pack.position(lane)]][r];
         packs_.push_back(pack);
       }
     }
     first_pack_.push_back(static_cast<int>(packs_.size()));
   }
 
-  // A pack's numbers stay in registers only where everything is inlined, the kernel included: hence
-  // `flatten`.
+  // A pack stays in registers only if everything is inlined, the kernel included: hence `flatten`.
   double value(const Positions& x) const override {
     Sums sums;
     parallel_for(order_.chunks(), 1, [&](int begin, int end) {

@@ -36,12 +36,12 @@ std::vector<int> along_morton_curve(const Stencils& stencils, const Positions& r
   return order;
 }
 
-/// The lowest colour that no chunk with a common vertex has, for chunks of `size` elements.
+/// Greedy colouring of chunks of `size` elements: the lowest colour that no chunk with a common vertex has.
 std::vector<int> colour_chunks(const Stencils& stencils, const std::vector<int>& order, int size,
                                int vertex_count) {
-  std::vector<std::uint64_t> used(vertex_count, 0);  // of each vertex, a bit a colour
+  std::vector<std::uint64_t> used(vertex_count, 0);  // for each vertex, one bit for each colour
   std::vector<int> colours;
-  int overflow = 64;  // where 64 colours do not do, a chunk gets one of its own
+  int overflow = 64;  // beyond 64 colours, a chunk gets its own
   for (int begin = 0, count = static_cast<int>(order.size()); begin < count; begin += size) {
     const int end = std::min(begin + size, count);
     std::uint64_t taken = 0;
@@ -62,7 +62,7 @@ std::vector<int> colour_chunks(const Stencils& stencils, const std::vector<int>&
 ElementOrder ElementOrder::of(const Stencils& stencils, const Positions& rest) {
   const int count = static_cast<int>(stencils.rows());
   if (count == 0) return {{}, {0}, {0}};
-  // Small enough to share out, large enough to be worth a thread's attention.
+  // Small enough to balance the load, large enough to amortise scheduling.
   const int size = std::max(128, (count / max_chunks + 8) / 8 * 8);
   const std::vector<int> order = along_morton_curve(stencils, rest);
   const std::vector<int> colours = colour_chunks(stencils, order, size, static_cast<int>(rest.rows()));

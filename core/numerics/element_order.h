@@ -9,22 +9,23 @@
 
 namespace drape {
 
-/// An order of elements in chunks that several threads can scatter from: chunks of one colour share no
-/// vertex. It depends on the mesh alone, so that sums over it are the same with any number of threads.
+/// Order of elements in coloured chunks. Chunks of one colour share no vertex, so threads can scatter from
+/// them concurrently. The order depends only on the mesh, which makes sums bitwise reproducible for any
+/// number of threads.
 struct ElementOrder {
-  std::vector<int> elements;      ///< the element at each place
-  std::vector<int> chunk_start;   ///< chunks + 1 places; all chunks but one are multiples of 8 long
-  std::vector<int> colour_start;  ///< colours + 1 chunks
+  std::vector<int> elements;      ///< the element at each position
+  std::vector<int> chunk_start;   ///< chunks + 1 positions; all chunk lengths but one are multiples of 8
+  std::vector<int> colour_start;  ///< colours + 1 chunk indices
 
   static constexpr int max_chunks = 256;
 
-  /// Sorts along a space-filling curve of the elements' rest centroids, cuts, and colours greedily.
+  /// Sorts the elements' rest centroids along a space-filling curve, cuts chunks, and colours them greedily.
   static ElementOrder of(const Stencils& stencils, const Positions& rest);
 
   int chunks() const { return static_cast<int>(chunk_start.size()) - 1; }
   int colours() const { return static_cast<int>(colour_start.size()) - 1; }
 
-  /// body(chunk) for every chunk, those of one colour at the same time, colour after colour.
+  /// Calls body(chunk) for every chunk: colour after colour, chunks of one colour concurrently.
   template <class Body>
   void for_each_chunk(const Body& body) const {
     for (int colour = 0; colour < colours(); ++colour) {

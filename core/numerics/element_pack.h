@@ -11,26 +11,26 @@
 
 namespace drape {
 
-/// W elements of k vertices that are computed with together: gathers their vertices and scatters their
-/// derivatives. Functions of an element are functions of the k - 1 differences d_i = x_i - x_0.
+/// W elements of k vertices, evaluated together: gathers their vertices and scatters their derivatives.
+/// Element functions depend on the k - 1 differences d_i = x_i - x_0.
 template <int k, int W>
 struct ElementPack {
   using T = Pack<W>;
   using Vector = Eigen::Matrix<T, 3, 1>;
 
-  int vertices[k][W];  ///< where their coordinates start: 3 times the index
-  int first;           ///< place of the element in lane 0, in the order
-  int active;          ///< lanes that count; the others repeat the last element
+  int vertices[k][W];  ///< offset of their coordinates: 3 times the index
+  int first;           ///< position in the order of the element in lane 0
+  int active;          ///< lanes in use; the others repeat the last element
 
-  /// Element e at each place of the order is row e of `stencils`.
+  /// Row p of `stencils` is the element at position p of the order.
   ElementPack(const Stencils& stencils, int first_in, int end)
       : first(first_in), active(std::min(W, end - first_in)) {
     for (int lane = 0; lane < W; ++lane)
-      for (int v = 0; v < k; ++v) vertices[v][lane] = 3 * stencils(place(lane), v);
+      for (int v = 0; v < k; ++v) vertices[v][lane] = 3 * stencils(position(lane), v);
   }
 
-  /// Place of a lane's element in the order.
-  int place(int lane) const { return first + std::min(lane, active - 1); }
+  /// Position in the order of a lane's element.
+  int position(int lane) const { return first + std::min(lane, active - 1); }
 
   void gather(const Positions& x, Vector* d) const {
     Vector origin;
@@ -82,7 +82,7 @@ struct ElementPack {
   }
 };
 
-/// The elements as they stand in the order.
+/// The elements, sorted by the order.
 inline Stencils in_order(const Stencils& elements, const ElementOrder& order) {
   Stencils sorted(elements.rows(), elements.cols());
   for (Eigen::Index e = 0; e < elements.rows(); ++e) sorted.row(e) = elements.row(order.elements[e]);

@@ -23,7 +23,7 @@ void for_each_term(const BlockPattern& fine, const ProlongationMatrix& P, Visit 
           const int a = column[s], b = column[t];
           const double w = weight[s] * weight[t];
           // The fine block stands for (i, j) and, transposed, for (j, i): coarse (a, b) receives the
-          // one, (b, a) the other. Only the upper of the two is kept, the diagonal gets both.
+          // first, (b, a) the second. Only the upper one is stored; the diagonal receives both.
           if (a <= b) visit(a, b, k, false, w);
           if (i != j && b <= a) visit(b, a, k, true, w);
         }
@@ -39,7 +39,7 @@ GalerkinProduct::GalerkinProduct(const BlockPattern& fine, const ProlongationMat
 
   std::vector<std::vector<int>> columns(n);
   for (int a = 0; a < n; ++a) columns[a].push_back(a);
-  // Rows are kept short while they are collected: duplicates are dropped whenever one has doubled.
+  // Drops duplicates whenever a row has doubled, which bounds the memory.
   std::vector<std::size_t> unique_size(n, 1);
   auto tidy = [&](int a) {
     auto& row = columns[a];

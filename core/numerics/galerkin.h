@@ -8,8 +8,8 @@
 
 namespace drape {
 
-/// The triple product A_c = Pᵀ A_f P of a block matrix with a scalar prolongation, planned once: every
-/// coarse block is a fixed weighted sum of fine blocks, so that forming A_c is one pass over them.
+/// Galerkin product A_c = Pᵀ A_f P of a block matrix with a scalar prolongation, planned once. Every coarse
+/// block is a fixed weighted sum of fine blocks, so each product is one pass over them.
 class GalerkinProduct {
  public:
   GalerkinProduct(const BlockPattern& fine, const ProlongationMatrix& weights);
@@ -22,7 +22,7 @@ class GalerkinProduct {
   std::shared_ptr<const BlockPattern> coarse_;
   // Of coarse block c: terms start_[c] … start_[c + 1] - 1.
   std::vector<int> start_;
-  std::vector<int> source_;  // fine block, bitwise complemented where it is to be transposed
+  std::vector<int> source_;  // fine block, bitwise complemented if transposed
   std::vector<double> weight_;
 };
 

@@ -9,14 +9,14 @@
 
 namespace drape {
 
-/// Strain of one triangle, as a membrane's law sees it. T is double or a Pack.
+/// Strain of one triangle, input of a membrane law. T is double or a Pack.
 template <class T>
 struct MembraneStrain {
   using Vector = Eigen::Matrix<T, 3, 1>;
   using Block = Eigen::Matrix<T, 3, 3>;
   T mu, lambda;     ///< Lamé's constants of plane stress, times A d [J]
   Vector f1, f2;    ///< columns of F
-  T g11, g12, g22;  ///< G = (C - I)/2, C = FᵀF: small strains lose no digits to the 1 in C
+  T g11, g12, g22;  ///< G = (C - I)/2, C = FᵀF; G keeps the digits of small strains
 
   MembraneStrain(const Vector& f1, const Vector& f2, const T& mu, const T& lambda)
       : mu(mu), lambda(lambda), f1(f1), f2(f2) {
@@ -82,7 +82,7 @@ struct MembraneKernel {
   }
 };
 
-/// The law on every triangle of the level; std::runtime_error names one without area.
+/// Binds the law to all triangles of the level. Throws std::runtime_error naming a triangle without area.
 template <template <class> class Law>
 std::unique_ptr<BoundEnergy> bind_membrane(const Level& level, const Material& material) {
   using Kernel = MembraneKernel<Law>;

@@ -8,7 +8,7 @@
 #include "core/model/stretch_limit.h"
 #include "core/model/weak_barrier.h"
 #include "core/numerics/block_cholesky.h"
-#include "core/numerics/hard_positions.h"
+#include "core/numerics/dirichlet_enforcer.h"
 #include "core/numerics/newton_state.h"
 #include "core/numerics/rounding_floor.h"
 #include "core/numerics/start_fault.h"
@@ -17,51 +17,54 @@ namespace drape {
 
 namespace {
 
+/// Armijo constant of the line search.
 constexpr double sufficient_decrease = 1e-4;
-constexpr double shortest_step = 1e-6;
-/// A line search that leaves less than this of a step says that h was too long.
-constexpr double shortened = 0.25;
-/// An implicit step is solved to this part of the force tolerance.
-constexpr double solved_part = 0.1;
-/// Where no more than this part of it is left, rounding may hide the descent: then there is none to be made.
-constexpr double rounded_part = 1e-4;
-/// In place of a step length, where a step had none along the direction of a new matrix.
-constexpr double no_fresh_direction = 2;
-/// Differences of energies below this part of them are rounding, not descent.
+constexpr double min_step_length = 1e-6;
+/// A step length below this shows that h was too long.
+constexpr double short_step = 0.25;
+/// Residual fraction of the force tolerance at which an implicit step counts as solved.
+constexpr double solved_fraction = 0.1;
+/// Residual fraction below which round-off can mask descent; the step counts as solved.
+constexpr double round_off_fraction = 1e-4;
+/// Marks a step without a step length along the direction of an updated Hessian.
+constexpr double no_updated_direction = 2;
+/// Relative differences of energies below this are round-off.
 constexpr double energy_noise = 1e-12;
-/// Held vertices that are pulled are pulled harder at this many times the force tolerance.
+/// The Dirichlet penalty doubles when the force residual falls to this multiple of the tolerance.
 constexpr double near_equilibrium = 10;
-/// A change of conditions of which less than this part is made at equilibrium is held up; so often in turn,
-/// and it is given up.
-constexpr double held_up = 1e-3;
-constexpr int most_held_up = 20;
-/// At once where a gap is below this part of the cloth's diagonal: pinched between two that close, it does
-/// not widen.
-constexpr double pinched = 1e-7;
-/// A cloth's answer to a part of a change is trusted for so many times as much at most, and else for so much
-/// that equilibrium corrects this part of the way. It is followed in so many passes at most, none of less
-/// than this part of it, and no farther than where this part of the smallest gap is left: there it leads into
-/// what is in the way.
-constexpr double most_trusted = 4, wrong_part = 0.1, shortest_pass = 1e-3, squeezed = 0.5;
-constexpr int most_passes = 100;
-/// Newton iterations of a step after obstacles have moved: friction counts from what it ends with, and
-/// one iteration overshoots.
-constexpr int carried_iterations = 30;
-/// A cloth that is a hair from a limit slides along it: each full step widens what it leaves of the limit no
-/// more than the limit's own curve takes away, and forces stay a thousand times the load. After so many such
-/// steps h is divided, again and again, until they are as large as loads are, or have been well below that
-/// for as long.
-constexpr double strained = 1e3, relaxed = 10, slowing = 16;
-constexpr int most_strained = 20;
-constexpr double smallest_step_size = 1e-8;
-constexpr double most_added_mass = 1 / (smallest_step_size * smallest_step_size);
-/// In steps: the residual on the next level costs an evaluation of its contacts and forces.
+/// At equilibrium, an increment that advances by less than this fraction is blocked …
+constexpr double blocked_increment = 1e-3;
+/// … and infeasible after so many blocked attempts in a row, …
+constexpr int max_blocked_increments = 20;
+/// … or at once below this gap, as a fraction of the bounding box diagonal: cloth between two surfaces that
+/// close cannot widen its gaps.
+constexpr double min_gap = 1e-7;
+/// Extrapolate at most four times the last increment.
+constexpr double max_trust = 4;
+/// Trust the predictor so far that equilibrium corrects this fraction of its displacement.
+constexpr double predictor_error = 0.1;
+/// Smallest pass of the predictor, as a fraction of its whole reach.
+constexpr double min_pass = 1e-3;
+constexpr int max_passes = 100;
+/// The predictor stops once it has reduced the smallest gap to this fraction.
+constexpr double gap_reduction = 0.5;
+/// Newton iterations of a step after obstacles have moved. Its end state is friction's next reference, and a
+/// single iteration overshoots.
+constexpr int iterations_after_obstacle_motion = 30;
+/// Near a strain limit full steps gain no margin, and forces stay a thousand times the load: after 20 such
+/// steps divide h by 16. h grows again once forces are of the load's size, or after 20 steps without a stall.
+constexpr double stall_residual = 1e3, recovered_residual = 10, back_off = 16;
+constexpr int max_stall_count = 20;
+constexpr double min_step_size = 1e-8;
+constexpr double max_added_mass = 1 / (min_step_size * min_step_size);
+/// Steps between checks of the residual on the next level, which costs an evaluation of its contacts and
+/// forces.
 constexpr int residual_check_interval = 4;
-/// Free vertices that have gone this many diagonals of the cloth together fall or slide without end.
-constexpr double lost_after = 100;
-/// Shares of the projection that `least` tries, in turn.
-constexpr double shares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
-static_assert(std::size(shares) == projection_share_count);
+/// Drift of the centroid, in bounding box diagonals, after which the cloth counts as falling without end.
+constexpr double max_drift = 100;
+/// Fractions of the PSD projection that `adaptive` tries, in this order.
+constexpr double blends[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
+static_assert(std::size(blends) == psd_blend_count);
 
 /// The state of one minimisation; each member function is one phase of an iteration.
 class Newton {
@@ -72,17 +75,17 @@ class Newton {
         p_(parameters),
         run_(run),
         observer_(run.observer),
-        conditions_(run.conditions),
-        hard_(model_),
+        load_stepping_(run.load_stepping),
+        dirichlet_(model_),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
     result_.message = run.remark;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
-    take_positions();
+    update_constraints();
     const Positions& rest = model_.level().rest.vertices;
-    diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+    bounding_box_diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
   LevelResult run() {
@@ -91,45 +94,47 @@ class Newton {
     else if (!begin())
       return finish(Outcome::infeasible,
                     "energy or forces at the start are not finite: " + fault_at_start(f_, result_.x, g_));
-    bool stuck = false;  // the last step found no descent but in what rounding makes of the forces
+    bool stuck = false;  // the last step found no descent, at the rounding floor
     for (bool step_begun = run_.from != nullptr;; step_begun = false) {
       if (!step_begun) {
         bool at_floor = stuck || (idle_.many() && is_at_rounding_floor());
         stuck = false;
-        if (at_floor && hard_.pulling()) {
-          pull_on();
+        if (at_floor && dirichlet_.active()) {
+          increase_penalty();
           at_floor = false;
         }
-        while (hard_.pulling() && result_.force_residual <= near_equilibrium * p_.force_tolerance) pull_on();
-        const bool in_tolerance = !hard_.pulling() && converged();
-        const bool settled = in_tolerance || at_floor;
-        const bool changing = conditions_ && !conditions_->finished();
-        if (settled && !changing) {
-          if (relax()) continue;
-          return finish_settled(in_tolerance);
+        while (dirichlet_.active() && result_.force_residual <= near_equilibrium * p_.force_tolerance)
+          increase_penalty();
+        const bool in_tolerance = !dirichlet_.active() && converged();
+        const bool at_equilibrium = in_tolerance || at_floor;
+        const bool loading = load_stepping_ && !load_stepping_->finished();
+        if (at_equilibrium && !loading) {
+          if (switch_to_plain()) continue;
+          return finish_at_equilibrium(in_tolerance);
         }
-        if (run_.finer_follows && hands_on()) return finish(Outcome::handed_on, "");
-        // What is left of a change waits for equilibrium: each part of it shrinks gaps tenfold, and a step
-        // widens them twofold.
-        const bool at_once = changing && !conditions_->settles() && conditions_->made();
-        if (changing && !hard_.pulling() && (settled || at_once)) {
-          change_conditions(settled);
-          if (times_held_up_ >= most_held_up)
-            return finish(Outcome::infeasible, "the conditions of pseudo-time " +
-                                                   three_digits(conditions_->time()) + " cannot be reached" +
-                                                   held());
+        if (run_.finer_follows && early_refinement_due())
+          return finish(Outcome::refined_early_at_tolerance, "");
+        // The remainder of an increment waits for equilibrium: each partial increment shrinks gaps tenfold,
+        // and a step widens them only twofold.
+        const bool at_once = loading && !load_stepping_->equilibrates() && load_stepping_->complete();
+        if (loading && !dirichlet_.active() && (at_equilibrium || at_once)) {
+          advance_increment(at_equilibrium);
+          if (blocked_increments_ >= max_blocked_increments)
+            return finish(Outcome::infeasible, "the increment to pseudo-time " +
+                                                   three_digits(load_stepping_->time()) +
+                                                   " cannot be completed" + limited_by());
         }
-        if (result_.steps - changed_at_.steps == p_.max_steps)
-          return finish(Outcome::out_of_steps,
+        if (result_.steps - increment_start_.steps == p_.max_steps)
+          return finish(Outcome::max_steps_reached,
                         "no equilibrium within max_steps = " + std::to_string(p_.max_steps) +
                             "; force residual " + three_digits(result_.force_residual) +
-                            (hard_.pulling() ? "; " + hard_.message(result_.x) : ""));
+                            (dirichlet_.active() ? "; " + dirichlet_.message(result_.x) : ""));
         begin_step();
       }
       if (observer_.checkpoint_due()) observer_.checkpoint(state());
       if (observer_.stop_requested()) return finish(Outcome::cancelled, "stopped on request");
       if (run_.finer_follows && observer_.refine_requested())
-        return finish(Outcome::refined_early,
+        return finish(Outcome::refined_early_on_request,
                       "refined on request; force residual " + three_digits(result_.force_residual));
       const double step_size = h_;
       if (!step()) {
@@ -138,28 +143,28 @@ class Newton {
         h_ = step_size;
         added_mass_ = 0;
       }
-      const double gone = (middle() - begun_at_).norm() / diagonal_;
-      if (gone > lost_after)
+      const double drift = (free_centroid() - initial_centroid_).norm() / bounding_box_diagonal_;
+      if (drift > max_drift)
         return finish(Outcome::infeasible,
-                      "nothing holds the cloth: it has moved on by " + three_digits(gone) +
+                      "nothing holds the cloth: it has drifted by " + three_digits(drift) +
                           " of its diagonals and does not come to rest; pin it, put something under it, or "
                           "raise the friction");
     }
   }
 
  private:
-  /// False where the start has no finite energy and forces.
+  /// Returns false if the start has no finite energy and forces.
   bool begin() {
     f_.contacts().begin_step(result_.x);
     evaluate();
     if (std::isfinite(energy_)) update_residual();
     if (!std::isfinite(energy_) || !std::isfinite(result_.force_residual)) return false;
-    begun_at_ = middle();
-    bring_held_vertices();
+    initial_centroid_ = free_centroid();
+    enforce_dirichlet();
     return true;
   }
 
-  /// After begin_step.
+  /// The state after begin_step().
   NewtonState state() const {
     NewtonState s;
     s.so_far = result_;
@@ -167,25 +172,25 @@ class Newton {
     s.step_size = h_;
     s.step_length = alpha_;
     s.residual_scale = scale_;
-    s.projection_share = share_;
+    s.psd_blend = blend_;
     std::copy_n(decrements_, 3, s.decrements.begin());
-    s.held_by = limit_.by;
-    s.relaxed = relaxed_;
-    s.positions = hard_.memory();
-    if (conditions_) s.so_far.conditions = conditions_->state();
-    s.changed_at = changed_at_;
+    s.limited_by = limit_.by;
+    s.switched_to_plain = switched_to_plain_;
+    s.dirichlet = dirichlet_.state();
+    if (load_stepping_) s.so_far.load_stepping = load_stepping_->state();
+    s.increment_start = increment_start_;
     s.response = response_;
-    s.times_held_up = times_held_up_;
+    s.blocked_increments = blocked_increments_;
     s.iterations_of_step = iterations_of_step_;
-    s.strained_for = strained_for_;
-    s.slowed = slowed_;
-    s.idle = idle_.memory();
-    s.begun_at = {begun_at_.x(), begun_at_.y(), begun_at_.z()};
+    s.stall_count = stall_count_;
+    s.backed_off = backed_off_;
+    s.idle = idle_.state();
+    s.initial_centroid = {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()};
     s.contacts = f_.contacts().memory();
-    s.pattern = f_.pattern_memory();
+    s.pattern = f_.pattern_state();
     s.analysis = cholesky_.analysis();
-    s.factor_age = age_;
-    if (cholesky_.has_factor() && age_ < p_.refresh) {
+    s.factor_age = factor_age_;
+    if (cholesky_.has_factor() && factor_age_ < p_.hessian_update_interval) {
       s.factor_shift = factor_shift_;
       s.factor_values = factored_->values;
     }
@@ -197,23 +202,23 @@ class Newton {
     h_ = s.step_size;
     alpha_ = s.step_length;
     scale_ = s.residual_scale;
-    share_ = s.projection_share;
+    blend_ = s.psd_blend;
     std::copy_n(s.decrements.begin(), 3, decrements_);
-    limit_.by = s.held_by;
-    age_ = s.factor_age;
+    limit_.by = s.limited_by;
+    factor_age_ = s.factor_age;
     origin_ = result_.x;
-    relaxed_ = s.relaxed;
-    if (relaxed_) f_.relax();
-    hard_.restore(s.positions);
-    take_positions();
-    changed_at_ = s.changed_at;
+    switched_to_plain_ = s.switched_to_plain;
+    if (switched_to_plain_) f_.switch_to_plain();
+    dirichlet_.restore(s.dirichlet);
+    update_constraints();
+    increment_start_ = s.increment_start;
     response_ = s.response;
-    times_held_up_ = s.times_held_up;
+    blocked_increments_ = s.blocked_increments;
     iterations_of_step_ = s.iterations_of_step;
-    strained_for_ = s.strained_for;
-    slowed_ = s.slowed;
+    stall_count_ = s.stall_count;
+    backed_off_ = s.backed_off;
     idle_.restore(s.idle);
-    begun_at_ << s.begun_at[0], s.begun_at[1], s.begun_at[2];
+    initial_centroid_ << s.initial_centroid[0], s.initial_centroid[1], s.initial_centroid[2];
     f_.contacts().restore(s.contacts, origin_);
     evaluate();
     if (s.analysis.count == 0) return;
@@ -222,19 +227,19 @@ class Newton {
     if (s.factor_values.empty()) return;
     BlockMatrix matrix(pattern);
     if (s.factor_values.size() != matrix.values.size())
-      throw std::runtime_error("the checkpoint's factor is that of another matrix; run the experiment anew");
+      throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment anew");
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
-    kept_ = std::move(matrix);
-    factored_ = &kept_;
+    restored_matrix_ = std::move(matrix);
+    factored_ = &restored_matrix_;
     factor_shift_ = s.factor_shift;
   }
 
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double inverse_h2() const { return is_static() ? 0 : 1 / (h_ * h_); }
 
-  /// Mean of the free vertices.
-  Eigen::RowVector3d middle() const {
+  /// Centroid of the free vertices.
+  Eigen::RowVector3d free_centroid() const {
     Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
     for (Eigen::Index i = 0; i < result_.x.rows(); ++i)
       if (!fixed_[i]) sum += result_.x.row(i);
@@ -242,140 +247,145 @@ class Newton {
   }
 
   bool converged() {
-    if (!(result_.force_residual <= p_.force_tolerance)) return false;  // NaN is no equilibrium
+    if (!(result_.force_residual <= p_.force_tolerance)) return false;  // also false for NaN
     if (p_.decrement_tolerance > 0 &&
         (result_.iterations < 3 || *std::max_element(decrements_, decrements_ + 3) > p_.decrement_tolerance))
       return false;
-    renew_friction();
+    update_friction();
     return result_.force_residual <= p_.force_tolerance;
   }
 
-  /// Equilibrium is a fixed point of the lag: with the normal forces of here, not of where the step began.
-  void renew_friction() {
+  /// Updates friction's lagged normal forces and tangents to the current state: equilibrium is a fixed point
+  /// of the lagging.
+  void update_friction() {
     if (!f_.contacts().has_friction()) return;
     f_.contacts().update_lagging(result_.x);
     evaluate();
     update_residual();
   }
 
-  /// Whether the forces are no larger than rounding makes them where x is nearest to equilibrium. Takes a
-  /// matrix to find out: for where progress has stopped.
+  /// Whether all forces are within their round-off bounds. Assembles the Hessian, so it is called only once
+  /// progress has stopped.
   bool is_at_rounding_floor() {
     idle_.restart();
-    renew_friction();
-    age_ = p_.refresh;  // the factor's matrix is overwritten
+    update_friction();
+    factor_age_ = p_.hessian_update_interval;  // assemble() overwrites the factor's matrix
     const RoundingFloor floor = rounding_floor(assemble(Projection::none), result_.x, g_, fixed_);
     rounding_residual_ = floor.norm / scale_;
     return floor.reached;
   }
 
-  /// A start is no preview, pins have to be in their places, and the last of changing conditions is followed
-  /// by equilibrium.
-  bool hands_on() const {
-    if (result_.steps == 0 || conditions_ || !hard_.settled() || hard_.given_up()) return false;
-    if (result_.force_residual < p_.refine_at) return true;
-    return p_.refine_ratio > 0 && result_.steps % residual_check_interval == 0 &&
-           result_.force_residual < p_.refine_ratio * run_.residual_above(result_.x);
+  /// Whether a tolerance asks for early refinement. Never at the start, under load stepping, or before
+  /// Dirichlet vertices have reached their targets.
+  bool early_refinement_due() const {
+    if (result_.steps == 0 || load_stepping_ || dirichlet_.active() || dirichlet_.infeasible()) return false;
+    if (result_.force_residual < p_.early_refinement_tolerance) return true;
+    return p_.early_refinement_ratio > 0 && result_.steps % residual_check_interval == 0 &&
+           result_.force_residual < p_.early_refinement_ratio * run_.residual_on_next_level(result_.x);
   }
 
-  /// At the equilibrium of a proxy: whether its plain energy is to be minimised from here, as if begun anew.
-  bool relax() {
-    if (hard_.given_up() || !f_.relax()) return false;
-    relaxed_ = true;
+  /// At the equilibrium of a proxy: continues with the plain energy, like a new start. False if there is
+  /// none.
+  bool switch_to_plain() {
+    if (dirichlet_.infeasible() || !f_.switch_to_plain()) return false;
+    switched_to_plain_ = true;
     h_ = p_.step_size;
-    age_ = p_.refresh;
-    strained_for_ = 0;
-    slowed_ = false;
+    factor_age_ = p_.hessian_update_interval;
+    stall_count_ = 0;
+    backed_off_ = false;
     idle_.restart();
     evaluate();
     update_residual();
     return true;
   }
 
-  LevelResult finish_settled(bool in_tolerance) {
-    if (conditions_) report_change();
-    if (!hard_.given_up())
-      return in_tolerance
-                 ? finish(Outcome::converged, "")
-                 : finish(Outcome::converged_to_rounding,
-                          "the force residual has come down to " + three_digits(result_.force_residual) +
-                              ", not to force_tolerance = " + three_digits(p_.force_tolerance) +
-                              ": rounding alone makes up to " + three_digits(rounding_residual_) +
-                              " of it here, and no step lowers it");
+  LevelResult finish_at_equilibrium(bool in_tolerance) {
+    if (load_stepping_) report_increment();
+    if (!dirichlet_.infeasible())
+      return in_tolerance ? finish(Outcome::converged, "")
+                          : finish(Outcome::converged_to_rounding,
+                                   "the force residual is " + three_digits(result_.force_residual) +
+                                       ", above force_tolerance = " + three_digits(p_.force_tolerance) +
+                                       ": round-off alone accounts for up to " +
+                                       three_digits(rounding_residual_) + " here, and no step lowers it");
     return finish(Outcome::infeasible,
-                  hard_.message(result_.x) + "; the rest of the cloth is at equilibrium");
+                  dirichlet_.message(result_.x) + "; the rest of the cloth is at equilibrium");
   }
 
-  /// The next change of conditions, or what is left of the one under way, as far as it is allowed.
-  void change_conditions(bool settled) {
-    const bool begins = conditions_->made();
-    if (begins && (settled || conditions_->change() > 0)) report_change();
-    if (begins) changed_at_ = {result_.steps, result_.iterations, run_.clock.seconds()};
+  /// Begins the next increment or continues the current one, as far as limits and contact allow.
+  void advance_increment(bool at_equilibrium) {
+    const bool begins = load_stepping_->complete();
+    if (begins && (at_equilibrium || load_stepping_->increment() > 0)) report_increment();
+    if (begins) increment_start_ = {result_.steps, result_.iterations, run_.clock.seconds()};
     const Positions from = result_.x;
-    double made = settled && !begins ? follow_change() : 0;
-    Positions to = result_.x;
-    // Less than the last time, which may be no more than the obstacles go by themselves: they do.
-    if (made < 1 && made * (1 - response_.part) <= response_.part) {
+    double applied = at_equilibrium && !begins ? extrapolate() : 0;
+    Positions predicted = result_.x;
+    // If the predictor gains no more than the last time, the obstacles advance without it.
+    if (applied < 1 && applied * (1 - response_.fraction) <= response_.fraction) {
       const BoundContacts before = model_.contacts();
-      limit_ = conditions_->advance(result_.level, result_.x);
-      made += limit_.fraction * (1 - made);
-      to = from;  // the answer to this is still to come
+      limit_ = load_stepping_->advance(result_.level, result_.x);
+      applied += limit_.fraction * (1 - applied);
+      predicted = from;  // the cloth has not responded yet
       model_changed(before, result_.x);
     }
-    limit_.fraction = made;
-    response_ =
-        settled && !conditions_->made() ? ChangeResponse{from, std::move(to), made} : ChangeResponse();
-    begun_at_ = middle();
-    f_.contacts().barrier(result_.x);  // where the smallest gap is asked for
-    const bool stuck = f_.contacts().any() && f_.contacts().smallest_gap() < pinched * diagonal_;
-    times_held_up_ = settled && limit_.fraction < held_up ? (stuck ? most_held_up : times_held_up_ + 1) : 0;
-    age_ = p_.refresh;
+    limit_.fraction = applied;
+    response_ = at_equilibrium && !load_stepping_->complete()
+                    ? IncrementResponse{from, std::move(predicted), applied}
+                    : IncrementResponse();
+    initial_centroid_ = free_centroid();
+    f_.contacts().barrier(result_.x);  // evaluates the contacts for smallest_gap()
+    const bool closed =
+        f_.contacts().any() && f_.contacts().smallest_gap() < min_gap * bounding_box_diagonal_;
+    blocked_increments_ = at_equilibrium && limit_.fraction < blocked_increment
+                              ? (closed ? max_blocked_increments : blocked_increments_ + 1)
+                              : 0;
+    factor_age_ = p_.hessian_update_interval;
     idle_.restart();
-    bring_held_vertices();
+    enforce_dirichlet();
   }
 
-  /// How many times as much of a change the cloth's answer to the last part of it is trusted for: less where
-  /// equilibrium is far from where it was taken along to.
-  double trust() const {
-    const double way = (response_.to - response_.from).norm();
-    const double wrong = (result_.x - response_.to).norm();
-    return wrong * most_trusted < wrong_part * way || way == 0
-               ? most_trusted
-               : std::max(wrong_part * way / wrong, 1 / most_trusted);
+  /// Largest extrapolation factor: smaller the more equilibrium has corrected the last prediction.
+  double trust_factor() const {
+    const double displacement = (response_.predicted - response_.from).norm();
+    const double correction = (result_.x - response_.predicted).norm();
+    return correction * max_trust < predictor_error * displacement || displacement == 0
+               ? max_trust
+               : std::max(predictor_error * displacement / correction, 1 / max_trust);
   }
 
-  /// Where a change is held up a small part of it is made, and the cloth answers. More of it is made at once
-  /// by taking the cloth along the same way, as far as the answer is trusted: it goes ahead as far as contact
-  /// and limits let it, the obstacles come after it, and so on. The part of what was left of the change that
-  /// has been made; 0 where there is no answer yet, or nothing gives way.
-  double follow_change() {
-    const double last = response_.part;
+  /// Predictor for an increment that is applied in parts: extrapolates the cloth's response to the last part,
+  /// as far as the trust factor allows. In each pass first the cloth moves as far as contact and limits
+  /// allow, then the obstacles follow. Returns the fraction applied of the remaining increment; 0 without a
+  /// response.
+  double extrapolate() {
+    const double last = response_.fraction;
     if (last == 0) return 0;
-    const Positions from = result_.x, way = (from - response_.from) * ((1 - last) / last);
-    const double reach = std::min(1.0, trust() * last / (1 - last)), gap = f_.contacts().smallest_gap();
-    if (reach < held_up) return 0;
-    double made = 0, pass = reach;
-    for (int tries = 0; tries < most_passes && made < reach && pass >= shortest_pass * reach; ++tries) {
+    const Positions from = result_.x, direction = (from - response_.from) * ((1 - last) / last);
+    const double reach = std::min(1.0, trust_factor() * last / (1 - last)),
+                 gap = f_.contacts().smallest_gap();
+    if (reach < blocked_increment) return 0;
+    double applied = 0, pass = reach;
+    for (int tries = 0; tries < max_passes && applied < reach && pass >= min_pass * reach; ++tries) {
       const Positions here = result_.x;
-      pass = std::min(pass, reach - made);
-      trial_ = from + (made + pass) * way;
+      pass = std::min(pass, reach - applied);
+      trial_ = from + (applied + pass) * direction;
       if (const double allowed = allowed_to(trial_); allowed < 1) {
-        pass *= 0.5 * allowed;  // half of what there is: room for the obstacles to come after
-        if (pass < shortest_pass * reach) break;
-        trial_ = from + (made + pass) * way;
+        pass *= 0.5 * allowed;  // leaves room for the obstacles to follow
+        if (pass < min_pass * reach) break;
+        trial_ = from + (applied + pass) * direction;
       }
       const BoundContacts before = model_.contacts();
-      if (!is_finite_at(trial_) || !conditions_->advance_by(pass / (1 - made), result_.level, trial_)) {
+      if (!is_finite_at(trial_) || !load_stepping_->advance_by(pass / (1 - applied), result_.level, trial_)) {
         pass *= 0.5;
         continue;
       }
       result_.x = trial_;
       model_changed(before, here);
-      made += pass;
-      if (f_.contacts().smallest_gap() < squeezed * gap) break;
+      applied += pass;
+      if (f_.contacts().smallest_gap() < gap_reduction * gap) break;
       pass *= 2;
     }
-    return made;
+    return applied;
   }
 
   double allowed_to(const Positions& x) {
@@ -388,87 +398,88 @@ class Newton {
     return std::isfinite(f_.gradient(x, trial_g_));
   }
 
-  /// Contacts were `before`, with the cloth at `from`.
+  /// The model has changed; its contacts were `before` with the cloth at `from`.
   void model_changed(const BoundContacts& before, const Positions& from) {
     PhaseTimer t(result_.seconds_by_phase, "gradient");  // builds collisions
     f_.model_changed(before, from, result_.x);
   }
 
-  void report_change() {
-    ChangeRow row;
+  void report_increment() {
+    IncrementRow row;
     row.level = result_.level;
-    row.change = conditions_->change();
-    row.time = conditions_->time();
-    row.steps = result_.steps - changed_at_.steps;
-    row.iterations = result_.iterations - changed_at_.iterations;
-    row.seconds = run_.clock.seconds() - changed_at_.seconds;
+    row.increment = load_stepping_->increment();
+    row.time = load_stepping_->time();
+    row.steps = result_.steps - increment_start_.steps;
+    row.iterations = result_.iterations - increment_start_.iterations;
+    row.seconds = run_.clock.seconds() - increment_start_.seconds;
     row.energy = energy_ - f_.contacts().friction(result_.x);
     row.force_residual = result_.force_residual;
-    row.farthest_missing = hard_.farthest(result_.x);
-    observer_.change_finished(row, result_.x);
+    row.max_constraint_violation = dirichlet_.max_violation(result_.x);
+    observer_.increment_finished(row, result_.x);
   }
 
-  /// Where the model holds vertices at other places than x has them: the cloth as a whole is moved there, as
-  /// its matrix would have it, or as far as limits and contact let it; then held vertices are pulled.
-  void bring_held_vertices() {
-    if (f_.brings_held_vertices()) hard_.begin(result_.x);
-    take_positions();
-    if (!hard_.pulling()) return;
-    if (move_with_held_vertices() < 1) {
-      hard_.pull(limit_.by);
-      take_positions();
+  /// Moves Dirichlet vertices to the model's targets, the whole cloth with them by a Newton predictor. If
+  /// limits or contact block that move, a penalty takes over.
+  void enforce_dirichlet() {
+    if (f_.enforces_dirichlet()) dirichlet_.begin(result_.x);
+    update_constraints();
+    if (!dirichlet_.active()) return;
+    if (move_to_targets() < 1) {
+      dirichlet_.begin_penalty(limit_.by);
+      update_constraints();
     }
   }
 
-  /// Near equilibrium with held vertices pulled: they are put on their places if nothing is in the way, or
-  /// pulled harder, or given up.
-  void pull_on() {
+  /// Near equilibrium under the penalty: moves Dirichlet vertices to their targets if nothing blocks them,
+  /// else increases the penalty or declares them infeasible.
+  void increase_penalty() {
     idle_.restart();
-    if (move_with_held_vertices(true) < 1) {
-      hard_.pull_harder(result_.x, limit_.by);
-      take_positions();
+    if (move_to_targets(true) < 1) {
+      dirichlet_.increase_penalty(result_.x, limit_.by);
+      update_constraints();
     }
   }
 
-  /// Moves x by the held vertices' ways and by what the matrix makes of them elsewhere, so far as is allowed;
-  /// with `whole`, only if that is all of it. How far.
-  double move_with_held_vertices(bool whole = false) {
-    const Positions way = hard_.way(result_.x);
+  /// Moves Dirichlet vertices towards their targets and the other vertices by the linearised response, as far
+  /// as limits and contact allow; with `whole`, only if the whole move is feasible. Returns the feasible
+  /// fraction.
+  double move_to_targets(bool whole = false) {
+    const Positions displacement = dirichlet_.displacement_to_targets(result_.x);
     std::vector<char> fixed = fixed_;
     fixed_ = model_.fixed();
     origin_ = result_.x;
-    age_ = p_.refresh;
+    factor_age_ = p_.hessian_update_interval;
     factorise();
-    factored_->multiply(way, r_);
-    for (const HeldVertex& h : model_.held()) r_.row(h.vertex).setZero();
+    factored_->multiply(displacement, r_);
+    for (const DirichletVertex& d : model_.dirichlet()) r_.row(d.vertex).setZero();
     cholesky_.solve(r_, direction_);
-    direction_ = way - direction_;
-    age_ = p_.refresh;
+    direction_ = displacement - direction_;
+    factor_age_ = p_.hessian_update_interval;
     trial_ = result_.x + direction_;
-    for (const HeldVertex& h : model_.held()) trial_.row(h.vertex) = h.place.transpose();
+    for (const DirichletVertex& d : model_.dirichlet()) trial_.row(d.vertex) = d.target.transpose();
     limit_ = f_.max_step(result_.x, trial_);
     double fraction = limit_.fraction;
-    while (fraction > shortest_step) {
+    while (fraction > min_step_length) {
       if (fraction < 1) trial_ = result_.x + fraction * direction_;
       if (std::isfinite(f_.gradient(trial_, trial_g_))) break;
       fraction *= 0.5;
     }
     fixed_ = std::move(fixed);
     if (fraction == 1) {
-      hard_.arrive();
+      dirichlet_.set_satisfied();
       result_.x = trial_;
-    } else if (!whole && fraction > shortest_step) {
+    } else if (!whole && fraction > min_step_length) {
       result_.x = trial_;
     }
-    take_positions();
+    update_constraints();
     return fraction;
   }
 
-  /// What is fixed and pulled has changed, and so has what is minimised.
-  void take_positions() {
-    fixed_ = hard_.fixed();
+  /// To be called when fixed vertices or the penalty have changed; re-evaluates the objective.
+  void update_constraints() {
+    fixed_ = dirichlet_.fixed();
     free_count_ = static_cast<double>(std::count(fixed_.begin(), fixed_.end(), 0));
-    f_.set_penalty(hard_.penalty());
+    f_.set_penalty(dirichlet_.penalty());
     if (g_.rows() == 0) return;
     evaluate();
     update_residual();
@@ -483,21 +494,21 @@ class Newton {
     origin_ = result_.x;
     iterations_of_step_ = p_.iterations_per_step;
     if (f_.contacts().advected() && f_.contacts().has_friction())
-      iterations_of_step_ = std::max(iterations_of_step_, carried_iterations);
+      iterations_of_step_ = std::max(iterations_of_step_, iterations_after_obstacle_motion);
     const bool had_friction = f_.contacts().has_friction();
     f_.contacts().begin_step(origin_);
     if (had_friction || f_.contacts().has_friction()) evaluate();
   }
 
-  /// One implicit step, once begun. False when no descent was found.
+  /// Solves the implicit step that begin_step() began. Returns false if there is no descent.
   bool step() {
-    fresh_alpha_ = no_fresh_direction;
+    updated_alpha_ = no_updated_direction;
     for (int k = 0; k < iterations_of_step_; ++k) {
       if (!iterate(k)) return false;
       if (converged()) break;
       if (k + 1 == iterations_of_step_) continue;
       shifted_gradient();
-      if (is_solved_to(solved_part)) break;
+      if (is_solved_to(solved_fraction)) break;
     }
     ++result_.steps;
     idle_.note(energy_, result_.force_residual, noise_of_energy());
@@ -505,23 +516,25 @@ class Newton {
     return true;
   }
 
-  /// By how far the last fresh direction led, and by whether steps do any good.
+  /// Adapts h to the last step length along the direction of an updated Hessian, and to stalls.
   void adapt_step_size() {
-    strained_for_ =
-        result_.force_residual > strained ? std::max(strained_for_, 0) + 1 : std::min(strained_for_, 0) - 1;
-    if (strained_for_ == most_strained) {
-      slowed_ = true;
-      strained_for_ = 0;
-      h_ = std::max(h_ / slowing, smallest_step_size);
+    stall_count_ = result_.force_residual > stall_residual ? std::max(stall_count_, 0) + 1
+                                                           : std::min(stall_count_, 0) - 1;
+    if (stall_count_ == max_stall_count) {
+      backed_off_ = true;
+      stall_count_ = 0;
+      h_ = std::max(h_ / back_off, min_step_size);
     }
-    if (result_.force_residual < relaxed || strained_for_ == -most_strained) slowed_ = false;
-    if (slowed_) return;
-    if (fresh_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
-    if (fresh_alpha_ < shortened) h_ /= p_.step_growth;
+    if (result_.force_residual < recovered_residual || stall_count_ == -max_stall_count) backed_off_ = false;
+    if (backed_off_) return;
+    if (updated_alpha_ == 1) h_ = std::max(h_, std::min(h_ * p_.step_growth, p_.step_size_limit));
+    if (updated_alpha_ < short_step) h_ /= p_.step_growth;
   }
 
-  /// Whether what is left of the implicit step's force is less than this part of what its end is asked for.
-  bool is_solved_to(double part) const { return free_norm(r_, fixed_) <= part * p_.force_tolerance * scale_; }
+  /// Whether the residual force of the implicit step is below this fraction of the force tolerance.
+  bool is_solved_to(double fraction) const {
+    return free_norm(r_, fixed_) <= fraction * p_.force_tolerance * scale_;
+  }
 
   bool iterate(int iteration) {
     while (true) {
@@ -533,26 +546,26 @@ class Newton {
         direction_ *= -1;
       }
       if (line_search()) break;
-      if (is_solved_to(rounded_part)) {
-        alpha_ = 1;  // of a step that is nothing
+      if (is_solved_to(round_off_fraction)) {
+        alpha_ = 1;  // of a zero step
         break;
       }
-      // A factor kept from an earlier state may give no descent: once more with a fresh one. A step
-      // too long for its quadratic model is damped more.
-      if (age_ > 0) {
-        age_ = p_.refresh;
+      // A stale factor may give no descent: update the Hessian first. If that does not help, the step is too
+      // long for its quadratic model: damp it more.
+      if (factor_age_ > 0) {
+        factor_age_ = p_.hessian_update_interval;
         continue;
       }
       if (is_static()) {
         if (add_mass()) continue;
         message_ = "the line search found no descent (the direction's slope is " + three_digits(slope_) +
-                   ")" + held();
+                   ")" + limited_by();
         return false;
       }
       h_ /= 4;
-      age_ = p_.refresh;
-      if (h_ < smallest_step_size) {
-        message_ = "the line search found no descent at any step size down to 1e-8 s" + held();
+      factor_age_ = p_.hessian_update_interval;
+      if (h_ < min_step_size) {
+        message_ = "the line search found no descent at any step size down to 1e-8 s" + limited_by();
         return false;
       }
     }
@@ -563,30 +576,30 @@ class Newton {
     added_mass_ = 0;
     update_residual();
     report(iteration);
-    age_factor();
+    update_factor_age();
     return true;
   }
 
-  /// The static form's matrix may be positive definite by rounding alone, as where the cloth falls freely.
-  /// Its direction is then so long that contact leaves nothing of it; mass makes it shorter.
+  /// Shortens the static form's direction by adding mass. In free fall the matrix is positive definite only
+  /// by round-off, and the direction so long that contact cuts the step to nothing.
   bool add_mass() {
-    age_ = p_.refresh;
+    factor_age_ = p_.hessian_update_interval;
     added_mass_ = std::max(10 * added_mass_, first_added_mass());
-    return added_mass_ < most_added_mass;
+    return added_mass_ < max_added_mass;
   }
 
-  /// Never 0, whatever the step size: multiplying it must lead on.
+  /// Positive for every step size, since multiplication increases it.
   double first_added_mass() const { return std::max(1e-3 / (p_.step_size * p_.step_size), 1e-30); }
 
-  /// What kept the last step short, for messages.
-  std::string held() const { return limit_.by.empty() ? "" : "; the step is held by " + limit_.by; }
+  /// Names what limited the last step, for messages.
+  std::string limited_by() const { return limit_.by.empty() ? "" : "; the step is limited by " + limit_.by; }
 
-  /// Takes note of how far the last direction led. Only a fresh one says something about h; a shortened step
-  /// along an old one says that it is time for a new matrix.
-  void age_factor() {
-    if (age_ == 0) fresh_alpha_ = std::min(fresh_alpha_, alpha_);
-    const bool worn = age_ > 0 && alpha_ < 1;
-    age_ = worn ? p_.refresh : age_ + 1;
+  /// Ages the factor. A shortened step along the direction of an old factor makes it stale; only the
+  /// direction of an updated Hessian tells about h.
+  void update_factor_age() {
+    if (factor_age_ == 0) updated_alpha_ = std::min(updated_alpha_, alpha_);
+    const bool stale = factor_age_ > 0 && alpha_ < 1;
+    factor_age_ = stale ? p_.hessian_update_interval : factor_age_ + 1;
   }
 
   /// r = ∇F(x) + M (x − x^t) / h², zero on fixed vertices.
@@ -616,26 +629,26 @@ class Newton {
   }
 
   void factorise() {
-    if (cholesky_.has_factor() && age_ < p_.refresh) return;
-    age_ = 0;
-    const bool least = p_.projection != Projection::none && p_.projection_share == ProjectionShare::least;
-    if (least && factorise_least()) return;
+    if (cholesky_.has_factor() && factor_age_ < p_.hessian_update_interval) return;
+    factor_age_ = 0;
+    const bool adaptive = p_.projection != Projection::none && p_.psd_blend == PsdBlend::adaptive;
+    if (adaptive && factorise_adaptive()) return;
     const BlockMatrix& matrix = assemble(p_.projection);
-    if (!least && try_factor(matrix, 0)) return;
-    // Without projection, or with a free rigid mode in the static form: add mass until it factorises.
+    if (!adaptive && try_factor(matrix, 0)) return;
+    // Without projection, or with a rigid mode in the static form: add mass until it factorises.
     for (double shift = first_added_mass(); shift < 1e30; shift *= 10)
       if (try_factor(matrix, shift)) return;
     throw std::runtime_error(
         "the Newton matrix is not positive definite with any shift: it holds NaN or infinite entries");
   }
 
-  /// Factorises the Hessian with the smallest share of its projection that works, beginning with the one that
-  /// worked last, or one below after a step taken in full.
-  bool factorise_least() {
-    constexpr int last = static_cast<int>(std::size(shares)) - 1;
-    for (share_ = alpha_ == 1 ? std::max(share_ - 1, 0) : share_; share_ <= last; ++share_)
-      if (try_factor(assemble({p_.projection, shares[share_]}), 0)) return true;
-    share_ = last;
+  /// Factorises the Hessian with the smallest PSD blend for which it is positive definite. Starts at the last
+  /// blend, or at the next smaller one after a full step.
+  bool factorise_adaptive() {
+    constexpr int last = static_cast<int>(std::size(blends)) - 1;
+    for (blend_ = alpha_ == 1 ? std::max(blend_ - 1, 0) : blend_; blend_ <= last; ++blend_)
+      if (try_factor(assemble({p_.projection, blends[blend_]}), 0)) return true;
+    blend_ = last;
     return false;
   }
 
@@ -657,8 +670,8 @@ class Newton {
     return cholesky_.factorise(matrix, factor_shift_ * model_.masses());
   }
 
-  /// Backtracks along the direction, from where limits and contact let it, until the energy has decreased
-  /// enough; moves x, g and energy.
+  /// Backtracking line search from the largest step that limits and contact allow. Updates x, g and the
+  /// energy.
   bool line_search() {
     slope_ = r_.cwiseProduct(direction_).sum();
     if (!(slope_ < 0)) return false;
@@ -669,7 +682,7 @@ class Newton {
     }
     PhaseTimer t(result_.seconds_by_phase, "gradient");
     const double force_before = free_norm(r_, fixed_);
-    for (alpha_ = limit_.fraction; alpha_ >= shortest_step; alpha_ *= 0.5) {
+    for (alpha_ = limit_.fraction; alpha_ >= min_step_length; alpha_ *= 0.5) {
       trial_ = result_.x + alpha_ * direction_;
       const double energy = f_.gradient(trial_, trial_g_);
       if (!std::isfinite(energy)) continue;
@@ -686,8 +699,8 @@ class Newton {
     return false;
   }
 
-  /// Energies that differ by less are the same. Beside them counts the work of the load over the size of the
-  /// cloth: energies cancel, their rounding does not.
+  /// Energy differences below this are round-off [J]. The scale includes the load, because terms of the
+  /// energy cancel while their round-off does not.
   double noise_of_energy() const {
     return energy_noise * (std::abs(energy_ + inertia_) + scale_ * std::sqrt(free_count_));
   }
@@ -724,7 +737,7 @@ class Newton {
     row.force_residual = result_.force_residual;
     row.step_length = alpha_;
     row.step_size = is_static() ? std::numeric_limits<double>::infinity() : h_;
-    if (conditions_) row.time = conditions_->time();
+    if (load_stepping_) row.time = load_stepping_->time();
     row.seconds = run_.clock.seconds();
     row.flops = result_.flops;
     observer_.iteration(row, result_.x);
@@ -739,14 +752,14 @@ class Newton {
     result_.outcome = outcome;
     add_to_message(message);
     const bool failed =
-        !ended_as_asked(outcome) && outcome != Outcome::cancelled && outcome != Outcome::refined_early;
+        !succeeded(outcome) && outcome != Outcome::cancelled && outcome != Outcome::refined_early_on_request;
     if (failed && result_.x.allFinite()) add_to_message(weak_barrier(model_, result_.x));
-    if (conditions_) result_.conditions = conditions_->state();
+    if (load_stepping_) result_.load_stepping = load_stepping_->state();
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
-      // Collisions are built where energies are evaluated.
+      // Collisions are built while energies are evaluated.
       result_.seconds_by_phase["collisions"] = f_.contacts().seconds_building();
       result_.seconds_by_phase["gradient"] -= f_.contacts().seconds_building();
     }
@@ -759,35 +772,35 @@ class Newton {
   const LevelRun& run_;
   const Stopwatch watch_;
   Observer& observer_;
-  Conditions* conditions_;
-  HardPositions hard_;
-  std::vector<char> fixed_;  // one flag a vertex, 1 where it does not move now
-  ChangeBegun changed_at_;   // when the change under way was begun
-  ChangeResponse response_;  // to the part of it that was made last
-  int times_held_up_ = 0;
-  bool relaxed_ = false;  // what was a proxy is the plain energy
+  LoadStepping* load_stepping_;
+  DirichletEnforcer dirichlet_;
+  std::vector<char> fixed_;         // one flag a vertex: 1 where it is fixed now
+  IncrementStart increment_start_;  // of the current increment
+  IncrementResponse response_;      // to its last part
+  int blocked_increments_ = 0;
+  bool switched_to_plain_ = false;  // the proxy was replaced by the plain energy
   IdleSteps idle_;
-  double rounding_residual_ = 0;  // that rounding may make, where that was found out last
-  int strained_for_ = 0;          // steps in turn
-  bool slowed_ = false;           // h does not grow
-  int iterations_of_step_ = 1;    // that the step may take
+  double rounding_residual_ = 0;  // bound on the residual by round-off, at the last check
+  int stall_count_ = 0;           // consecutive steps
+  bool backed_off_ = false;       // h was reduced and does not grow
+  int iterations_of_step_ = 1;    // maximum of the current step
 
   BlockCholesky cholesky_;
-  const BlockMatrix* factored_ = nullptr;  // the objective's, or kept_, that the factor is of
-  BlockMatrix kept_;
+  const BlockMatrix* factored_ = nullptr;  // of the factor: the objective's or restored_matrix_
+  BlockMatrix restored_matrix_;
   double factor_shift_ = 0;
   LevelResult result_;
   std::string message_;
   StepLimit limit_;
   Positions origin_, g_, r_, direction_, trial_, trial_g_;
   double energy_ = 0, inertia_ = 0, slope_ = 0, alpha_ = 1, scale_ = 1;
-  Eigen::RowVector3d begun_at_;
-  double diagonal_ = 1;
-  double h_, free_count_ = 0, fresh_alpha_ = no_fresh_direction;
-  int share_ = std::size(shares) - 1;
+  Eigen::RowVector3d initial_centroid_;
+  double bounding_box_diagonal_ = 1;
+  double h_, free_count_ = 0, updated_alpha_ = no_updated_direction;
+  int blend_ = std::size(blends) - 1;
   double decrements_[3] = {};
-  int age_ = 0;
-  double added_mass_ = 0;  // of the static form, as 1/h²
+  int factor_age_ = 0;
+  double added_mass_ = 0;  // of the static form, as 1/h² [1/s²]
 };
 
 }  // namespace

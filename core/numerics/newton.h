@@ -9,24 +9,24 @@
 
 namespace drape {
 
-/// The part of a method that one minimisation is.
+/// Context of one minimisation within a method.
 struct LevelRun {
-  const Stopwatch& clock;  ///< the method's, for the rows that the observer gets
+  const Stopwatch& clock;  ///< the method's, for the observer's rows
   Observer& observer;
-  bool finer_follows = false;  ///< the level may be refined early, as the observer or the parameters ask
-  std::map<std::string, double> spent = {};  ///< on the level before this, by phase [s]
-  const NewtonState* from = nullptr;  ///< where an earlier minimisation of the same was, to go on there
-  Conditions* conditions = nullptr;   ///< that change meanwhile
-  std::string remark = {};            ///< what the result's message begins with
-  /// The force residual that a state of this level leaves on the next one; 0 where it is not allowed there.
-  std::function<double(const Positions& x)> residual_above = {};
+  bool finer_follows = false;                ///< the level may be refined early, on request or at a tolerance
+  std::map<std::string, double> spent = {};  ///< on the level before this minimisation, by phase [s]
+  const NewtonState* from = nullptr;         ///< state to resume from; null to start anew
+  LoadStepping* load_stepping = nullptr;     ///< null without a schedule
+  std::string remark = {};                   ///< beginning of the result's message
+  /// Force residual of a state, prolonged to the next level; 0 if it is infeasible there.
+  std::function<double(const Positions& x)> residual_on_next_level = {};
 };
 
-/// Minimises the objective from x, where fixed vertices stay, step by implicit step
-///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x),
-/// with a filtered line search. Where the run has a state to go on from, x is that state's. Conditions that
-/// have begun on the level are gone through to the last. Ends `infeasible`, the rest of the cloth at
-/// equilibrium, where held vertices or obstacles cannot reach their places.
+/// Minimises the objective F from x (n×3) [m] by implicit steps
+///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x)
+/// with a filtered line search; fixed vertices stay. If the run has a state to resume from, x is ignored.
+/// Load stepping that has begun on the level is carried through all its increments. If Dirichlet vertices or
+/// obstacles cannot reach their targets, the rest of the cloth is solved and the result is `infeasible`.
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
                      const LevelRun& run);
 

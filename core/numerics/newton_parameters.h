@@ -5,16 +5,16 @@
 
 namespace drape {
 
-/// Whether a level is solved by damped gradient flow or by one minimisation (docs/method.md, sections 2, 3).
+/// Damped gradient flow in implicit steps, or one minimisation (docs/method.md, sections 2, 3).
 enum class NewtonForm { quasistatic, statics };
 
-/// How much of the projection goes into the matrix.
-enum class ProjectionShare {
-  full,  ///< all of it, in every step
-  least  ///< in every step the smallest of a few shares that leaves the matrix positive definite
+/// How much of the PSD projection of element Hessians goes into the Newton matrix.
+enum class PsdBlend {
+  full,     ///< all of it, in every iteration (projected Newton)
+  adaptive  ///< the smallest of seven fractions for which the matrix is positive definite
 };
 
-/// Settings of the one Newton, the same for every method so that comparisons compare methods.
+/// Settings of the Newton solver. All methods share one implementation, so their comparison compares methods.
 struct NewtonParameters {
   NewtonForm form = NewtonForm::quasistatic;
   double step_size = 0.1;
@@ -24,11 +24,11 @@ struct NewtonParameters {
   int max_steps = 5000;
   double force_tolerance = 1e-3;
   double decrement_tolerance = 0;
-  double refine_at = 0;
-  double refine_ratio = 0;
+  double early_refinement_tolerance = 0;
+  double early_refinement_ratio = 0;
   Projection::Kind projection = Projection::clamp;
-  ProjectionShare projection_share = ProjectionShare::least;
-  int refresh = 1;
+  PsdBlend psd_blend = PsdBlend::adaptive;
+  int hessian_update_interval = 1;
 
   static void declare(Declaration<NewtonParameters>& d);
 };

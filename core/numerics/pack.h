@@ -20,7 +20,7 @@ inline constexpr int native_pack_width = 4;
 inline constexpr int native_pack_width = 2;
 #endif
 
-/// GCC's vectors of W doubles and W integers.
+/// GCC vector types of W doubles and W integers.
 template <int W>
 struct VectorOf;
 template <>
@@ -39,7 +39,7 @@ struct VectorOf<8> {
   typedef long long Integers __attribute__((vector_size(64)));
 };
 
-/// W truth values, one a lane.
+/// W booleans, one for each lane.
 template <int W>
 struct PackMask {
   using Lanes = typename VectorOf<W>::Integers;
@@ -51,8 +51,8 @@ struct PackMask {
   friend PackMask operator!(PackMask a) { return {~a.v}; }
 };
 
-/// W doubles that are computed with together. Functions on it are found by argument-dependent lookup, so
-/// that a kernel that says `using std::sqrt; sqrt(a)` works for double and Pack.
+/// W doubles in a SIMD register. Argument-dependent lookup finds its functions, so a kernel with
+/// `using std::sqrt; sqrt(a)` works for double and Pack.
 template <int W>
 struct Pack {
   using Lanes = typename VectorOf<W>::Doubles;
@@ -126,7 +126,7 @@ bool any(PackMask<W> m) {
 }
 inline bool any(bool m) { return m; }
 
-/// The value of std::min and std::max, lane by lane: the first argument where either is not a number.
+/// As std::min and std::max in each lane: the first argument if either is NaN.
 template <int W>
 Pack<W> min(Pack<W> a, Pack<W> b) {
   return select(b < a, b, a);
@@ -207,7 +207,7 @@ Pack<W> abs(Pack<W> a) {
   return Pack<W>::of((typename Pack<W>::Lanes)((pack_detail::Bits<W>)a.v & ~pack_detail::sign_bit));
 }
 
-/// `magnitude` (not negative) with the sign of `sign`, where -0 counts as negative.
+/// `magnitude` (not negative) with the sign of `sign`; -0 counts as negative.
 template <int W>
 Pack<W> with_sign(Pack<W> magnitude, Pack<W> sign) {
   using Bits = pack_detail::Bits<W>;
@@ -244,7 +244,7 @@ Pack<W> log(Pack<W> a) {
   return select(a >= 0.0, result, std::numeric_limits<double>::quiet_NaN());
 }
 
-/// Angle of (x, y) to 2 ulp, with the signs of std::atan2; not a number where both are infinite.
+/// Angle of (x, y) to 2 ulp, with the signs of std::atan2; NaN if both are infinite.
 /// Polynomial: fdlibm's s_atan.c.
 template <int W>
 Pack<W> atan2(Pack<W> y, Pack<W> x) {

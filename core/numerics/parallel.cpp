@@ -11,7 +11,7 @@
 namespace drape {
 namespace {
 
-/// A range and how it is cut.
+/// A range and its pieces.
 struct Pieces {
   int size, grain, count;
 
@@ -31,12 +31,12 @@ struct Task {
 
 thread_local bool inside_task = false;
 
-/// Threads that help with one task at a time. Unlike an OpenMP team, the caller waits for pieces and never
-/// for threads: on a busy machine, where a helper may get its turn milliseconds late, the caller has done its
-/// share.
+/// Thread pool for one task at a time. Unlike in an OpenMP team, the caller waits for pieces, never for
+/// threads: on a busy machine a helper may be scheduled milliseconds late, and the caller then does its
+/// pieces.
 class Pool {
  public:
-  /// False where another thread's task is being worked on.
+  /// Returns false if another thread's task is running.
   bool run(const Task& task, int threads) {
     std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
     if (!lock) return false;
@@ -69,7 +69,7 @@ class Pool {
         work();
         continue;
       }
-      // The next task mostly comes within microseconds.
+      // The next task usually comes within microseconds.
       for (int tries = 0; tries < 2000 && ticket_.load(std::memory_order_relaxed) == seen; ++tries) pause();
       ticket_.wait(seen, std::memory_order_relaxed);
     }
@@ -79,7 +79,7 @@ class Pool {
     inside_task = true;
     for (std::uint64_t ticket = ticket_.load(std::memory_order_acquire); (ticket & left_mask) > 0;) {
       if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) continue;
-      // The piece is ours, so the task stays until we have said that it is finished.
+      // We own this piece, so the task exists until we report it finished.
       try {
         if (!failed_) task_->run(task_->pieces.count - static_cast<int>(ticket & left_mask));
       } catch (...) {
@@ -100,7 +100,7 @@ class Pool {
   std::mutex busy_;
   int started_ = 0;
   std::uint64_t turn_ = 0;
-  std::atomic<std::uint64_t> ticket_ = 0;  // the task's number, and how many of its pieces nobody has taken
+  std::atomic<std::uint64_t> ticket_ = 0;  // the task's number, and the count of its free pieces
   std::atomic<int> helpers_ = 0;           // those with a smaller index may help
   std::atomic<int> unfinished_ = 0;
   const Task* task_ = nullptr;
@@ -110,11 +110,11 @@ class Pool {
 
 // Never destroyed: its threads live as long as the process.
 Pool& pool() {
-  static Pool* const made = new Pool;
-  return *made;
+  static Pool* const instance = new Pool;
+  return *instance;
 }
 
-std::atomic<int> chosen_threads = 0;  // 0: one a core
+std::atomic<int> chosen_threads = 0;  // 0: one for each core
 
 int core_count() {
   static const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);

@@ -8,7 +8,7 @@
 namespace drape {
 namespace {
 
-/// The force residual of the state y; 0 where it is not allowed.
+/// Force residual of the state y; 0 if it is infeasible.
 double residual_at(Objective& objective, const Positions& y) {
   Positions g;
   objective.contacts().begin_step(y);
@@ -25,12 +25,12 @@ std::vector<LevelResult> solve_progressively(
     const MethodState& from, Observer& observer) {
   const Stopwatch clock(from.seconds);
   std::vector<LevelResult> results = from.finished;
-  restore_conditions(problem, from);
+  restore_load_stepping(problem, from);
   const int first = results.empty() ? from.level : results.front().level;
   for (int l = from.level; l <= problem.finest(); ++l) {
     if (!results.empty() && results.back().outcome == Outcome::cancelled) break;
     const NewtonState* state = from.of(l);
-    if (problem.conditions && !state) problem.conditions->begin(l, l == first);
+    if (problem.load_stepping && !state) problem.load_stepping->begin(l, l == first);
     Refined start;
     if (l == first)
       start.x = problem.starts[l];
@@ -43,26 +43,26 @@ std::vector<LevelResult> solve_progressively(
     if (l > first) spent["refinement"] = start.seconds;
     std::string remark;
     if (!start.fault.empty()) {
-      remark = start.fault + "; the level is begun from the scene's start instead";
+      remark = start.fault + "; the level starts from the scene's start instead";
       start.x = problem.starts[l];
-      if (problem.conditions) problem.conditions->begin(l, true);
+      if (problem.load_stepping) problem.load_stepping->begin(l, true);
     }
-    if (start.cut_short) {
+    if (start.cancelled) {
       result.x = std::move(start.x);
       result.outcome = Outcome::cancelled;
       result.message = "stopped on request";
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
     } else {
-      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.conditions, remark};
+      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping, remark};
       std::unique_ptr<Objective> next;
-      run.residual_above = [&](const Positions& x) {
+      run.residual_on_next_level = [&](const Positions& x) {
         if (!next) next = objective(l + 1);
-        return residual_at(*next, problem.carry_up(weights[l], l, x));
+        return residual_at(*next, problem.prolong(weights[l], l, x));
       };
       result = minimise(*objective(l), std::move(start.x), newton, run);
     }
-    result.afresh = l == first;
+    result.from_initial_state = l == first;
     results.push_back(std::move(result));
     observer.level_finished(results.back());
   }

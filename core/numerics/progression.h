@@ -6,10 +6,11 @@
 
 namespace drape {
 
-/// Coarse to fine: minimises objective(l) on every level l, from the scene's start on level 0 and from the
-/// last level's state, carried up safely by weights[l], on the others; where that is not allowed, from the
-/// scene's start, which the result's message says. Ends at the first level that was cancelled; a level that
-/// the observer asks to refine early leaves its state to the next. Goes on from where `from` says.
+/// Solves coarse to fine: minimises objective(l) on every level l.
+///
+/// Level 0 starts from the scene's start. Level l + 1 starts from the state of level l, prolonged by
+/// weights[l] and made feasible by refine_safely; if that fails, from the scene's start, and its result's
+/// message says why. Stops at the first cancelled level. Resumes from the state `from`.
 std::vector<LevelResult> solve_progressively(
     const Problem& problem, const std::vector<ProlongationMatrix>& weights,
     const std::function<std::unique_ptr<Objective>(int level)>& objective, const NewtonParameters& newton,

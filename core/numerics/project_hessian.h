@@ -8,11 +8,11 @@
 namespace drape {
 namespace projection_detail {
 
-/// (I + w 1 1ᵀ) h (I + w 1 1ᵀ), where 1 1ᵀ adds up 3×3 blocks.
+/// h becomes (I + w 1 1ᵀ) h (I + w 1 1ᵀ), where 1 1ᵀ sums 3×3 blocks.
 template <int Size, class T>
 void mix_blocks(SymmetricMatrix<Size, T>& h, double w) {
   constexpr int N = Size / 3;
-  T sums[N][3][3], total[3][3];  // of each column of blocks, of all
+  T sums[N][3][3], total[3][3];  // of each block column, and of all
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) {
       total[r][c] = 0.0;
@@ -34,11 +34,12 @@ void project_eigenvalues(SymmetricMatrix<Size, T>& a, Projection projection) {
 
 }  // namespace projection_detail
 
-/// Projects the Hessian of a translation-invariant element of N + 1 vertices, given by its derivatives by the
-/// N differences from vertex 0: the same as projecting the full (3N + 3)² matrix.
+/// Projects the Hessian of a translation-invariant element of N + 1 vertices, given as the second derivatives
+/// h by the N differences from vertex 0. The result equals that of projecting the full (3N + 3)² matrix.
 ///
-/// With E the matrix of the differences x_i - x_0, the full Hessian is Eᵀ h E, and E = S Qᵀ with orthonormal
-/// Q (which holds no translation) and S = √(E Eᵀ) = √(I + 1 1ᵀ): the matrix to project is S h S.
+/// Let E map positions to the differences x_i - x_0. The full Hessian is Eᵀ h E, and E = S Qᵀ with
+/// orthonormal Q, which is orthogonal to translations, and S = √(E Eᵀ) = √(I + 1 1ᵀ). So the matrix to
+/// project is S h S.
 template <int Size, class T>
 void project_hessian(SymmetricMatrix<Size, T>& h, Projection projection) {
   using namespace projection_detail;

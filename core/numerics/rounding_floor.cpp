@@ -36,11 +36,11 @@ RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, con
 }
 
 void IdleSteps::note(double energy, double residual, double noise) {
-  const bool same = std::abs(energy - m_.energy) <= noise && residual > 0.5 * m_.residual;
+  const bool same = std::abs(energy - s_.energy) <= noise && residual > 0.5 * s_.residual;
   if (same)
-    ++m_.steps;
+    ++s_.steps;
   else
-    m_ = {0, energy, residual};
+    s_ = {0, energy, residual};
 }
 
 }  // namespace drape

@@ -8,45 +8,45 @@
 
 namespace drape {
 
-/// How large the forces on each vertex may be by rounding alone, where the exact ones are zero [N]:
+/// Bound on the round-off in the force on each vertex [N]:
 ///
 ///     b_i = u Σ_j ‖H_ij‖ ‖x_j‖,   u = 2⁻⁵³,
 ///
-/// H the Hessian at x, not projected. No double is nearer to an exact x_j than u ‖x_j‖, which changes the
-/// forces by as much. What rounding does within an element is of the same kind with its size in place of
-/// ‖x_j‖, and smaller. Signs differ, so that forces at an equilibrium in doubles are about a tenth of it.
+/// H the unprojected Hessian at x. A double represents an exact x_j to u ‖x_j‖ at best, and that error
+/// changes the forces by the bound. Round-off within an element scales with the element's size in place of
+/// ‖x_j‖ and is smaller. Errors partly cancel: at an equilibrium in doubles, forces are about a tenth of the
+/// bound.
 Eigen::VectorXd rounding_bounds(const BlockMatrix& hessian, const Positions& x);
 
 struct RoundingFloor {
-  double norm = 0;       ///< of the bounds of free vertices [N]
+  double norm = 0;       ///< norm of the bounds of free vertices [N]
   bool reached = false;  ///< whether the force on every free vertex is within its bound
 };
 
 RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, const Positions& gradient,
                              const std::vector<char>& fixed);
 
-/// Notices steps that bring nothing: for several in turn the energy has stayed the same and the force
-/// residual has not halved.
+/// Detects idle steps: ten consecutive ones with the same energy, whose force residual has not halved.
 class IdleSteps {
  public:
-  /// All that it remembers.
-  struct Memory {
+  struct State {
     int steps = 0;
     double energy = std::numeric_limits<double>::infinity();
     double residual = std::numeric_limits<double>::infinity();
   };
-  Memory memory() const { return m_; }
-  void restore(const Memory& memory) { m_ = memory; }
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
 
-  /// A step has ended with these. Energies that differ by `noise` at most are the same.
+  /// Records the energy [J] and force residual at a step's end. Energies within `noise` [J] count as the
+  /// same.
   void note(double energy, double residual, double noise);
-  bool many() const { return m_.steps >= most; }
-  /// What is minimised is another function from now on, or the steps were found to be idle for a reason.
-  void restart() { m_ = {}; }
+  bool many() const { return s_.steps >= max_idle; }
+  /// Starts counting anew, for another objective.
+  void restart() { s_ = {}; }
 
  private:
-  static constexpr int most = 10;
-  Memory m_;
+  static constexpr int max_idle = 10;
+  State s_;
 };
 
 }  // namespace drape

@@ -37,10 +37,10 @@ std::string degenerate_triangle(const Triangles& triangles, const Positions& x) 
 
 std::string fault_at_start(const Objective& objective, const Positions& x, const Positions& gradient) {
   const LevelModel& model = objective.model();
-  if (const std::string beyond = beyond_limits(model.limits(), x, 1); !beyond.empty())
-    return beyond + "; start nearer to the rest shape, or raise the limit";
+  if (const std::string violation = strain_limit_violations(model.limits(), x, 1); !violation.empty())
+    return violation + "; start nearer to the rest shape, or raise the limit";
   if (const auto v = first_row_not_finite(x))
-    return "vertex " + std::to_string(*v) + " is at no finite place; change the start";
+    return "vertex " + std::to_string(*v) + " has no finite position; change the start";
   std::string what;
   for (const auto& [name, joules] : model.energy_parts(x))
     if (!std::isfinite(joules)) {
@@ -55,8 +55,7 @@ std::string fault_at_start(const Objective& objective, const Positions& x, const
     return "the forces at vertex " + std::to_string(*v) + " are not" + remedy;
   if (!std::isfinite(model.load_norm(x)))
     return "the load is too large to be computed with" + std::string(remedy);
-  if (objective.is_proxy())
-    return "the energy of a finer level, which is minimised here, is not" + std::string(remedy);
+  if (objective.is_proxy()) return "the proxy energy is not" + std::string(remedy);
   return "the forces are too large to be computed with" + std::string(remedy);
 }
 

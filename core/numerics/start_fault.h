@@ -6,7 +6,7 @@
 
 namespace drape {
 
-/// What of the objective is not finite at the start x, and what to do; `gradient` is its gradient there.
+/// Names what of the objective is not finite at the start x (n×3), and a remedy. `gradient` is ∇F(x).
 std::string fault_at_start(const Objective& objective, const Positions& x, const Positions& gradient);
 
 }  // namespace drape

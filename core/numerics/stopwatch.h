@@ -6,7 +6,7 @@
 
 namespace drape {
 
-/// Seconds since it was made, on a clock that never runs backwards, and those it was given to begin with.
+/// Seconds since construction on a monotonic clock, plus an initial value.
 class Stopwatch {
  public:
   explicit Stopwatch(double already = 0) : already_(already) {}
@@ -18,7 +18,7 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Adds the time of a scope to a named sum.
+/// Adds the duration of its scope to a named sum [s].
 class PhaseTimer {
  public:
   PhaseTimer(std::map<std::string, double>& sums, const char* phase) : sum_(sums[phase]) {}

@@ -10,16 +10,16 @@
 
 namespace drape {
 
-/// Principal stretches σ₁ ≥ σ₂ of a triangle's deformation gradient F (3×2), and where they point. T is
+/// Principal stretches σ₁ ≥ σ₂ of a triangle's deformation gradient F (3×2), and their directions. T is
 /// double or a Pack.
 template <class T>
 struct PrincipalStretch {
   using Vector = Eigen::Matrix<T, 3, 1>;
-  T largest, smallest;  ///< σ₁, σ₂ to a few ulp, also where they agree; σ₂ = 0 where the triangle collapsed
-  T cosine, sine;  ///< v₁ = (cosine, sine), v₂ = (-sine, cosine); any v₁ where σ₁ = σ₂
-  Vector w1, w2;   ///< F v₁ and F v₂, of length σ₁ and σ₂ and orthogonal
+  T largest, smallest;  ///< σ₁, σ₂ to a few ulp, also if equal; σ₂ = 0 for a collapsed triangle
+  T cosine, sine;       ///< v₁ = (cosine, sine), v₂ = (-sine, cosine); any v₁ if σ₁ = σ₂
+  Vector w1, w2;        ///< F v₁ and F v₂, of length σ₁ and σ₂ and orthogonal
 
-  /// Of the columns of F.
+  /// From the columns of F.
   PrincipalStretch(const Vector& f1, const Vector& f2) {
     using std::abs, std::max, std::sqrt;
     constexpr double tiny = 1e-150;
@@ -48,16 +48,16 @@ struct RestTriangle {
   double a, b, c;  ///< inverse rest edges in the triangle's own plane [1/m]
   double area;     ///< [m²]
 
-  /// Of the rest edge vectors [m]; not finite where they span no area.
+  /// From the rest edge vectors [m]; not finite if they span no area.
   static RestTriangle of(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
     // Edges in the plane: e₁ = (p, 0), e₂ = (q, h).
     const double p = e1.norm(), q = e2.dot(e1) / p, h = e1.cross(e2).norm() / p;
     return {1 / p, -q / (p * h), 1 / h, p * h / 2};
   }
-  /// Triangle t of the level; std::runtime_error where it has no area.
+  /// Triangle t of the level. Throws std::runtime_error if it has no area.
   static RestTriangle of(const Level& level, int t);
 
-  /// Of the triangle with these edge vectors [m].
+  /// Stretches of the triangle with these edge vectors [m].
   PrincipalStretch<double> stretch(const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) const {
     return {a * e1, b * e1 + c * e2};
   }

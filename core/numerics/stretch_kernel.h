@@ -4,24 +4,24 @@
 
 namespace drape {
 
-/// What a law of one principal stretch says at σ₁ ≥ σ₂: φ', φ'' and (φ'(σ₁) - φ'(σ₂)) / (σ₁ - σ₂), which is
-/// φ'' where they agree.
+/// Derivatives of a law φ of one principal stretch at σ₁ ≥ σ₂: φ', φ'' and (φ'(σ₁) - φ'(σ₂)) / (σ₁ - σ₂),
+/// which is φ'' if σ₁ = σ₂.
 template <class T>
 struct StretchSlopes {
   T first1, first2, second1, second2, divided;
 };
 
-/// Energy φ(σ₁) + φ(σ₂) of one triangle, σ its principal stretches, for ElementEnergy. A Law has `constants`
-/// (how many numbers a triangle has), `convex` (φ is convex and nowhere falls; then so is the energy, in x)
-/// and, for T double or Pack,
+/// Energy φ(σ₁) + φ(σ₂) of one triangle with principal stretches σ, for ElementEnergy. A Law has `constants`
+/// (how many numbers each triangle has), `convex` (φ is convex and non-decreasing; then the energy is convex
+/// in x) and, for T double or Pack,
 ///
 ///     T value(const T& s1, const T& s2, const T* constants);
 ///     StretchSlopes<T> slopes(const T& s1, const T& s2, const T* constants);
 ///
-/// Derivatives by F need no frame but v₁, v₂, and are as good where stretches agree or vanish: with β = φ'/σ,
-/// q = (β₁ - β₂)/(σ₁² - σ₂²), w = F v, the Hessian's blocks for δF v₁ and δF v₂ are
+/// Derivatives by F need only the frame v₁, v₂, and stay accurate if stretches agree or vanish: with β =
+/// φ'/σ, q = (β₁ - β₂)/(σ₁² - σ₂²), w = F v, the Hessian's blocks for δF v₁ and δF v₂ are
 ///     β₁ I + (φ₁'' - β₁)/σ₁² w₁w₁ᵀ + q w₂w₂ᵀ,   q w₂w₁ᵀ,   β₂ I + (φ₂'' - β₂)/σ₂² w₂w₂ᵀ + q w₁w₁ᵀ.
-/// Stretches below 1e-6 are divided by as if they were that.
+/// Divisors are bounded below by a stretch of 1e-6.
 template <class Law>
 struct StretchKernel {
   static constexpr int vertices = 3;
@@ -85,7 +85,7 @@ struct StretchKernel {
           second2(rest[2] * s.cosine) {}
   };
 
-  // Out of line, so that value and gradient return the same bits.
+  // Out of line: value and gradient must return the same bits.
   template <class T>
   [[gnu::noinline]] static T energy(const Vector<T>* e, const T* rest) {
     const auto s = stretch(e, rest);

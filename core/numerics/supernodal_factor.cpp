@@ -6,18 +6,18 @@
 
 namespace drape {
 
-void SupernodalFactor::lay_out(SupernodalTree tree, const BlockPattern& pattern,
-                               const std::vector<int>& order) {
+void SupernodalFactor::set_structure(SupernodalTree tree, const BlockPattern& pattern,
+                                     const std::vector<int>& ordering) {
   tree_ = std::move(tree);
-  order_ = order;
-  std::vector<int> place(pattern.rows(), -1), supernode(order.size());
-  for (std::size_t p = 0; p < order.size(); ++p) place[order[p]] = static_cast<int>(p);
-  for (int s = 0; s < tree_.count(); ++s) std::fill_n(supernode.begin() + tree_.first(s), tree_.own(s), s);
+  ordering_ = ordering;
+  std::vector<int> position(pattern.rows(), -1), supernode(ordering.size());
+  for (std::size_t p = 0; p < ordering.size(); ++p) position[ordering[p]] = static_cast<int>(p);
+  for (int s = 0; s < tree_.count(); ++s) std::fill_n(supernode.begin() + tree_.first(s), tree_.pivots(s), s);
 
-  const auto each_block = [&](auto&& visit) {  // with the places of its column and row in the factor
+  const auto each_block = [&](auto&& visit) {  // with the positions of its column and row
     for (int i = 0; i < pattern.rows(); ++i)
       for (int k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-        if (const int p = place[i], q = place[pattern.columns[k]]; p >= 0 && q >= 0)
+        if (const int p = position[i], q = position[pattern.columns[k]]; p >= 0 && q >= 0)
           visit(std::min(p, q), std::max(p, q), k, p < q);
   };
   entry_start_.assign(tree_.count() + 1, 0);
@@ -28,9 +28,9 @@ void SupernodalFactor::lay_out(SupernodalTree tree, const BlockPattern& pattern,
   each_block([&](int column, int row, int block, bool transposed) {
     const int s = supernode[column];
     int local = row - tree_.first(s);
-    if (local >= tree_.own(s)) {
+    if (local >= tree_.pivots(s)) {
       const int* rows = tree_.rows().begin(s);
-      local = tree_.own(s) + static_cast<int>(std::lower_bound(rows, tree_.rows().end(s), row) - rows);
+      local = tree_.pivots(s) + static_cast<int>(std::lower_bound(rows, tree_.rows().end(s), row) - rows);
     }
     entries_[at[s]++] = {block, local, column - tree_.first(s), transposed};
   });
@@ -40,14 +40,15 @@ void SupernodalFactor::lay_out(SupernodalTree tree, const BlockPattern& pattern,
   };
   vector_start_.assign(1, 0);
   for (int s = 0; s < tree_.count(); ++s)
-    vector_start_.push_back(vector_start_[s] + padded(3 * tree_.own(s)) + padded(3 * tree_.rows().size(s)));
+    vector_start_.push_back(vector_start_[s] + padded(3 * tree_.pivots(s)) +
+                            padded(3 * tree_.rows().size(s)));
   grow(work_, vector_start_.back());
   grow(panels_, tree_.panel_size());
   grow(updates_, tree_.update_size());
 }
 
 Front SupernodalFactor::front(int s) {
-  return {tree_.own(s), tree_.rows().size(s), panels_.data() + tree_.panel(s),
+  return {tree_.pivots(s), tree_.rows().size(s), panels_.data() + tree_.panel(s),
           updates_.data() + tree_.update(s)};
 }
 
@@ -84,23 +85,25 @@ void set_zero(double* begin, std::size_t size) {
 
 void SupernodalFactor::assemble(int s, const Front& f, const BlockMatrix& matrix,
                                 const Eigen::VectorXd& shift) {
-  set_zero(f.panel, Front::panel_size(f.own, f.rest));
-  set_zero(f.update, Front::update_size(f.rest));
+  set_zero(f.panel, Front::panel_size(f.pivots, f.updates));
+  set_zero(f.update, Front::update_size(f.updates));
   for (int k = entry_start_[s]; k < entry_start_[s + 1]; ++k) {
     const Entry& e = entries_[k];
     const double* b = matrix.block(e.block);
-    const Strip strip = f.panel_strip(f.strip_of(e.row));
-    double* to = strip.column(3 * e.column) + f.row_of(e.row);
+    const RowPanel row_panel = f.panel_rows(f.row_panel_of(e.row));
+    double* to = row_panel.column(3 * e.column) + f.row_of(e.row);
     const int down = e.transposed ? 1 : 3, right = e.transposed ? 3 : 1;
-    for (int c = 0; c < 3; ++c, to += strip.height)
+    for (int c = 0; c < 3; ++c, to += row_panel.height)
       for (int r = 0; r < 3; ++r) to[r] = b[r * down + c * right];
     if (e.row == e.column)
-      for (int c = 0; c < 3; ++c) to[(c - 3) * strip.height + c] += shift[order_[tree_.first(s) + e.row]];
+      for (int c = 0; c < 3; ++c)
+        to[(c - 3) * row_panel.height + c] += shift[ordering_[tree_.first(s) + e.row]];
   }
-  for (int c = 3 * f.own; c < f.columns(); ++c) f.panel_strip(c / strip_rows).column(c)[c % strip_rows] = 1;
+  for (int c = 3 * f.pivots; c < f.columns(); ++c)
+    f.panel_rows(c / row_panel_height).column(c)[c % row_panel_height] = 1;
   const AdjacencyList& children = tree_.children();
   for (const int* c = children.begin(s); c != children.end(s); ++c)
-    add_update(front(*c), tree_.places_in_parent(*c), f);
+    add_update(front(*c), tree_.indices_in_parent(*c), f);
 }
 
 void SupernodalFactor::solve(Eigen::VectorXd& x) {
@@ -118,31 +121,31 @@ void SupernodalFactor::solve(Eigen::VectorXd& x) {
 
 void SupernodalFactor::forward(int s, const Eigen::VectorXd& x) {
   const Front f = front(s);
-  double* own = work_.data() + vector_start_[s];
-  double* rest = own + f.columns();
-  std::fill(own, work_.data() + vector_start_[s + 1], 0.0);
-  std::copy_n(x.data() + 3 * tree_.first(s), 3 * f.own, own);
+  double* pivots = work_.data() + vector_start_[s];
+  double* updates = pivots + f.columns();
+  std::fill(pivots, work_.data() + vector_start_[s + 1], 0.0);
+  std::copy_n(x.data() + 3 * tree_.first(s), 3 * f.pivots, pivots);
   const AdjacencyList& children = tree_.children();
   for (const int* c = children.begin(s); c != children.end(s); ++c) {
-    const int* places = tree_.places_in_parent(*c);
-    const double* from = work_.data() + vector_start_[*c] + padded(3 * tree_.own(*c));
+    const int* indices = tree_.indices_in_parent(*c);
+    const double* from = work_.data() + vector_start_[*c] + padded(3 * tree_.pivots(*c));
     for (int k = 0; k < tree_.rows().size(*c); ++k) {
-      double* to = places[k] < f.own ? own + 3 * places[k] : rest + 3 * (places[k] - f.own);
+      double* to = indices[k] < f.pivots ? pivots + 3 * indices[k] : updates + 3 * (indices[k] - f.pivots);
       for (int d = 0; d < 3; ++d) to[d] += from[3 * k + d];
     }
   }
-  solve_forward(f, own);
+  solve_forward(f, pivots);
 }
 
 void SupernodalFactor::backward(int s, Eigen::VectorXd& x) {
   const Front f = front(s);
-  double* own = work_.data() + vector_start_[s];
-  double* rest = own + f.columns();
+  double* pivots = work_.data() + vector_start_[s];
+  double* updates = pivots + f.columns();
   const int* rows = tree_.rows().begin(s);
-  for (int k = 0; k < f.rest; ++k)
-    for (int d = 0; d < 3; ++d) rest[3 * k + d] = x[3 * rows[k] + d];
-  solve_backward(f, own);
-  std::copy_n(own, 3 * f.own, x.data() + 3 * tree_.first(s));
+  for (int k = 0; k < f.updates; ++k)
+    for (int d = 0; d < 3; ++d) updates[3 * k + d] = x[3 * rows[k] + d];
+  solve_backward(f, pivots);
+  std::copy_n(pivots, 3 * f.pivots, x.data() + 3 * tree_.first(s));
 }
 
 }  // namespace drape

@@ -12,21 +12,20 @@ namespace drape {
 
 /// Multifrontal Cholesky factorisation of a symmetric matrix of 3×3 blocks (Duff and Reid 1983; Liu 1992).
 ///
-/// Every supernode, in postorder, gathers the matrix' entries in its columns and its children's update
-/// matrices into its front, eliminates its own columns, and leaves its update matrix to its parent. Subtrees
-/// are worked on in parallel, then the supernodes above them one by one, their fronts in parallel by tiles.
-/// Tree, tiles and the order of the children do not depend on the number of threads, and an entry is only
-/// ever changed by one thread at a time in one order: the factor is the same, bit by bit, with any number.
+/// In postorder, every supernode assembles its front from the matrix' entries and its children's update
+/// matrices, eliminates its pivots, and passes its update matrix to its parent. Subtrees run in parallel;
+/// then the supernodes above them one by one, their fronts in parallel by tiles. Tree, tiles and the order of
+/// additions do not depend on the number of threads, so the factor is bitwise reproducible.
 class SupernodalFactor {
  public:
-  /// order[p] is the vertex at place p of the tree; vertices that are not in it are left out. Keeps the
-  /// memory of an earlier layout where it suffices.
-  void lay_out(SupernodalTree tree, const BlockPattern& pattern, const std::vector<int>& order);
+  /// Sets the symbolic structure. ordering[p] is the vertex at position p; vertices without a position are
+  /// left out. Reuses the memory of an earlier structure if it suffices.
+  void set_structure(SupernodalTree tree, const BlockPattern& pattern, const std::vector<int>& ordering);
 
-  /// Factorises A + diag(shift_i I₃), shift by vertex. False, early, when a pivot is not positive.
+  /// Factorises A + diag(shift_i I₃), shift by vertex. Returns false early if a pivot is not positive.
   bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
 
-  /// Solves in place; three unknowns a place.
+  /// Solves in place; three unknowns for each position.
   void solve(Eigen::VectorXd& x);
 
  private:
@@ -43,11 +42,11 @@ class SupernodalFactor {
   void backward(int s, Eigen::VectorXd& x);
 
   SupernodalTree tree_;
-  std::vector<int> order_;
+  std::vector<int> ordering_;
   std::vector<int> entry_start_;  // of each supernode
   std::vector<Entry> entries_;
   Eigen::VectorXd panels_, updates_;
-  std::vector<int> vector_start_;  // of each supernode's part of the solve's work space
+  std::vector<int> vector_start_;  // of each supernode's work space in a solve
   Eigen::VectorXd work_;
   std::atomic<bool> failed_ = false;
 };

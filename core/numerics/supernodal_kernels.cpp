@@ -7,7 +7,7 @@ namespace {
 
 using Vector = VectorOf<lanes>::Doubles;
 
-/// `lanes` columns of V vectors each: as many registers as there are, less those for the operands.
+/// `lanes` columns of V vectors each: fills the registers that the operands leave.
 template <int V>
 struct Tile {
   Vector columns[lanes][V];
@@ -26,7 +26,7 @@ struct Tile {
 #pragma GCC unroll 3
       for (int v = 0; v < V; ++v) to[j * V + v] = columns[j][v];
   }
-  /// Subtracts a bᵀ over `depth` columns of a strip of V vectors and of `lanes` rows at b.
+  /// Subtracts a bᵀ over `depth` columns of a row panel of V vectors and of `lanes` rows at b.
   [[gnu::always_inline]] void subtract(const double* a, const double* b, int b_height, int depth) {
     for (int k = 0; k < depth; ++k, a += V * lanes, b += b_height) {
       const auto* column = reinterpret_cast<const Vector*>(a);
@@ -51,7 +51,7 @@ struct Tile {
 };
 
 template <int V>
-void subtract_product_of(const Strip& a, const Strip& b, int begin, int end, double* c) {
+void subtract_product_of(const RowPanel& a, const RowPanel& b, int begin, int end, double* c) {
   for (int row = 0; row < b.height; row += lanes, c += lanes * V * lanes) {
     Tile<V> tile;
     tile.load(c);
@@ -61,7 +61,7 @@ void subtract_product_of(const Strip& a, const Strip& b, int begin, int end, dou
 }
 
 template <int V>
-void below(const Strip& a, const Strip& diagonal, int row, int begin, int column) {
+void columns_below(const RowPanel& a, const RowPanel& diagonal, int row, int begin, int column) {
   Tile<V> tile;
   tile.load(a.column(column));
   tile.subtract(a.column(begin), diagonal.column(begin) + row, diagonal.height, column - begin);
@@ -84,7 +84,7 @@ bool factorise_block(double* l, int height) {
 }
 
 template <int V>
-bool with_own_rows(const Strip& diagonal, int row, int begin, int column) {
+bool diagonal_columns(const RowPanel& diagonal, int row, int begin, int column) {
   Tile<V> tile;
   tile.load(diagonal.column(column));
   tile.subtract(diagonal.column(begin), diagonal.column(begin) + row, V * lanes, column - begin);
@@ -101,7 +101,7 @@ bool with_own_rows(const Strip& diagonal, int row, int begin, int column) {
 }
 
 template <int V>
-void subtract_times_of(const Strip& a, int columns, const double* x, double* y) {
+void subtract_times_of(const RowPanel& a, int columns, const double* x, double* y) {
   auto* rows = reinterpret_cast<Vector*>(y);
   const auto* column = reinterpret_cast<const Vector*>(a.data);
   Vector sum[V];
@@ -126,7 +126,7 @@ void subtract_transposed_times_of(const double* a, const double* x, double* y) {
 
 }  // namespace
 
-void subtract_product(const Strip& a, const Strip& b, int begin, int end, double* c) {
+void subtract_product(const RowPanel& a, const RowPanel& b, int begin, int end, double* c) {
   if (a.height == 3 * lanes)
     subtract_product_of<3>(a, b, begin, end, c);
   else if (a.height == 2 * lanes)
@@ -135,22 +135,22 @@ void subtract_product(const Strip& a, const Strip& b, int begin, int end, double
     subtract_product_of<1>(a, b, begin, end, c);
 }
 
-void factorise_columns_below(const Strip& a, const Strip& diagonal, int row, int begin, int column) {
+void factorise_columns_below(const RowPanel& a, const RowPanel& diagonal, int row, int begin, int column) {
   if (a.height == 3 * lanes)
-    below<3>(a, diagonal, row, begin, column);
+    columns_below<3>(a, diagonal, row, begin, column);
   else if (a.height == 2 * lanes)
-    below<2>(a, diagonal, row, begin, column);
+    columns_below<2>(a, diagonal, row, begin, column);
   else
-    below<1>(a, diagonal, row, begin, column);
+    columns_below<1>(a, diagonal, row, begin, column);
 }
 
-bool factorise_columns_diagonal(const Strip& diagonal, int row, int begin, int column) {
-  if (diagonal.height == 3 * lanes) return with_own_rows<3>(diagonal, row, begin, column);
-  if (diagonal.height == 2 * lanes) return with_own_rows<2>(diagonal, row, begin, column);
-  return with_own_rows<1>(diagonal, row, begin, column);
+bool factorise_columns_diagonal(const RowPanel& diagonal, int row, int begin, int column) {
+  if (diagonal.height == 3 * lanes) return diagonal_columns<3>(diagonal, row, begin, column);
+  if (diagonal.height == 2 * lanes) return diagonal_columns<2>(diagonal, row, begin, column);
+  return diagonal_columns<1>(diagonal, row, begin, column);
 }
 
-void subtract_times(const Strip& a, int columns, const double* x, double* y) {
+void subtract_times(const RowPanel& a, int columns, const double* x, double* y) {
   if (a.height == 3 * lanes)
     subtract_times_of<3>(a, columns, x, y);
   else if (a.height == 2 * lanes)
@@ -159,7 +159,7 @@ void subtract_times(const Strip& a, int columns, const double* x, double* y) {
     subtract_times_of<1>(a, columns, x, y);
 }
 
-void subtract_transposed_times(const Strip& a, int column, const double* x, double* y) {
+void subtract_transposed_times(const RowPanel& a, int column, const double* x, double* y) {
   if (a.height == 3 * lanes)
     subtract_transposed_times_of<3>(a.column(column), x, y);
   else if (a.height == 2 * lanes)

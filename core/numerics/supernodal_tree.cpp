@@ -8,11 +8,12 @@
 namespace drape {
 namespace {
 
-/// What a supernode costs, in multiplications; an entry of the update matrix that is passed on costs about as
-/// much as twenty.
-double work(double own, double rest) {
-  own *= 3, rest *= 3;
-  return own * own * own / 6 + own * own * rest / 2 + own * rest * rest / 2 + 10 * rest * rest;
+/// Cost of a supernode in multiplications. Passing on an entry of the update matrix costs about as much as
+/// twenty.
+double work(double pivots, double updates) {
+  pivots *= 3, updates *= 3;
+  return pivots * pivots * pivots / 6 + pivots * pivots * updates / 2 + pivots * updates * updates / 2 +
+         10 * updates * updates;
 }
 
 }  // namespace
@@ -21,7 +22,7 @@ SupernodalTree::SupernodalTree(std::vector<int> first, AdjacencyList rows)
     : first_(std::move(first)), rows_(std::move(rows)) {
   find_children();
   panel_.assign(1, 0);
-  for (int s = 0; s < count(); ++s) panel_.push_back(panel_[s] + Front::panel_size(own(s), rows_.size(s)));
+  for (int s = 0; s < count(); ++s) panel_.push_back(panel_[s] + Front::panel_size(pivots(s), rows_.size(s)));
   cut();
   update_.resize(count());
   for (const Range& r : subtrees_) {
@@ -33,7 +34,7 @@ SupernodalTree::SupernodalTree(std::vector<int> first, AdjacencyList rows)
 }
 
 void SupernodalTree::find_children() {
-  std::vector<int> supernode(first_.back());  // of each place
+  std::vector<int> supernode(first_.back());  // of each position
   for (int s = 0; s < count(); ++s)
     std::fill(supernode.begin() + first_[s], supernode.begin() + first_[s + 1], s);
   parent_.assign(count(), -1);
@@ -50,26 +51,26 @@ void SupernodalTree::find_children() {
     children_.items[at[p]++] = s;
     const int* row = rows_.begin(p);
     for (int k = rows_.start[s]; k < rows_.start[s + 1]; ++k) {
-      const int place = rows_.items[k];
-      if (place < first_[p + 1]) {
-        relative_[k] = place - first_[p];
+      const int position = rows_.items[k];
+      if (position < first_[p + 1]) {
+        relative_[k] = position - first_[p];
       } else {
-        row = std::lower_bound(row, rows_.end(p), place);
-        relative_[k] = own(p) + static_cast<int>(row - rows_.begin(p));
+        row = std::lower_bound(row, rows_.end(p), position);
+        relative_[k] = pivots(p) + static_cast<int>(row - rows_.begin(p));
       }
     }
   }
 }
 
-/// From the roots down, takes the supernode off the subtree with most work until none has much.
+/// From the roots down, splits the subtree with most work until none has more than a sixteenth of it.
 void SupernodalTree::cut() {
-  constexpr double share = 1.0 / 16;
+  constexpr double max_fraction = 1.0 / 16;
   std::vector<double> sum(count());  // work of the whole subtree
   std::vector<int> begin(count());   // its first supernode
   std::iota(begin.begin(), begin.end(), 0);
   double all = 0;
   for (int s = 0; s < count(); ++s) {
-    const double w = work(own(s), rows_.size(s));
+    const double w = work(pivots(s), rows_.size(s));
     sum[s] += w;
     all += w;
     if (const int p = parent_[s]; p >= 0) sum[p] += sum[s], begin[p] = std::min(begin[p], begin[s]);
@@ -79,7 +80,7 @@ void SupernodalTree::cut() {
   for (int s = 0; s < count(); ++s)
     if (parent_[s] < 0) roots.push_back(s);
   std::make_heap(roots.begin(), roots.end(), less);
-  while (!roots.empty() && sum[roots.front()] > share * all) {
+  while (!roots.empty() && sum[roots.front()] > max_fraction * all) {
     std::pop_heap(roots.begin(), roots.end(), less);
     const int s = roots.back();
     roots.pop_back();
@@ -94,8 +95,8 @@ void SupernodalTree::cut() {
   for (auto s = roots.rbegin(); s != roots.rend(); ++s) subtrees_.push_back({begin[*s], *s + 1});
 }
 
-/// Two stacks, for supernodes of even and odd depth: when s, in postorder, is done, its children are on top
-/// of the one and s itself goes onto the other.
+/// Two stacks, for supernodes of even and odd depth: when s is done, in postorder, its children are on top of
+/// one stack, and s goes onto the other.
 void SupernodalTree::place_updates(const std::vector<int>& part) {
   std::size_t top[2] = {0, 0}, peak[2] = {0, 0};
   std::vector<int> odd(part.size());  // depth

@@ -7,33 +7,32 @@
 
 namespace drape {
 
-/// A symmetric N×N matrix of double or, one matrix a lane, of Pack; its upper triangle is kept.
+/// A symmetric N×N matrix of double or Pack (one matrix in each lane), stored as its upper triangle.
 template <int N, class T>
 struct SymmetricMatrix {
   T upper[N * (N + 1) / 2];  ///< column by column
 
   SymmetricMatrix() = default;
-  /// Of the upper triangle of anything that has entries (i, j).
+  /// From the upper triangle of anything with entries (i, j).
   template <class Matrix>
   explicit SymmetricMatrix(const Matrix& m) {
     for (int j = 0; j < N; ++j)
       for (int i = 0; i <= j; ++i) (*this)(i, j) = m(i, j);
   }
 
-  static constexpr int place(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
-  T& operator()(int i, int j) { return upper[place(i, j)]; }
-  const T& operator()(int i, int j) const { return upper[place(i, j)]; }
+  static constexpr int index(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
+  T& operator()(int i, int j) { return upper[index(i, j)]; }
+  const T& operator()(int i, int j) const { return upper[index(i, j)]; }
 };
 
 namespace eigen_detail {
 
-/// An order of all pairs p < q in rounds of disjoint ones (a round-robin tournament), whose rotations
-/// do not wait for each other.
+/// All pairs p < q in rounds of disjoint pairs (a round-robin tournament), whose rotations are independent.
 template <int N>
 struct Rounds {
   static constexpr int pairs = N / 2, rounds = N - 1 + N % 2;
   int pair[rounds][pairs][2] = {};
-  int single[rounds] = {};  ///< the index that sits the round out, N odd
+  int single[rounds] = {};  ///< the index without a partner in each round, N odd
 
   constexpr Rounds() {
     for (int r = 0; r < rounds; ++r) {
@@ -65,9 +64,9 @@ inline void turn(Rotation<T> r, T& p, T& q) {
   q = r.s * old + r.c * q;
 }
 
-/// The rotation of at most π/4 that makes the 2×2 block (app, apq; apq, aqq) diagonal but for some 1e-8 of
-/// apq, which the next sweep finishes: square roots and divisions to full precision would be most of the
-/// work. The rotation itself is orthonormal to rounding.
+/// Rotation of at most π/4 that reduces the off-diagonal entry of the 2×2 block (app, apq; apq, aqq) to about
+/// 1e-8 of apq; the next sweep removes the rest. Square roots and divisions to full precision would dominate
+/// the cost. The rotation itself is orthonormal to round-off.
 template <class T>
 inline Rotation<T> diagonalising(const T& app, const T& apq, const T& aqq) {
   using std::abs, std::max;
@@ -92,8 +91,8 @@ inline void turn_block(Rotation<T> r, T& app, T& apq, T& aqq) {
   aqq += change;
 }
 
-/// The part of Jᵀ A J, J the round's rotations, that is not the pairs' own 2×2 blocks. Unrolled, so that
-/// every place in A is a constant.
+/// Jᵀ A J without the pairs' own 2×2 blocks, J the round's rotations. Unrolled: every index into A is a
+/// constant.
 template <int Round, int N, class T>
 inline void rotate_others(SymmetricMatrix<N, T>& a, const Rotation<T>* rotations) {
   constexpr auto& all = rounds_of<N>;
@@ -154,8 +153,8 @@ void sweep_back(SymmetricMatrix<N, T>& a, const Rotation<T> (*rotations)[N / 2],
 
 }  // namespace eigen_detail
 
-/// Replaces A = V Λ Vᵀ by V f(Λ) Vᵀ, f being applied to each eigenvalue. Cyclic Jacobi rotations until what
-/// is off the diagonal is 1e-13 of the norm, all lanes in step; then the same rotations backwards.
+/// Replaces A = V Λ Vᵀ by V f(Λ) Vᵀ. Cyclic Jacobi rotations, all lanes in step, reduce the off-diagonal part
+/// to 1e-13 of the norm; then the same rotations run backwards.
 template <int N, class T, class Function>
 void map_eigenvalues(SymmetricMatrix<N, T>& a, Function f) {
   using namespace eigen_detail;
@@ -179,7 +178,7 @@ void map_eigenvalues(SymmetricMatrix<N, T>& a, Function f) {
   while (done-- > 0) sweep_back(a, rotations[done], sequence);
 }
 
-/// Whether every lane's smallest eigenvalue is certain to be above -1e-13 of its trace (by LDLᵀ).
+/// True only if every lane's smallest eigenvalue is above -1e-13 of its trace (by LDLᵀ).
 template <int N, class T>
 bool positive_semidefinite(SymmetricMatrix<N, T> a) {
   T trace = 0.0;

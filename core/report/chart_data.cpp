@@ -162,7 +162,7 @@ std::string chart_data(const RunData& run) {
                      {"tolerance", rounded(run.force_tolerance)},
                      {"series", series_json(run)},
                      {"errors", errors_json(run)},
-                     {"changes", changes_json(run)},
+                     {"increments", changes_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
                      {"parts", bars_json(run, &LevelRecord::energy_parts)}};
   return script_json(data);

@@ -109,7 +109,7 @@ std::string troubles(const RunData& run) {
       const std::string message = level.message.empty() ? "" : ": " + escape(level.message);
       if (level.status == "failed")
         items += where + ": failed" + message + "</li>\n";
-      else if (!ended_as_asked(level.status) && !level.status.empty())
+      else if (!succeeded(level.status) && !level.status.empty())
         items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
                  " iterations at force residual " + figure(level.force_residual) + message + "</li>\n";
       else if (!message.empty())

@@ -219,7 +219,7 @@ class PictureMaker {
       if (!f || pair->coarse != level || f->principal_other.size() == 0 || state == states_.end()) continue;
       TriangleMesh mesh = state->second;
       Positions normals = smooth_normals(mesh);
-      if (!carry_up(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
+      if (!prolong(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
       const Colours colours = fold_colours(f->principal_other, set_.fold_threshold);
       keep(name, renderer().draw({mesh, &normals, &colours, false, true, obstacle()}, camera_));
       return;
@@ -236,7 +236,7 @@ class PictureMaker {
   /// Splits a state 1→4 at edge midpoints, which leaves its surface as it is, until it has `count`
   /// vertices. Relies on the numbering of Refinement: old vertices first, then one an edge. False if
   /// the numbers do not fit or an intermediate level's triangles are not known.
-  bool carry_up(TriangleMesh& mesh, Positions& normals, const Triangles& finest, Eigen::Index count) const {
+  bool prolong(TriangleMesh& mesh, Positions& normals, const Triangles& finest, Eigen::Index count) const {
     while (mesh.vertices.rows() < count) {
       const int n = static_cast<int>(mesh.vertices.rows());
       const Topology topology = Topology::of(mesh.triangles, n);

@@ -52,7 +52,8 @@ LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
   r.steps = figure(at(json, "steps"));
   r.newton_iterations = figure(at(json, "newton_iterations"));
   r.flops = figure(at(json, "flops"));
-  r.afresh = at(json, "afresh").is_boolean() && at(json, "afresh").get<bool>();
+  r.from_initial_state =
+      at(json, "from_initial_state").is_boolean() && at(json, "from_initial_state").get<bool>();
   r.seconds = figure(at(json, "seconds"));
   r.energy = figure(at(json, "energy"));
   r.energy_on_finest = figure(at(json, "energy_on_finest"));
@@ -203,7 +204,7 @@ const ConsistencyRecord* MethodRecord::pair(int coarse, int fine) const {
 Figure MethodRecord::cost(Figure LevelRecord::*member) const {
   Figure sum;
   for (const LevelRecord& level : levels) {
-    if (level.afresh) sum.reset();
+    if (level.from_initial_state) sum.reset();
     if (level.*member) sum = sum.value_or(0) + *(level.*member);
   }
   return sum;
@@ -277,7 +278,7 @@ RunData read_run(const std::filesystem::path& folder) {
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
       run.methods.push_back(method_record(file, name, value));
-      const std::vector<ConditionSeries> changes = changes_of(file, name, at(value, "changes"));
+      const std::vector<ConditionSeries> changes = changes_of(file, name, at(value, "increments"));
       run.changes.insert(run.changes.end(), changes.begin(), changes.end());
     }
   }

@@ -24,7 +24,7 @@ struct LevelRecord {
   int level = 0;
   std::string status, message;
   Figure vertices, triangles, steps, newton_iterations, seconds, flops;
-  bool afresh = false;               ///< begun from the scene's start: what came before is not in it
+  bool from_initial_state = false;   ///< begun from the scene's start: what came before is not in it
   Figure energy, energy_on_finest;   ///< [J]
   Figure decrement, force_residual;  ///< [m/s], [1]
   Figure largest_stretch, intersections, smallest_gap;
@@ -74,12 +74,12 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
-/// A change of conditions, where it ended.
+/// The end of an increment of load stepping.
 struct ConditionRow {
   Figure time, steps, energy;  ///< pseudo-time; the others as of a level
 };
 
-/// All changes of one level of one method, in order.
+/// All increments of one level of one method, in order.
 struct ConditionSeries {
   std::string method;
   int level = 0;

@@ -89,7 +89,7 @@ std::vector<CostPoint> error_curve(const RunData& run, const std::string& method
   for (const MethodRecord& m : run.methods)
     if (m.name == method)
       for (const LevelRecord& level : m.levels)
-        if (level.afresh) begin = level.level;
+        if (level.from_initial_state) begin = level.level;
   std::vector<CostPoint> curve;
   for (const ErrorSeries& series : run.errors) {
     if (series.method != method || series.level < begin) continue;

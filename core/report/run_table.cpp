@@ -61,7 +61,7 @@ Json row_of(const RunData& run, const MethodRecord& method) {
     if (level.intersections) way.intersections = way.intersections.value_or(0) + *level.intersections;
     if (level.largest_stretch) stretch = std::max(stretch.value_or(0), *level.largest_stretch);
     if (level.message.empty()) continue;
-    (ended_as_asked(level.status) ? remark : fault) +=
+    (succeeded(level.status) ? remark : fault) +=
         (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
         "\n";
   }

@@ -17,7 +17,7 @@ using Row = std::vector<Cell>;
 Cell words(const std::string& content) { return {content, false}; }
 
 std::string status_badge(const std::string& status) {
-  const std::string kind = ended_as_asked(status) ? "good" : status.empty() ? "none" : "poor";
+  const std::string kind = succeeded(status) ? "good" : status.empty() ? "none" : "poor";
   return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
 }
 

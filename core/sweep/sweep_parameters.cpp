@@ -6,7 +6,8 @@ namespace drape {
 
 void Expectation::declare(Declaration<Expectation>& d) {
   d.add("outcome", &Expectation::outcome)
-      .choices({"converged", "converged_to_rounding", "infeasible", "stalled", "out_of_steps", "refused"})
+      .choices(
+          {"converged", "converged_to_rounding", "infeasible", "stalled", "max_steps_reached", "refused"})
       .meaning("of every method's worst level; refused: before anything was computed");
   d.add("message", &Expectation::message)
       .meaning("a part of what it says then; required where it is not to converge");

@@ -67,7 +67,7 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.deepEqual(heard.errors, []);
   assert.ok(heard.requests.every(url => url.startsWith(running.url) || url.startsWith('data:')), heard.requests.join());
   const levels = results('stopped').methods.pcs.levels;
-  assert.deepEqual(levels.map(level => level.status), ['refined_early', 'cancelled']);
+  assert.deepEqual(levels.map(level => level.status), ['refined_early_on_request', 'cancelled']);
   assert.match(levels[0].message, /^refined on request; force residual /);
   assert.equal(results('stopped').methods.cascadic, undefined);
   await page.context().close();

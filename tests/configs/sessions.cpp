@@ -168,7 +168,7 @@ TEST_CASE("So has one whose iterations share a matrix, and one of several of the
     const Scratch folder;
     write_sheets(folder);
     const Overrides shared =
-        some_steps({{"newton.refresh", "3"}, {"newton.iterations_per_step", iterations}});
+        some_steps({{"newton.hessian_update_interval", "3"}, {"newton.iterations_per_step", iterations}});
     CHECK(check_in_parts(experiment_in(folder / "e.yaml", shared), folder.path) > 60);
   }
 }
@@ -195,15 +195,15 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("So has one of the static form, with every projection made in full") {
+TEST_CASE("So has one of the static form, with the full projection") {
   const Scratch folder;
   write_sheets(folder);
   const Overrides statics =
-      some_steps({{"newton.form", "static"}, {"newton.projection_share", "full"}, {"levels", "2"}});
+      some_steps({{"newton.form", "static"}, {"newton.psd_blend", "full"}, {"levels", "2"}});
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
 }
 
-TEST_CASE("So has one whose conditions change, held vertices being pulled and obstacles moved") {
+TEST_CASE("So has one under load stepping, with a Dirichlet penalty and moving obstacles") {
   // The ball rises into the sheets, which are held at two corners, one of which is moved, and become softer.
   const std::string schedule = R"(
 pins:
@@ -247,7 +247,7 @@ methods: {pcs: {}}
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
 }
 
-TEST_CASE("So has one with a level that is begun from the scene's start, conditions changing") {
+TEST_CASE("So has one under load stepping with a level that starts from the scene's start") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;
@@ -282,7 +282,7 @@ schedule: {steps: 3, keys: [{set: energies.gravity.acceleration, at: [0, 1], to:
   const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
   REQUIRE(levels.size() == 2);
   CHECK_THAT(levels[1]["message"].get<std::string>(),
-             Contains("the level is begun from the scene's start instead"));
+             Contains("the level starts from the scene's start instead"));
 }
 
 namespace {
@@ -537,18 +537,20 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("the state of level", [&](auto& c) { under_way(c).so_far.x.conservativeResize(3, 3); });
   refused("the state of level", [&](auto& c) { under_way(c).so_far.x(1, 1) = std::nan(""); });
   refused("negative counts", [&](auto& c) { under_way(c).so_far.steps = -1; });
-  refused("a held vertex that there is not", [&](auto& c) { under_way(c).positions.missing = {1 << 20}; });
+  refused("a Dirichlet vertex out of range",
+          [&](auto& c) { under_way(c).dirichlet.unsatisfied = {1 << 20}; });
   refused("the settings of the step", [&](auto& c) { under_way(c).step_size = std::nan(""); });
-  refused("the settings of the step", [&](auto& c) { under_way(c).projection_share = -1; });
-  refused("the settings of the step", [&](auto& c) { under_way(c).projection_share = 7; });
-  refused("the answer to a change", [&](auto& c) { under_way(c).response.to = Positions::Zero(1, 3); });
+  refused("the settings of the step", [&](auto& c) { under_way(c).psd_blend = -1; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).psd_blend = 7; });
+  refused("the response to an increment",
+          [&](auto& c) { under_way(c).response.predicted = Positions::Zero(1, 3); });
   refused("the contacts: ", [&](auto& c) { under_way(c).contacts.from.resize(0, 3); });
   refused("the contacts' tangential displacements",
           [&](auto& c) { under_way(c).contacts.tangential_displacements.clear(); });
-  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1 << 20}}, {0}}; });
-  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.room = {{{0, 1}}, {}}; });
-  refused("the order of the factor", [&](auto& c) { under_way(c).analysis.order.at(0) = -1; });
-  refused("the order of the factor", [&](auto& c) { under_way(c).analysis.fixed.pop_back(); });
+  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.extra = {{{0, 1 << 20}}, {0}}; });
+  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.extra = {{{0, 1}}, {}}; });
+  refused("the factor's ordering", [&](auto& c) { under_way(c).analysis.ordering.at(0) = -1; });
+  refused("the factor's ordering", [&](auto& c) { under_way(c).analysis.fixed.pop_back(); });
   refused("results.json as it was", [](auto& c) { c.recorder.results = "{"; });
   refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
   refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });
@@ -589,7 +591,7 @@ TEST_CASE("A saved state flows on under changed parameters, in a folder of its o
   CHECK(last["begun_from"] == "out, method pcs, level 1");
   REQUIRE(last["methods"].size() == 1);
   REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);
-  CHECK(last["methods"]["pcs"]["levels"][0]["afresh"] == true);
+  CHECK(last["methods"]["pcs"]["levels"][0]["from_initial_state"] == true);
 
   REQUIRE(
       drape_with(flow + "--out soft --level 0 --set material.bending_modulus=1e3", folder.path).exit_code ==

@@ -22,19 +22,19 @@ struct Candidate {
   std::string name;
   std::shared_ptr<Energy> energy;
   bool internal() const { return energy->role() != EnergyRole::external; }
-  /// What to enlarge the rest shape by for a state with stiffness: limits have none at rest, where it begins.
+  /// Scale on the rest shape for a state with stiffness: strain limits have none at rest.
   double enlarged() const { return energy->role() == EnergyRole::limit ? 1.2 : 1; }
 };
 
-/// What to test an energy with that needs parameters, or whose defaults leave it without effect.
+/// Settings of energies that need parameters, or have no effect by default.
 const std::map<std::string, std::string> settings = {
     {"constant_load",
      "{type: constant_load, force_density: [1, 2, 3],"
      " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"},
     {"pressure", "{type: pressure, pressure: 100}"},
-    {"strain_limit", "{type: strain_limit, limit: 10}"}};  // every state is inside
+    {"strain_limit", "{type: strain_limit, limit: 10}"}};  // every state satisfies it
 
-/// Every registered energy, with its defaults where `settings` says nothing else.
+/// Every registered energy, with its defaults unless `settings` overrides them.
 std::vector<Candidate> all_energies() {
   std::vector<Candidate> all;
   for (const RegistryEntry* entry : test_registry().of_kind("energy")) {
@@ -45,8 +45,7 @@ std::vector<Candidate> all_energies() {
   return all;
 }
 
-/// As stiff in bending as in stretching, on meshes of edges of about 0.1 m, so that no test is blind to
-/// either.
+/// Equally stiff in bending and stretching on meshes with edges of about 0.1 m: tests see both.
 const Material material = [] {
   Material m;
   m.thickness = 0.01;
@@ -72,7 +71,7 @@ Level curved_level() {
   return Level::of(0, mesh);
 }
 
-/// Null where the energy refuses the level, which must be curved.
+/// Null if the energy refuses the level, which must then be curved.
 std::unique_ptr<BoundEnergy> bind(const Candidate& candidate, const Level& level) {
   try {
     return candidate.energy->bind(level, material);
@@ -88,7 +87,8 @@ struct State {
   double step;  // of finite differences [m], far below the state's smallest length
 };
 
-/// Moves the first vertex of the triangle towards the middle of the opposite edge until `fraction` is left.
+/// Moves the first vertex of the triangle towards the opposite edge's midpoint until `fraction` of the height
+/// is left.
 Positions flattened(const Level& level, Positions x, int triangle, double fraction) {
   const auto v = level.rest.triangles.row(triangle);
   const Eigen::RowVector3d middle = (x.row(v[1]) + x.row(v[2])) / 2;
@@ -131,7 +131,7 @@ class Threads {
   ~Threads() { set_thread_count(0); }
 };
 
-/// Runs the body on every energy, on the flat and the curved level; returns how many bindings there were.
+/// Runs the body on every energy, on a flat and a curved level; returns the number of bindings.
 template <class Body>
 int for_each_binding(const Body& body) {
   int bindings = 0;
@@ -203,7 +203,7 @@ TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact 
   REQUIRE(indefinite > 0);  // else nothing was projected
 }
 
-TEST_CASE("Internal energies do not see rigid motions", "[conformance]") {
+TEST_CASE("Internal energies are invariant under rigid motions", "[conformance]") {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   const Eigen::RowVector3d shift(0.3, -0.2, 0.7);
@@ -259,7 +259,7 @@ TEST_CASE("Energies give the same bits with any number of threads", "[conformanc
   }
 }
 
-TEST_CASE("The rest shape of every level of every hierarchy is free of stress", "[conformance]") {
+TEST_CASE("The rest shape of every level of every hierarchy is stress-free", "[conformance]") {
   const std::vector<std::pair<std::string, TriangleMesh>> meshes = {
       {"grid", grid({0.6, 0.5}, 6, 5, Diagonals::one_way)},
       {"criss-cross", grid({0.6, 0.5}, 6, 5, Diagonals::criss_cross)},
@@ -326,7 +326,7 @@ TEST_CASE("A collapsed triangle has an energy that is a number or +infinity", "[
   REQUIRE(infinite >= 1);
 }
 
-TEST_CASE("Energies: what they say of the same surface split at midpoints holds", "[conformance]") {
+TEST_CASE("Energies: midpoint_factor holds on the surface split at midpoints", "[conformance]") {
   int factors = 0;
   for_each_binding([&](const Candidate& candidate, const Level& level, const BoundEnergy& bound) {
     const std::optional<double> factor = candidate.energy->midpoint_factor();

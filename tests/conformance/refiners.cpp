@@ -73,7 +73,7 @@ void for_each_refinement(const Body& body) {
 
 }  // namespace
 
-TEST_CASE("A refiner has one vertex a vertex and an edge, and rows that sum to one", "[conformance]") {
+TEST_CASE("A refiner gives one vertex for each vertex and edge, and rows that sum to one", "[conformance]") {
   for_each_refinement([](const NamedMesh&, const Level& coarse, const Refinement& r, const TriangleMesh&) {
     REQUIRE(r.weights.rows() == coarse.vertex_count() + coarse.topology.edges.rows());
     const Eigen::VectorXd sums = r.weights * Eigen::VectorXd::Ones(coarse.vertex_count());
@@ -85,7 +85,7 @@ TEST_CASE("A refiner has one vertex a vertex and an edge, and rows that sum to o
   });
 }
 
-TEST_CASE("A refiner makes four triangles of each, in place and facing the same way", "[conformance]") {
+TEST_CASE("A refiner splits each triangle into four with the same orientation", "[conformance]") {
   for_each_refinement(
       [](const NamedMesh& m, const Level& coarse, const Refinement& r, const TriangleMesh& fine) {
         REQUIRE(r.triangles.rows() == 4 * coarse.triangle_count());
@@ -101,19 +101,19 @@ TEST_CASE("A refiner makes four triangles of each, in place and facing the same 
       });
 }
 
-TEST_CASE("A refiner keeps the area of flat cloths with straight sides", "[conformance]") {
+TEST_CASE("A refiner preserves the area of flat cloths with straight sides", "[conformance]") {
   for_each_refinement([](const NamedMesh& m, const Level&, const Refinement&, const TriangleMesh& fine) {
     if (m.straight) CHECK(area(fine) == Approx(0.6 * 0.5).epsilon(1e-13));
   });
 }
 
-TEST_CASE("A refiner makes the finer grid of a grid", "[conformance]") {
+TEST_CASE("A refiner turns a grid into the finer grid", "[conformance]") {
   const auto sorted = [](const Positions& x) {
-    std::vector<std::pair<long, long>> places;  // [µm]
+    std::vector<std::pair<long, long>> points;  // [µm]
     for (Eigen::Index i = 0; i < x.rows(); ++i)
-      places.emplace_back(std::lround(1e6 * x(i, 0)), std::lround(1e6 * x(i, 1)));
-    std::sort(places.begin(), places.end());
-    return places;
+      points.emplace_back(std::lround(1e6 * x(i, 0)), std::lround(1e6 * x(i, 1)));
+    std::sort(points.begin(), points.end());
+    return points;
   };
   for_each_refinement([&](const NamedMesh& m, const Level&, const Refinement&, const TriangleMesh& fine) {
     if (m.name == "grid") {

@@ -85,18 +85,18 @@ TEST_CASE("Solvers give the same bits from run to run, and with any number of th
   }
 }
 
-TEST_CASE("A level that a finer one goes on from is handed on at the force residual that refine_at asks",
+TEST_CASE("A level whose state starts the next one is refined at early_refinement_tolerance",
           "[conformance]") {
   for (const std::string& name : solvers()) {
     INFO(name);
     const bool on_its_own = name == "newton";  // each level from the scene's start
     std::string yaml = hanging_square(name);
-    yaml.replace(yaml.find("force_tolerance"), 0, "refine_at: 0.3, ");
+    yaml.replace(yaml.find("force_tolerance"), 0, "early_refinement_tolerance: 0.3, ");
     const Solved s = solve_yaml(yaml);
     REQUIRE(s.levels.size() == 3);
     for (int l = 0; l < 2; ++l) {
       INFO("level " << l << ": " << s.levels[l].message);
-      CHECK(s.levels[l].outcome == (on_its_own ? Outcome::converged : Outcome::handed_on));
+      CHECK(s.levels[l].outcome == (on_its_own ? Outcome::converged : Outcome::refined_early_at_tolerance));
       CHECK(s.levels[l].steps > 0);
       CHECK(s.levels[l].force_residual < 0.3);
       CHECK((s.levels[l].force_residual > 1e-3) != on_its_own);
@@ -106,26 +106,26 @@ TEST_CASE("A level that a finer one goes on from is handed on at the force resid
   }
 }
 
-TEST_CASE("A level is handed on at a part of the residual that its state leaves on the next one",
+TEST_CASE("A level is refined at early_refinement_ratio of the residual of its prolonged state",
           "[conformance]") {
   std::string yaml = hanging_square("cascadic");
-  yaml.replace(yaml.find("force_tolerance"), 0, "refine_ratio: 0.05, ");
+  yaml.replace(yaml.find("force_tolerance"), 0, "early_refinement_ratio: 0.05, ");
   const Solved s = solve_yaml(yaml);
   REQUIRE(s.levels.size() == 3);
   const Problem problem = s.scene->problem();
   const auto weights = s.experiment.methods[0].second->interpolation(problem.hierarchy);
   for (int l = 0; l < 2; ++l) {
-    const Positions above = problem.carry_up(weights[l], l, s.levels[l].x);
+    const Positions prolonged = problem.prolong(weights[l], l, s.levels[l].x);
     INFO("level " << l << ": " << s.levels[l].message);
-    CHECK(s.levels[l].outcome == Outcome::handed_on);
-    CHECK(s.levels[l].force_residual < 0.05 * problem.models[l + 1]->force_residual(above));
+    CHECK(s.levels[l].outcome == Outcome::refined_early_at_tolerance);
+    CHECK(s.levels[l].force_residual < 0.05 * problem.models[l + 1]->force_residual(prolonged));
     CHECK(s.levels[l].force_residual > tolerance);
   }
   CHECK(s.levels[2].outcome == Outcome::converged);
   CHECK(s.model().force_residual(s.x()) <= tolerance * (1 + 1e-9));
 }
 
-TEST_CASE("Every solver goes on when asked to refine early, on every level but the finest", "[conformance]") {
+TEST_CASE("Every solver refines early on request, on every level but the finest", "[conformance]") {
   struct Impatient : Observer {
     int asked = 0;
     bool refine_requested() override { return ++asked % 3 == 0; }
@@ -137,7 +137,7 @@ TEST_CASE("Every solver goes on when asked to refine early, on every level but t
     s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
     REQUIRE(s.levels.size() == 3);
     for (int l = 0; l < 2; ++l) {
-      CHECK(s.levels[l].outcome == Outcome::refined_early);
+      CHECK(s.levels[l].outcome == Outcome::refined_early_on_request);
       CHECK(s.levels[l].steps == 2);
       CHECK(s.levels[l].message.starts_with("refined on request; force residual "));
     }

@@ -128,7 +128,7 @@ TEST_CASE("On a slope cloth sticks below the angle of friction and slides above 
       const Solved slid =
           solve_yaml(on_a_slope(1.01 * critical, mu, floor,
                                 "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: 0.05"));
-      CHECK(slid.levels.back().outcome == Outcome::out_of_steps);
+      CHECK(slid.levels.back().outcome == Outcome::max_steps_reached);
       CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * epsilon);
     }
 }

@@ -75,7 +75,7 @@ TEST_CASE("Without friction cloth slides down a plane of any triangles at 0.05 d
     const Solved s =
         solve_yaml(on_a_slope(0.05 * M_PI / 180, 0, contact,
                               "force_tolerance: 1e-4, max_steps: 40, step_growth: 1, step_size: 0.2"));
-    CHECK(s.levels.back().outcome == Outcome::out_of_steps);
+    CHECK(s.levels.back().outcome == Outcome::max_steps_reached);
     const Positions moved = s.x() - s.scene->starts.back();
     if (exact == 0) exact = moved.col(0).mean();
     CHECK(exact > 5e-3);
@@ -96,7 +96,7 @@ TEST_CASE("On a plane of any triangles friction holds to within 0.5 % of its coe
     const Solved slid =
         solve_yaml(on_a_slope(std::atan(1.005 * mu), mu, contact,
                               "force_tolerance: 1e-4, max_steps: 60, step_growth: 1, step_size: 0.1"));
-    CHECK(slid.levels.back().outcome == Outcome::out_of_steps);
+    CHECK(slid.levels.back().outcome == Outcome::max_steps_reached);
     CHECK((slid.x() - slid.scene->starts.back()).col(0).minCoeff() > 10 * epsilon);
   }
 }

@@ -36,7 +36,7 @@ TEST_CASE("A failed run names a barrier that is too weak for the load, and a sui
     const Solved s = solve_yaml(over_a_ball((*contact)("1.47e-4"), 60));
     const LevelResult& r = s.levels.back();
     CAPTURE(r.message);
-    REQUIRE(r.outcome == Outcome::out_of_steps);
+    REQUIRE(r.outcome == Outcome::max_steps_reached);
     CHECK(*r.smallest_gap < 1e-6);
     CHECK_THAT(r.message,
                Contains("; the barrier is too weak for the load: its stiffness is 0.000147 Pa but the "

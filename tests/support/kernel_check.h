@@ -128,13 +128,13 @@ struct KernelCheck {
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
       Eigen::VectorXd values = eigen.eigenvalues();
-      const double share = projection.share;
-      if (projection.kind == Projection::clamp) values = (1 - share) * values + share * values.cwiseMax(0);
-      if (projection.kind == Projection::absolute) values = (1 - share) * values + share * values.cwiseAbs();
+      const double blend = projection.blend;
+      if (projection.kind == Projection::clamp) values = (1 - blend) * values + blend * values.cwiseMax(0);
+      if (projection.kind == Projection::absolute) values = (1 - blend) * values + blend * values.cwiseAbs();
       const Eigen::MatrixXd expected =
           eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
       CHECK((matrix_of(projected) - expected).norm() <= 1e-10 * full.norm());
-      if (projection.kind == Projection::none || share < 1) continue;
+      if (projection.kind == Projection::none || blend < 1) continue;
       const double smallest =
           Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix_of(projected)).eigenvalues()[0];
       CHECK(smallest >= -1e-12 * full.norm());

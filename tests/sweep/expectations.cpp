@@ -28,10 +28,10 @@ ablation:
     expect: {outcome: refused, message: widen its region}
   - name: short
     set: {newton.max_steps: 1}
-    expect: {outcome: out_of_steps, message: max_steps = 1}
+    expect: {outcome: max_steps_reached, message: max_steps = 1}
   - name: for another reason
     set: {newton.max_steps: 2}
-    expect: {outcome: out_of_steps, message: snow}
+    expect: {outcome: max_steps_reached, message: snow}
   - name: endless
     set: {newton: {step_size: 1e-7, step_growth: 1, max_steps: 100000000}}
 )");
@@ -57,8 +57,8 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   };
   CHECK(outcome(0) == "easy: converged, passes");
   CHECK(outcome(1) == "unheld: refused, passes");
-  CHECK(outcome(2) == "short: out_of_steps, passes");
-  CHECK(outcome(3) == "for another reason: out_of_steps");
+  CHECK(outcome(2) == "short: max_steps_reached, passes");
+  CHECK(outcome(3) == "for another reason: max_steps_reached");
   CHECK(outcome(4) == "endless: hang");
   CHECK(rows[0]["method"] == "newton");
   CHECK(rows[0]["vertices"] > 10);
@@ -69,8 +69,10 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
 
   const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
   CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));
-  CHECK_THAT(few.out, Contains("| short | yes | out_of_steps | 1 |\n| for another reason | NO | out_of_steps "
-                               "| 2 |\n| endless | NO | hang |  |\n"));
+  CHECK_THAT(
+      few.out,
+      Contains("| short | yes | max_steps_reached | 1 |\n| for another reason | NO | max_steps_reached "
+               "| 2 |\n| endless | NO | hang |  |\n"));
   const Ended csv = drape_with("table out --format csv --columns run,pass,outcome", folder.path);
   CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
@@ -132,7 +134,7 @@ TEST_CASE("an expectation says why") {
       "error: s.yaml:4:23: \"expect\" of what is not to converge needs a \"message\": a part of what it says "
       "then\n"
       "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
-      "\"stalled\", \"out_of_steps\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
+      "\"stalled\", \"max_steps_reached\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }
 
 TEST_CASE("a sweep over several experiments names each run by its experiment") {

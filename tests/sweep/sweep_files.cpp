@@ -79,8 +79,8 @@ TEST_CASE("the shape of an ablation") {
         "error: s.yaml:3:18: repeated key \"levels\" in set; it is first set at s.yaml:3:7\n");
   std::string ten = "[1", grid;
   for (int k = 2; k <= 10; ++k) ten += ", " + std::to_string(k);
-  for (const char* key :
-       {"newton.max_steps", "newton.refresh", "newton.iterations_per_step", "levels", "newton.step_growth"})
+  for (const char* key : {"newton.max_steps", "newton.hessian_update_interval", "newton.iterations_per_step",
+                          "levels", "newton.step_growth"})
     grid += std::string(grid.empty() ? "" : ", ") + key + ": " + ten + "]";
   CHECK(said_of("ablation: {grid: {" + grid + "}}\n") ==
         "error: s.yaml:3:18: the grid has more than 10000 variations; take some values out\n");
@@ -117,8 +117,8 @@ TEST_CASE("two variations that are one") {
       "error: s.yaml:3:32: variations \"a b\" and \"a_b\" would share the folder a_b; rename one of them\n");
   CHECK(said_of("ablation: [{name: a}, {name: b, levels: 2}]\n") ==
         "error: s.yaml:3:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
-  CHECK(said_of(
-            "methods: [pcs]\nablation: [{name: a}, {name: b, set: {methods.newton.newton.refresh: 2}}]\n") ==
+  CHECK(said_of("methods: [pcs]\nablation: [{name: a}, {name: b, set: "
+                "{methods.newton.newton.hessian_update_interval: 2}}]\n") ==
         "error: s.yaml:4:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
   CHECK(said_of("ablation: {grid: {levels: [1, 1]}}\n") ==
         "error: s.yaml:3:18: variation \"levels=1\" is given twice; rename one of them\n");

@@ -405,7 +405,7 @@ TEST_CASE("Newton names what blocks a step") {
     const LevelResult r = falling.solve(p, 0.1);
     CHECK(r.outcome == Outcome::stalled);
     CHECK_THAT(r.message, Catch::StartsWith("the line search found no descent") &&
-                              Catch::EndsWith("; the step is held by cloth triangle 3 and ice"));
+                              Catch::EndsWith("; the step is limited by cloth triangle 3 and ice"));
   }
 }
 

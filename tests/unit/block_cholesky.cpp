@@ -181,7 +181,7 @@ TEST_CASE("Block Cholesky gives the same bits with any number of threads", "[cho
   REQUIRE((ax + 0.1 * first - b).norm() < 1e-10 * b.norm());
 }
 
-TEST_CASE("Block Cholesky keeps its analysis until the pattern or the fixed vertices change", "[cholesky]") {
+TEST_CASE("Block Cholesky reuses its analysis until the pattern or the fixed vertices change", "[cholesky]") {
   const BlockMatrix a = random_matrix(30, 1);
   std::vector<char> fixed(30, 0);
   BlockCholesky cholesky;
@@ -219,7 +219,7 @@ TEST_CASE("Block Cholesky refuses an indefinite matrix wherever it is so, and th
   REQUIRE(x == expected);
 }
 
-TEST_CASE("Block Cholesky tells definite from indefinite up to rounding", "[cholesky]") {
+TEST_CASE("Block Cholesky detects indefinite matrices up to round-off", "[cholesky]") {
   for (const auto& [n, stencils] : {std::pair(144, shell(12, 4)), std::pair(120, tangle(120, 500, 4))}) {
     const BlockMatrix a = random_matrix(n, stencils, 6);
     const double smallest =
@@ -258,8 +258,9 @@ TEST_CASE("The work of a full matrix is a third of the cube of its size") {
   CHECK(cholesky.flops() == Approx(n * n * n / 3).epsilon(0.01));
 }
 
-TEST_CASE("An analysis made again from what it was made from goes on to the same bits") {
-  // A shell that gets more and more far neighbours, so that its order is kept for a while and then given up.
+TEST_CASE("A restored analysis continues bit for bit") {
+  // A shell that gets more and more far neighbours, whose ordering is reused for a while and then computed
+  // anew.
   const int side = 12, n = side * side;
   std::vector<char> fixed(n, 0);
   fixed[5] = fixed[77] = 1;
@@ -287,14 +288,14 @@ TEST_CASE("An analysis made again from what it was made from goes on to the same
   BlockCholesky whole;
   std::vector<BlockCholesky::Analysis> analyses;
   std::vector<Positions> solutions;
-  int kept = 0, found = 0;
+  int reused = 0, computed = 0;
   for (const BlockMatrix& matrix : matrices) {
     solutions.push_back(solution(whole, matrix));
     analyses.push_back(whole.analysis());
-    (analyses.back().given.empty() ? found : kept) += 1;
+    (analyses.back().reused_ordering.empty() ? computed : reused) += 1;
   }
-  REQUIRE(kept > 1);
-  REQUIRE(found > 1);
+  REQUIRE(reused > 1);
+  REQUIRE(computed > 1);
   for (std::size_t k = 0; k < matrices.size(); ++k) {
     BlockCholesky again;
     again.restore(matrices[k].pattern, analyses[k]);
@@ -303,11 +304,11 @@ TEST_CASE("An analysis made again from what it was made from goes on to the same
     CHECK(again.analyses() == whole.analyses());
     CHECK(again.flops() == whole.flops());
 
-    // Of a pattern that is used no more, the order alone.
-    BlockCholesky order_alone;
-    order_alone.restore(nullptr, analyses[k]);
+    // With an invalidated pattern only the ordering is restored.
+    BlockCholesky ordering_only;
+    ordering_only.restore(nullptr, analyses[k]);
     for (std::size_t i = k + 1; i < matrices.size(); ++i)
-      REQUIRE(solution(order_alone, matrices[i]) == solutions[i]);
-    CHECK(order_alone.analyses() == whole.analyses());
+      REQUIRE(solution(ordering_only, matrices[i]) == solutions[i]);
+    CHECK(ordering_only.analyses() == whole.analyses());
   }
 }

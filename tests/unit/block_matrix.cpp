@@ -70,7 +70,7 @@ TEST_CASE("A large block pattern does not depend on the number of threads") {
   CHECK(one->columns == three->columns);
 }
 
-TEST_CASE("Elements' blocks are summed into the right places, transposed where their vertices descend") {
+TEST_CASE("Elements' blocks are summed into the right blocks, transposed where their vertices descend") {
   const int n = 12;
   const Stencils s = random_stencils(n, 40, 3, 4);
   BlockMatrix matrix(BlockPattern::of(n, {s, random_stencils(n, 5, 2, 5)}));

@@ -26,7 +26,7 @@ Checkpoint full() {
   coarse.outcome = Outcome::stalled;
   coarse.message = "no descent";
   coarse.x = Positions::Random(4, 3);
-  coarse.afresh = true;
+  coarse.from_initial_state = true;
   coarse.steps = 7;
   coarse.seconds_by_phase = {{"solve", 0.5}, {"gradient", 0.25}};
   coarse.smallest_gap = 1e-4;
@@ -37,20 +37,20 @@ Checkpoint full() {
   s.so_far.x = Positions::Random(9, 3);
   s.so_far.force_residual = std::nan("");
   s.decrements = {1, 2, 3};
-  s.held_by = "ball";
-  s.relaxed = true;
-  s.positions = {{3}, 1e4, 0.5, 2, false, true, "post"};
-  s.changed_at = {4, 5, 6};
+  s.limited_by = "ball";
+  s.switched_to_plain = true;
+  s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
+  s.increment_start = {4, 5, 6};
   s.idle = {3, -0.5, 1e-6};
-  s.begun_at = {7, 8, 9};
-  s.so_far.conditions = {3, {0.5, 0.25}};
+  s.initial_centroid = {7, 8, 9};
+  s.so_far.load_stepping = {3, {0.5, 0.25}};
   s.contacts = {Positions::Random(9, 3),
                 {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
                 Positions::Random(9, 3),
                 Positions::Random(9, 3),
                 2};
-  s.pattern.room = {{{0, 4}, {2, 7}}, {0, 3}};
-  s.pattern.smooth_alone = false;
+  s.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
+  s.pattern.smooth_only = false;
   s.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
   s.factor_values = {1, 2, 3};
   c.first_level = 1;
@@ -114,9 +114,9 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.methods == std::vector<std::string>{"pcs", "newton"});
   CHECK(c.state.finished.at(0).x == full().state.finished.at(0).x);
   CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
-  CHECK(c.state.under_way.value().pattern.room.blocks.at(1) == std::pair(2, 7));
+  CHECK(c.state.under_way.value().pattern.extra.blocks.at(1) == std::pair(2, 7));
   CHECK(std::isnan(c.state.under_way->so_far.force_residual));
-  CHECK(c.state.under_way->positions.held_by == "post");
+  CHECK(c.state.under_way->dirichlet.blocked_by == "post");
   CHECK(c.state.under_way->idle.steps == 3);
   CHECK(c.state.under_way->idle.energy == -0.5);
   CHECK(c.state.under_way->idle.residual == 1e-6);

@@ -9,7 +9,7 @@ using namespace drape;
 
 namespace {
 
-/// Forces that differ from vertex to vertex, and an energy of `at_origin` where all x are 0.
+/// Forces that vary over the vertices, with energy `at_origin` at x = 0.
 class Slope : public Energy {
  public:
   Slope(double size, double at_origin) : size_(size), at_origin_(at_origin) {}
@@ -38,7 +38,7 @@ class Slope : public Energy {
   double size_, at_origin_;
 };
 
-/// ½ Σ |x_i|², or a limit of that value.
+/// ½ Σ |x_i|², as an energy or a limit.
 class Springs : public Energy, public BoundEnergy {
  public:
   Springs(EnergyRole role, int count) : role_(role), count_(count) {}

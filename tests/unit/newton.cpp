@@ -51,7 +51,7 @@ class Wells : public Energy, public BoundEnergy {
   double k_, w2_;
 };
 
-/// Finite, with forces that are not: no equilibrium, though no comparison with NaN says so.
+/// A finite energy with NaN forces: no equilibrium, although comparisons with NaN are false.
 class NoForces : public Wells {
  public:
   using Wells::Wells;
@@ -93,7 +93,7 @@ NewtonParameters tight() {
 
 }  // namespace
 
-TEST_CASE("Newton finds the ring of minima behind a hump, in both forms and with any projection",
+TEST_CASE("Newton finds the ring of minima around a hump, in both forms and with any projection",
           "[newton]") {
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (Projection::Kind projection : {Projection::clamp, Projection::none}) {
@@ -134,13 +134,13 @@ TEST_CASE("The decrement is the mean speed of the step", "[newton]") {
   REQUIRE(r.decrement == Approx(moved / alpha / (0.2 * std::sqrt(15.0))));
 }
 
-TEST_CASE("A run says how it ended", "[newton]") {
+TEST_CASE("The outcome tells how a minimisation ended", "[newton]") {
   Case c;
   NewtonParameters p = tight();
   p.max_steps = 2;
   p.step_size = 0.01;
   LevelResult r = c.solve(p, 0.4);
-  REQUIRE(r.outcome == Outcome::out_of_steps);
+  REQUIRE(r.outcome == Outcome::max_steps_reached);
   REQUIRE(r.steps == 2);
   REQUIRE(r.message.find("max_steps = 2") != std::string::npos);
 
@@ -184,7 +184,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
   for (const IterationRow& row : constant.observer.rows) REQUIRE(row.step_size == p.step_size);
 }
 
-TEST_CASE("Forces that are not numbers are no equilibrium") {
+TEST_CASE("NaN forces are no equilibrium") {
   Case c;
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
                          {});
@@ -196,28 +196,27 @@ TEST_CASE("Forces that are not numbers are no equilibrium") {
 
 namespace {
 
-/// Changes that change nothing, each of them followed by one step.
-class Idle : public Conditions {
+/// Increments that change nothing, each followed by one implicit step.
+class Idle : public LoadStepping {
  public:
-  int changes() const override { return 3; }
-  bool settles() const override { return false; }
-  void begin(int, bool) override { change_ = 0; }
-  ConditionsState state() const override { return {change_, {}}; }
-  void restore(int, const ConditionsState& state) override { change_ = state.change; }
-  int change() const override { return change_; }
-  bool made() const override { return true; }
-  double time() const override { return change_; }
-  StepLimit advance(int, const Positions&) override { return ++change_, StepLimit(); }
+  int increment_count() const override { return 3; }
+  bool equilibrates() const override { return false; }
+  void begin(int, bool) override { increment_ = 0; }
+  LoadSteppingState state() const override { return {increment_, {}}; }
+  void restore(int, const LoadSteppingState& state) override { increment_ = state.increment; }
+  int increment() const override { return increment_; }
+  bool complete() const override { return true; }
+  double time() const override { return increment_; }
+  StepLimit advance(int, const Positions&) override { return ++increment_, StepLimit(); }
   bool advance_by(double, int, const Positions&) override { return false; }
 
  private:
-  int change_ = 0;
+  int increment_ = 0;
 };
 
 }  // namespace
 
-TEST_CASE("Steps from where nothing is left to gain lead nowhere, and no fault is found in that",
-          "[newton]") {
+TEST_CASE("Steps from an equilibrium in doubles change nothing and do not fail", "[newton]") {
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (const double away : {0.0, 1e-15}) {
       Case c;
@@ -227,25 +226,25 @@ TEST_CASE("Steps from where nothing is left to gain lead nowhere, and no fault i
                              {});
       PlainObjective objective(model);
       Idle idle;
-      // At the minimum as nearly as doubles have it: in the ring about each centre.
+      // At the minimum up to round-off: in the ring around each centre.
       Positions x = c.centres;
       x.col(2).array() += 0.1 + away;
       const LevelResult r = minimise(objective, x, p, {Stopwatch(), c.observer, false, {}, nullptr, &idle});
       INFO(r.message);
       CHECK(r.outcome == Outcome::converged);
-      CHECK(r.conditions.change == 3);
+      CHECK(r.load_stepping.increment == 3);
       CHECK((r.x - x).cwiseAbs().maxCoeff() < 1e-12);
     }
 }
 
-TEST_CASE("A matrix kept over several iterations reaches the same minimum with fewer factorisations",
+TEST_CASE("Reusing a factor over several iterations reaches the same minimum with fewer factorisations",
           "[newton]") {
-  Case fresh, kept;
+  Case updated, reused;
   NewtonParameters p = tight();
-  p.refresh = 1;
-  const LevelResult a = fresh.solve(p, 0.4);
-  p.refresh = 3;
-  const LevelResult b = kept.solve(p, 0.4);
+  p.hessian_update_interval = 1;
+  const LevelResult a = updated.solve(p, 0.4);
+  p.hessian_update_interval = 3;
+  const LevelResult b = reused.solve(p, 0.4);
   REQUIRE(a.outcome == Outcome::converged);
   REQUIRE(b.outcome == Outcome::converged);
   REQUIRE(b.factorisations < b.iterations);
@@ -260,14 +259,14 @@ TEST_CASE("An implicit step ends when it is solved, however many iterations it m
   p.step_growth = 1;
   p.max_steps = 20;
   const LevelResult r = patient.solve(p, 0.4);
-  REQUIRE(r.outcome == Outcome::out_of_steps);  // so damped, it is under way
+  REQUIRE(r.outcome == Outcome::max_steps_reached);  // strong damping: not yet converged
   for (const IterationRow& row : patient.observer.rows) {
     REQUIRE(row.step_size == 0.01);
     REQUIRE(row.iteration < 10);
   }
 }
 
-TEST_CASE("The smooth part is evaluated once where x stays, and anew under another model", "[newton]") {
+TEST_CASE("The smooth part is evaluated once for the same x, and again for another model", "[newton]") {
   struct Counted : PlainObjective {
     using PlainObjective::PlainObjective;
     int evaluated = 0;
@@ -302,8 +301,8 @@ TEST_CASE("The smooth part is evaluated once where x stays, and anew under anoth
   CHECK(objective.evaluated == 4);
 }
 
-TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") {
-  // Constant forces, on a cloth without pins: no equilibrium, and no end to its fall.
+TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
+  // Constant forces on a cloth without pins: it falls without end.
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
     Case c;
     const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
@@ -313,19 +312,19 @@ TEST_CASE("A cloth that nothing holds is found out, in both forms", "[newton]") 
     const LevelResult r = minimise(objective, c.level.rest.vertices, p, {Stopwatch(), c.observer});
     CAPTURE(int(form), r.steps);
     CHECK(r.outcome == Outcome::infeasible);
-    CHECK(r.message.find("nothing holds the cloth: it has moved on by ") == 0);
+    CHECK(r.message.find("nothing holds the cloth: it has drifted by ") == 0);
     CHECK(r.steps < 100);
   }
 }
 
-TEST_CASE(
-    "A cloth that comes to lie without a force is at equilibrium, though nothing is left to measure by") {
+TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a lower bound") {
   Case c;
-  const std::vector<HeldVertex> held = {{0, c.level.rest.vertices.row(0), 0}};
-  c.centres = c.level.rest.vertices;  // the held vertex is in its place
+  const std::vector<DirichletVertex> dirichlet = {{0, c.level.rest.vertices.row(0), 0}};
+  c.centres = c.level.rest.vertices;  // the Dirichlet vertex is at its target
   c.centres.bottomRows(15).array() += 0.01;
-  c.centres(0, 2) += 1e-12;  // but for a rounding
-  const LevelModel model(c.level, Material(), {{"bowl", std::make_shared<Wells>(c.centres, 10, 0)}}, held);
+  c.centres(0, 2) += 1e-12;  // but for round-off
+  const LevelModel model(c.level, Material(), {{"bowl", std::make_shared<Wells>(c.centres, 10, 0)}},
+                         dirichlet);
   PlainObjective objective(model);
   NewtonParameters p;
   p.max_steps = 300;
@@ -336,35 +335,35 @@ TEST_CASE(
   CHECK(model.residual_scale(r.x, Positions::Zero(16, 3)) == Approx(1e-3 * weight));
 }
 
-TEST_CASE("A minimisation goes on from the state at any of its steps to the same bits", "[newton]") {
-  /// Keeps every state that it is offered.
-  struct Keeping : Silent {
+TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]") {
+  /// Stores every checkpoint.
+  struct Storing : Silent {
     std::vector<NewtonState> states;
     bool checkpoint_due() override { return true; }
     void checkpoint(const NewtonState& state) override { states.push_back(state); }
   };
-  for (const int refresh : {1, 3})
+  for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
       for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
         Case c;
         NewtonParameters p = tight();
-        p.refresh = refresh;
+        p.hessian_update_interval = interval;
         p.iterations_per_step = iterations;
         p.form = form;
         p.decrement_tolerance = 1e-7;
         const Positions centres = c.level.rest.vertices.array() + 0.05;
         const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(centres, 10, 0.4)}},
                                {{0, c.level.rest.vertices.row(0), 0}});
-        Keeping whole;
+        Storing whole;
         PlainObjective first(model);
         const LevelResult expected =
             minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
-        CAPTURE(refresh, iterations, int(form), expected.message);
+        CAPTURE(interval, iterations, int(form), expected.message);
         REQUIRE(expected.outcome == Outcome::converged);
         REQUIRE(whole.states.size() > 4);
-        int kept_factors = 0;
+        int stored_factors = 0;
         for (const NewtonState& state : whole.states) {
-          kept_factors += !state.factor_values.empty();
+          stored_factors += !state.factor_values.empty();
           PlainObjective again(model);
           Silent rest;
           const LevelResult r = minimise(again, {}, p, {Stopwatch(), rest, false, {}, &state});
@@ -387,6 +386,6 @@ TEST_CASE("A minimisation goes on from the state at any of its steps to the same
             REQUIRE(a.force_residual == b.force_residual);
           }
         }
-        REQUIRE((kept_factors > 0) == (refresh > 1));
+        REQUIRE((stored_factors > 0) == (interval > 1));
       }
 }

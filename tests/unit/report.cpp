@@ -361,14 +361,14 @@ TEST_CASE("chart data compares energies of one level only, and never the proxy w
 TEST_CASE("a report has plots of a schedule's changes where there is one") {
   SampleRun run;
   CHECK_FALSE(contains(run.page(), "id=\"conditions\""));
-  Json& changes = run.results["methods"]["pcs"]["changes"];
+  Json& changes = run.results["methods"]["pcs"]["increments"];
   for (const int level : {1, 0})
     for (const double time : {0.5, 1.0})
       changes.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy", -time}});
   const std::string page = run.page();
   CHECK(contains(page, "id=\"conditions\""));
   CHECK(contains(page, "id=\"change-energy\""));
-  const Json data = Json::parse(chart_data(read_run(run.folder)))["changes"];
+  const Json data = Json::parse(chart_data(read_run(run.folder)))["increments"];
   REQUIRE(data.size() == 2);
   CHECK(data[0]["level"] == 0);
   CHECK(data[1]["level"] == 1);
@@ -515,7 +515,7 @@ TEST_CASE("every method has a verdict beside the others that converged") {
       LevelRecord& level = m.levels.emplace_back();
       level.level = l;
       level.seconds = m.name == "pcs" ? 2 : 6;
-      level.afresh = m.name == "newton";
+      level.from_initial_state = m.name == "newton";
       level.energy_on_finest = m.name == "pcs" ? -2 - l : -1 - 1.5 * l;
     }
   }

@@ -23,7 +23,7 @@ Positions moved_rest(const Level& coarse) {
 
 }  // namespace
 
-TEST_CASE("where rest vertices stay at their edges' midpoints, linear interpolation is the midpoints'") {
+TEST_CASE("linear interpolation equals midpoint weights for vertices that rest at edge midpoints") {
   const Level coarse = sheet();
   const ProlongationMatrix midpoints = midpoint_refinement(coarse).weights;
   const Positions rest = midpoints * coarse.rest.vertices;
@@ -33,7 +33,7 @@ TEST_CASE("where rest vertices stay at their edges' midpoints, linear interpolat
     CHECK(Positions(rest_interpolation(coarse, fine_rest) * x) == Positions(midpoints * x));
 }
 
-TEST_CASE("linear interpolation brings fine vertices to their rest positions, beyond the border too") {
+TEST_CASE("linear interpolation reproduces rest positions, also outside the border") {
   const Level coarse = sheet();
   const Positions rest = moved_rest(coarse);
   const ProlongationMatrix linear = rest_interpolation(coarse, rest);
@@ -43,7 +43,7 @@ TEST_CASE("linear interpolation brings fine vertices to their rest positions, be
   CHECK((sums.array() - 1).abs().maxCoeff() <= 1e-15);
 }
 
-TEST_CASE("a vertex follows the triangle that it rests in") {
+TEST_CASE("a vertex follows the triangle that contains its rest position") {
   const Level coarse = Level::of(0, grid({1, 1}, 2, 2, Diagonals::one_way));
   Positions rest = midpoint_refinement(coarse).weights * coarse.rest.vertices;
   const auto corner = coarse.rest.triangles.row(1);
@@ -56,7 +56,7 @@ TEST_CASE("a vertex follows the triangle that it rests in") {
   CHECK((fine.row(corner[0]) - (0.2 * x.row(corner[0]) + 0.3 * x.row(corner[1]) + 0.5 * x.row(corner[2])))
             .norm() <= 1e-15);
 
-  // Above a bent rest shape: where its projection to the nearest triangle does.
+  // Above a bent rest shape its projection to the nearest triangle counts.
   Positions lifted = rest;
   lifted.row(corner[0]) += Eigen::RowVector3d(0, 0, 0.05);
   CHECK((rest_interpolation(coarse, lifted) * x - fine).norm() <= 1e-15);

@@ -13,13 +13,13 @@ namespace {
 
 using Vector3 = Eigen::Vector3d;
 
-/// By what the forces, or the load among them, are other than the energy's.
+/// Factors by which all forces, or the load, differ from the energy's.
 struct Fault {
   double all = 1, load = 1;
 };
 
-/// Springs ½ k (|x_a − x_b| − L)² along all edges, and a constant force on every vertex: a stiff, narrow
-/// strip that hangs.
+/// Springs ½ k (|x_a − x_b| − L)² along all edges and a constant force on every vertex: a stiff, narrow,
+/// hanging strip.
 class Springs : public Energy, public BoundEnergy {
  public:
   Springs(const TriangleMesh& rest, double k, Vector3 load) : rest_(rest.vertices), k_(k), load_(load) {
@@ -44,7 +44,7 @@ class Springs : public Energy, public BoundEnergy {
     g.rowwise() -= (fault.load - 1) * load_.transpose();
     return value(x);
   }
-  /// In any arithmetic, of positions that are doubles.
+  /// In any arithmetic, at positions in doubles.
   template <class T>
   Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor> gradient(const Positions& x) const {
     Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor> g =
@@ -98,14 +98,14 @@ struct HangingStrip {
 
   explicit HangingStrip(double k, Fault fault = {})
       : springs(std::make_shared<Springs>(level.rest, k, Vector3(1e-3, 0, 0))),
-        model(level, Material(), {{"springs", (springs->fault = fault, springs)}}, held(level)),
+        model(level, Material(), {{"springs", (springs->fault = fault, springs)}}, dirichlet(level)),
         objective(model) {}
 
-  static std::vector<HeldVertex> held(const Level& level) {
-    std::vector<HeldVertex> held;
+  static std::vector<DirichletVertex> dirichlet(const Level& level) {
+    std::vector<DirichletVertex> vertices;
     for (int i = 0; i < level.vertex_count(); ++i)
-      if (level.rest.vertices(i, 0) == 0) held.push_back({i, level.rest.vertices.row(i), 0});
-    return held;
+      if (level.rest.vertices(i, 0) == 0) vertices.push_back({i, level.rest.vertices.row(i), 0});
+    return vertices;
   }
   LevelResult solve(NewtonParameters p, Observer& observer, const NewtonState* from = nullptr) {
     return minimise(objective, from ? Positions() : level.rest.vertices, p,
@@ -123,7 +123,7 @@ NewtonParameters far_too_tight(NewtonForm form) {
 
 }  // namespace
 
-TEST_CASE("The bound of a vertex adds up what its neighbours' last digits do") {
+TEST_CASE("The bound of a vertex sums the effects of its neighbours' round-off") {
   BlockMatrix h(BlockPattern::of(3, {Stencils(Eigen::RowVector2i(0, 1))}));
   h.set_zero();
   for (int i = 0; i < 3; ++i)
@@ -161,13 +161,13 @@ TEST_CASE("Steps are idle while neither energy nor residual falls") {
   CHECK(after(10, 1 - 2e-12, 0.4e-3));
   idle.restart();
   CHECK(!after(10, 1 - 2e-12, 0.4e-3));
-  for (int k = 0; k < 30; ++k) idle.note(1 - 1e-12 * k / 4, 1e-3, 1e-12);  // creeps: falls in the end
+  for (int k = 0; k < 30; ++k) idle.note(1 - 1e-12 * k / 4, 1e-3, 1e-12);  // creeps: falls eventually
   CHECK(!idle.many());
   for (int k = 0; k < 30; ++k) idle.note(std::nan(""), 1e-3, 1e-12);
   CHECK(!idle.many());
 }
 
-TEST_CASE("A strip that is as near to equilibrium as doubles allow has converged to rounding") {
+TEST_CASE("A strip at equilibrium up to round-off has converged to rounding") {
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (const double k : {1e4, 1e6, 1e8}) {
       HangingStrip strip(k);
@@ -175,11 +175,11 @@ TEST_CASE("A strip that is as near to equilibrium as doubles allow has converged
       const LevelResult r = strip.solve(far_too_tight(form), silent);
       CAPTURE(int(form), k, r.steps, r.message);
       CHECK(r.outcome == Outcome::converged_to_rounding);
-      CHECK(ended_as_asked(r.outcome));
+      CHECK(succeeded(r.outcome));
       CHECK_THAT(r.message,
-                 Catch::StartsWith("the force residual has come down to ") &&
-                     Catch::Contains("not to force_tolerance = 1e-13: rounding alone makes up to "));
-      // Exactly, of the positions as they are.
+                 Catch::StartsWith("the force residual is ") &&
+                     Catch::Contains("above force_tolerance = 1e-13: round-off alone accounts for up to "));
+      // Exact for the given positions.
       const Eigen::VectorXd bounds = rounding_bounds(strip.objective.matrix(r.x, Projection::none), r.x);
       const auto exact = strip.springs->gradient<long double>(r.x);
       for (int i = 0; i < r.x.rows(); ++i)
@@ -189,7 +189,7 @@ TEST_CASE("A strip that is as near to equilibrium as doubles allow has converged
     }
 }
 
-TEST_CASE("A run that ends at the rounding floor goes on from any of its states to the same bits") {
+TEST_CASE("A run that ends at the rounding floor can be resumed bit for bit from any state") {
   struct Keeping : Observer {
     std::vector<NewtonState> states;
     bool checkpoint_due() override { return true; }
@@ -217,8 +217,9 @@ TEST_CASE("A strip whose forces are not those of its energy has not converged to
       Observer silent;
       const LevelResult r = strip.solve(far_too_tight(form), silent);
       CAPTURE(int(form), fault.all, r.steps, r.message, r.force_residual);
-      const bool uphill = form == NewtonForm::statics && fault.all < 0;  // without inertia, that gives way
-      CHECK(r.outcome == (uphill ? Outcome::stalled : Outcome::out_of_steps));
+      const bool uphill =
+          form == NewtonForm::statics && fault.all < 0;  // without inertia, the line search fails
+      CHECK(r.outcome == (uphill ? Outcome::stalled : Outcome::max_steps_reached));
       CHECK(r.force_residual > 0.1);
     }
 }

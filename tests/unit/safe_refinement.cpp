@@ -14,7 +14,7 @@ using namespace drape;
 
 namespace {
 
-/// A cloth on two levels, refined by Loop's weights, with what is to hold on both.
+/// A cloth on two levels, refined by Loop's weights, with pins, contact and limits on both.
 struct TwoLevels {
   Hierarchy hierarchy;
   std::vector<std::unique_ptr<LevelModel>> models;
@@ -31,18 +31,18 @@ struct TwoLevels {
     for (const std::string& contact : contacts)
       models_of_contact.push_back(make_plugin_from<ContactModel>(contact));
     for (const Level& level : hierarchy.levels) {
-      std::vector<HeldVertex> held;
-      for (const int v : pins) held.push_back({v, level.rest.vertices.row(v), 0});
+      std::vector<DirichletVertex> dirichlet;
+      for (const int v : pins) dirichlet.push_back({v, level.rest.vertices.row(v), 0});
       models.push_back(
-          std::make_unique<LevelModel>(level, Material(), own, std::move(held), models_of_contact));
+          std::make_unique<LevelModel>(level, Material(), own, std::move(dirichlet), models_of_contact));
       starts.push_back(level.rest.vertices);
       energies_ = own;
       contacts_ = models_of_contact;
     }
   }
-  /// Holds other vertices of the finer level than the pins.
-  void hold(std::vector<HeldVertex> held) {
-    *models[1] = LevelModel(hierarchy.levels[1], Material(), energies_, std::move(held), contacts_);
+  /// Replaces the Dirichlet vertices of the finer level.
+  void prescribe(std::vector<DirichletVertex> dirichlet) {
+    *models[1] = LevelModel(hierarchy.levels[1], Material(), energies_, std::move(dirichlet), contacts_);
   }
 
   Problem problem() const { return {hierarchy, {models[0].get(), models[1].get()}, starts}; }
@@ -58,10 +58,10 @@ struct TwoLevels {
     for (const auto& contact : models[level]->contacts()) count += contact->intersections(x).size();
     return count;
   }
-  std::size_t beyond_limit(int level, const Positions& x) const {
+  std::size_t violations(int level, const Positions& x) const {
     std::size_t count = 0;
     for (const BoundEnergy* limit : models[level]->limits())
-      count += dynamic_cast<const StretchLimited&>(*limit).beyond(x).size();
+      count += dynamic_cast<const StretchLimited&>(*limit).violations(x).size();
     return count;
   }
 };
@@ -75,13 +75,13 @@ const std::string ball = "{type: shapes, shapes: [{name: ball, shape: sphere, ra
 /// A square that lies on a dome around the ball, as low as its triangles can without touching it.
 Positions over_the_ball(const TwoLevels& cloth) {
   const Positions& rest = cloth.hierarchy.levels[0].rest.vertices;
-  const Eigen::RowVector3d middle = rest.colwise().mean();
+  const Eigen::RowVector3d centroid = rest.colwise().mean();
   const auto dome = [&](double radius) {
     Positions x(rest.rows(), 3);
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-      const Eigen::RowVector3d from_middle = rest.row(i) - middle;
-      const double along = from_middle.norm() / 0.32;  // an angle: the sheet is wrapped, not pressed flat
-      x.row(i) = radius * (along > 0 ? std::sin(along) / from_middle.norm() : 0) * from_middle;
+      const Eigen::RowVector3d from_centroid = rest.row(i) - centroid;
+      const double along = from_centroid.norm() / 0.32;  // an angle: the sheet is wrapped, not pressed flat
+      x.row(i) = radius * (along > 0 ? std::sin(along) / from_centroid.norm() : 0) * from_centroid;
       x(i, 2) = radius * std::cos(along);
     }
     return x;
@@ -111,11 +111,11 @@ TriangleMesh thirteen_columns() { return grid({1.2, 0.4}, 13, 5, Diagonals::one_
 
 }  // namespace
 
-TEST_CASE("Where nothing is to be kept, the refined state is the prolonged one, pins in place") {
+TEST_CASE("Without contact and limits the refined state is the prolonged one, with pins at their targets") {
   TwoLevels cloth(grid({1, 1}, 5, 5, Diagonals::one_way), {}, {"neo_hookean"}, {7});
-  Eigen::Vector3d place = cloth.starts[1].row(7);
-  place.z() = 0.25;
-  cloth.hold({{7, place, 0}});
+  Eigen::Vector3d target = cloth.starts[1].row(7);
+  target.z() = 0.25;
+  cloth.prescribe({{7, target, 0}});
   Positions x = cloth.starts[0];
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = std::sin(3.0 * i);
   const Refined refined = cloth.refine(x);
@@ -127,13 +127,13 @@ TEST_CASE("Where nothing is to be kept, the refined state is the prolonged one, 
   CHECK(refined.x == expected);
 }
 
-TEST_CASE("Where contact and limits are not in the way, the refined state is the prolonged one") {
+TEST_CASE("If contact and limits allow, the refined state is the prolonged one") {
   const TwoLevels cloth(grid({0.6, 0.6}, 5, 5, Diagonals::one_way), {ball, "ipc"},
                         {"{type: strain_limit, limit: 1.5}"});
   Positions x = cloth.starts[0];
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.5 + 0.02 * std::sin(3.0 * i);  // over the ball
   REQUIRE(largest_distance(cloth.target(x), cloth.midpoint(x)) > 1e-3);
-  REQUIRE(cloth.beyond_limit(1, cloth.target(x)) == 0);
+  REQUIRE(cloth.violations(1, cloth.target(x)) == 0);
   const Refined refined = cloth.refine(x);
   CHECK(refined.fault.empty());
   CHECK(refined.iterations == 0);
@@ -175,11 +175,11 @@ TEST_CASE("A fold that would be smoothed through another layer is refined beside
     (at_ridge ? near : far) = std::max(at_ridge ? near : far, away);
   }
   CHECK(far < 2e-4);
-  CHECK(near > 2e-3);  // what it had to give way
+  CHECK(near > 2e-3);  // contact pushes it away
   CHECK(near < 0.03);
 }
 
-TEST_CASE("Friction does not hold what is refined") {
+TEST_CASE("Friction does not act during refinement") {
   const TwoLevels slippery(thirteen_columns(), {"ipc"}),
       rough(thirteen_columns(), {"{type: ipc, friction: 1}"});
   const Positions x = tent_over_its_own_end(slippery.starts[0], 0.9e-3);
@@ -189,15 +189,15 @@ TEST_CASE("Friction does not hold what is refined") {
   CHECK(slippery.refine(x).x == rough.refine(x).x);
 }
 
-TEST_CASE("A stretched disc comes to be within its strain limit, though its border is rounder when finer") {
+TEST_CASE("A stretched disc is refined within its strain limit, although refinement rounds its border") {
   const TwoLevels cloth(disc(0.3, 60), {}, {"{type: strain_limit, limit: 1.06}"});
   Positions x = 1.04 * cloth.starts[0];
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.01 * std::sin(8 * x(i, 0)) * std::cos(7 * x(i, 1));
-  REQUIRE(cloth.beyond_limit(0, x) == 0);
-  REQUIRE(cloth.beyond_limit(1, cloth.midpoint(x)) > 5);
+  REQUIRE(cloth.violations(0, x) == 0);
+  REQUIRE(cloth.violations(1, cloth.midpoint(x)) > 5);
   const Refined refined = cloth.refine(x);
   CHECK(refined.fault.empty());
-  CHECK(cloth.beyond_limit(1, refined.x) == 0);
+  CHECK(cloth.violations(1, refined.x) == 0);
   CHECK(largest_distance(refined.x, cloth.target(x)) < 2e-3);
   CHECK(largest_distance(refined.x, cloth.target(x)) <
         0.5 * largest_distance(cloth.midpoint(x), cloth.target(x)));
@@ -207,23 +207,23 @@ TEST_CASE("Strain limit, obstacle and self-contact at once") {
   const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {"{type: ipc, friction: 0.2}", ball},
                         {"{type: strain_limit, limit: 1.2}"});
   const Positions x = over_the_ball(cloth);
-  REQUIRE(cloth.beyond_limit(0, x) == 0);
+  REQUIRE(cloth.violations(0, x) == 0);
   REQUIRE(cloth.intersections(1, cloth.target(x)) > 0);
   const Refined refined = cloth.refine(x);
   CHECK(refined.fault.empty());
   CHECK(cloth.intersections(1, refined.x) == 0);
-  CHECK(cloth.beyond_limit(1, refined.x) == 0);
+  CHECK(cloth.violations(1, refined.x) == 0);
 }
 
 namespace {
 
-/// Fine vertices 0 and 1 are two fine edges apart: pins that are held 1.5 times that.
+/// Fine vertices 0 and 1 are two fine edges apart; their targets 1.5 times as far.
 struct TornApart : TwoLevels {
-  const Eigen::Vector3d place{0.15, 0, 0};
+  const Eigen::Vector3d pin_target{0.15, 0, 0};
   TornApart()
       : TwoLevels(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {}, {"{type: strain_limit, limit: 1.1}"},
                   {0, 1}) {
-    hold({{0, starts[1].row(0), 0}, {1, place, 1}});
+    prescribe({{0, starts[1].row(0), 0}, {1, pin_target, 1}});
   }
 };
 
@@ -232,17 +232,17 @@ struct TornApart : TwoLevels {
 TEST_CASE("Triangles that cannot be within the strain limit are named") {
   const TornApart cloth;
   const Refined refined = cloth.refine(cloth.starts[0]);
-  CHECK(refined.x.row(1) == cloth.place.transpose());
-  REQUIRE(cloth.beyond_limit(1, refined.x) > 0);
+  CHECK(refined.x.row(1) == cloth.pin_target.transpose());
+  REQUIRE(cloth.violations(1, refined.x) > 0);
   CHECK_THAT(refined.fault,
-             Catch::Matches("the refined state is beyond the strain limit: triangle [0-9]+, stretched to "
+             Catch::Matches("the refined state violates the strain limit: triangle [0-9]+, stretched to "
                             "[12]\\.[0-9]+ \\(limit 1\\.1\\).*"));
   const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
-  const std::string first = to_string(limit.beyond(refined.x)[0], 1.1);
+  const std::string first = to_string(limit.violations(refined.x)[0], 1.1);
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
 }
 
-TEST_CASE("A level that cannot be begun from the coarser one is begun from the scene's start, and says so") {
+TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {
   const TornApart cloth;
   const Problem problem = cloth.problem();
   NewtonParameters newton;
@@ -254,12 +254,12 @@ TEST_CASE("A level that cannot be begun from the coarser one is begun from the s
       silent);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
-  CHECK_FALSE(results[1].afresh);                   // what it took to try counts
-  CHECK(results[1].outcome != Outcome::converged);  // what tears at it is still there
+  CHECK_FALSE(results[1].from_initial_state);       // the attempt counts as cost
+  CHECK(results[1].outcome != Outcome::converged);  // the pins still tear at it
   CHECK_THAT(results[1].message,
-             Catch::Matches("the refined state is beyond the strain limit: triangle .*; the level is begun "
+             Catch::Matches("the refined state violates the strain limit: triangle .*; the level starts "
                             "from the scene's start instead; .*"));
-  CHECK(cloth.beyond_limit(1, results[1].x) == 0);
+  CHECK(cloth.violations(1, results[1].x) == 0);
 }
 
 TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, within its strain limit") {
@@ -267,27 +267,27 @@ TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, w
   for (const double degrees : {10.0, 40.0, 70.0}) {
     TwoLevels cloth(sheet, {}, {"{type: strain_limit, limit: 1.0608}"}, {0});
     const Positions& fine = cloth.starts[1];
-    // The middle of an edge from the pinned corner, which has no vertex on the coarse level.
-    int middle = 0;
-    while (fine.row(middle) != Eigen::RowVector3d(1.0 / 16, 0, 0)) ++middle;
-    cloth.hold({{0, fine.row(0), 0}, {middle, fine.row(middle), 0}});
+    // The midpoint of an edge at the pinned corner, which has no vertex on the coarse level.
+    int midpoint = 0;
+    while (fine.row(midpoint) != Eigen::RowVector3d(1.0 / 16, 0, 0)) ++midpoint;
+    cloth.prescribe({{0, fine.row(0), 0}, {midpoint, fine.row(midpoint), 0}});
     const double angle = degrees * M_PI / 180;
     const Positions turned = sheet.vertices * Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitZ()).matrix();
     const Refined refined = cloth.refine(turned);
     CAPTURE(degrees, refined.fault, refined.iterations);
     CHECK(refined.fault.empty());
-    CHECK(cloth.beyond_limit(1, refined.x) == 0);
-    CHECK(refined.x.row(middle) == cloth.starts[1].row(middle));
+    CHECK(cloth.violations(1, refined.x) == 0);
+    CHECK(refined.x.row(midpoint) == cloth.starts[1].row(midpoint));
   }
 }
 
-TEST_CASE("A pin that cannot reach its place goes there as far as nothing is in its way") {
+TEST_CASE("A pin that cannot reach its target moves there as far as contact allows") {
   TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {ball}, {}, {12});
   for (Positions& start : cloth.starts) start.rowwise() += Eigen::RowVector3d(-0.2, -0.2, 0.31);
   const Positions x = cloth.starts[0];
-  Eigen::Vector3d place = cloth.starts[1].row(12);
-  place.z() = 0.2;
-  cloth.hold({{12, place, 0}});
+  Eigen::Vector3d target = cloth.starts[1].row(12);
+  target.z() = 0.2;
+  cloth.prescribe({{12, target, 0}});
   const Refined refined = cloth.refine(x);
   CHECK(refined.fault.empty());
   CHECK(refined.x(12, 2) > 0.3);

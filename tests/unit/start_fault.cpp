@@ -1,4 +1,4 @@
-// What a start that has no finite energy or forces is said to suffer from.
+// Messages about starts without finite energy or forces.
 
 #include "core/numerics/start_fault.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// An energy of triangles with the value and the forces that it is made with, wherever they are.
+/// An energy of triangles with a constant value and constant forces.
 class Given final : public Energy {
  public:
   Given(double value, double force) : value_(value), force_(force) {}
@@ -52,7 +52,7 @@ class Load final : public Energy {
   double force_;
 };
 
-/// The message of a minimisation that cannot begin, after its first words.
+/// The message of a minimisation that cannot start, after its first words.
 std::string fault(const std::vector<NamedEnergy>& energies, const Positions& start) {
   static const Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   const LevelModel model(level, Material(), energies, {});
@@ -92,5 +92,5 @@ TEST_CASE("what is not finite at the start is named: the energy, the triangle, t
   CHECK(fault({{"stiff", given(inf, 1)}}, start) ==
         "energy stiff is not, though no triangle is degenerate" + units);
   start.row(2)[1] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 is at no finite place; change the start");
+  CHECK(fault({{"stiff", given(inf, 1)}}, start) == "vertex 2 has no finite position; change the start");
 }

@@ -49,16 +49,16 @@ TEST_CASE("The time to go is unknown where nothing has been done for long") {
 namespace {
 
 /// Forty increments, `at` of which is under way.
-struct Forty : Conditions {
+struct Forty : LoadStepping {
   int at = 0;
-  bool settled = true;
-  int changes() const override { return 40; }
-  bool settles() const override { return settled; }
+  bool equilibrates_each = true;
+  int increment_count() const override { return 40; }
+  bool equilibrates() const override { return equilibrates_each; }
   void begin(int, bool) override {}
-  ConditionsState state() const override { return {at, {}}; }
-  void restore(int, const ConditionsState&) override {}
-  int change() const override { return at; }
-  bool made() const override { return true; }
+  LoadSteppingState state() const override { return {at, {}}; }
+  void restore(int, const LoadSteppingState&) override {}
+  int increment() const override { return at; }
+  bool complete() const override { return true; }
   double time() const override { return at; }
   StepLimit advance(int, const Positions&) override { return {}; }
   bool advance_by(double, int, const Positions&) override { return false; }

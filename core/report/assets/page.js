@@ -70,7 +70,7 @@
 
   /// Against pseudo-time, a point a change.
   function changes(id, y, title) {
-    lines(id, 'time', y, ['pseudo-time', title], false, false, data.changes,
+    lines(id, 'time', y, ['pseudo-time', title], false, false, data.increments,
       s => Object.assign(lineStyle(Object.assign({iteration: s.time}, s)), {pointRadius: 2.5}), false);
   }
 

@@ -8,10 +8,10 @@
 
 namespace drape {
 
-/// Forces that stay as they are while the cloth moves: E = -Σ f_i · x_i.
+/// Constant forces: E = -Σ f_i · x_i.
 class ConstantLoad final : public Energy {
  public:
-  /// A force on the vertex that is nearest to `point` at rest.
+  /// A force on the vertex nearest to `point` in the rest shape.
   struct PointForce {
     Eigen::Vector3d point{0, 0, 0};
     Eigen::Vector3d force{0, 0, 0};
@@ -21,7 +21,7 @@ class ConstantLoad final : public Energy {
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
           .required()
-          .meaning("place in the rest shape; the nearest vertex takes the force")
+          .meaning("point in the rest shape; the nearest vertex receives the force")
           .source("this project");
       d.add("force", &PointForce::force)
           .unit("N")
@@ -41,7 +41,7 @@ class ConstantLoad final : public Energy {
           .unit("N/m²")
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
-          .meaning("force a unit of rest area, everywhere")
+          .meaning("force per rest area on the whole cloth")
           .source("this project");
       d.add_sections("points", &Parameters::points)
           .meaning("forces on single vertices")
@@ -51,7 +51,7 @@ class ConstantLoad final : public Energy {
 
   explicit ConstantLoad(const Parameters& parameters) : p_(parameters) {}
   EnergyRole role() const override { return EnergyRole::external; }
-  /// The vertex that is nearest to a point may be another one on the finer mesh.
+  /// On a finer mesh another vertex may be nearest to a point.
   std::optional<double> midpoint_factor() const override {
     return p_.points.empty() ? std::optional(1.0) : std::nullopt;
   }

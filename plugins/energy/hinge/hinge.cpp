@@ -12,12 +12,12 @@ namespace drape {
 std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& material) const {
   const double nu = material.poisson_ratio;
   const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
-  const Positions& places = level.rest.vertices;
+  const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<HingeKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
     Eigen::Vector3d d[3];
-    for (int i = 0; i < 3; ++i) d[i] = places.row(hinges(h, i + 1)) - places.row(hinges(h, 0));
+    for (int i = 0; i < 3; ++i) d[i] = x.row(hinges(h, i + 1)) - x.row(hinges(h, 0));
     rest.push_back(HingeKernel::rest(d, k));
     if (!rest.back().allFinite())
       throw std::runtime_error("hinge: a triangle at the edge of vertices " + std::to_string(hinges(h, 0)) +

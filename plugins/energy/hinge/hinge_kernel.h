@@ -47,7 +47,7 @@ struct HingeKernel {
     hessian(x, rest, h, [](Eigen::Matrix<T, 4, 4>&) {});
   }
 
-  /// The same of its two symmetric 4×4 parts, upper triangles, after `map` has changed them.
+  /// The same from its two symmetric 4×4 parts, after `map` has been applied to each part's upper triangle.
   template <class T, class Map>
   static void hessian(const Vector<T>* x, const T* rest, Eigen::Matrix<T, 9, 9>& h, const Map& map) {
     const DihedralAngle<T> dihedral(x);

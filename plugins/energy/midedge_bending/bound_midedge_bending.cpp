@@ -24,10 +24,10 @@ struct MomentKernel {
   }
 };
 
-std::vector<int> places(const ElementOrder& order) {
-  std::vector<int> place(order.elements.size());
-  for (std::size_t i = 0; i < place.size(); ++i) place[order.elements[i]] = static_cast<int>(i);
-  return place;
+std::vector<int> positions_in(const ElementOrder& order) {
+  std::vector<int> position(order.elements.size());
+  for (std::size_t i = 0; i < position.size(); ++i) position[order.elements[i]] = static_cast<int>(i);
+  return position;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
     : angle_order_(level.hinge_order), angle_count_(static_cast<int>(level.hinges.rows())) {
   make_angles(level);
 
-  // The order wants vertices, none missing; which one stands for a missing one does not matter.
+  // The order needs valid vertices; any vertex may stand for a missing one.
   const Stencils vertices = triangle_vertices(level, operators);
   Stencils filled = vertices;
   for (Eigen::Index t = 0; t < filled.rows(); ++t)
@@ -48,7 +48,7 @@ BoundMidedgeBending::BoundMidedgeBending(const Level& level, const ShapeOperator
       Stencils::Constant(angle_count_ + vertices.rows(), std::max<Eigen::Index>(4, vertices.cols()), -1);
   stencils_.topLeftCorner(angle_count_, 4) = in_order(level.hinges, angle_order_);
   stencils_.bottomLeftCorner(vertices.rows(), vertices.cols()) = in_order(vertices, triangle_order_);
-  make_terms(operators, places(angle_order_));
+  make_terms(operators, positions_in(angle_order_));
 }
 
 void BoundMidedgeBending::make_angles(const Level& level) {

@@ -11,19 +11,19 @@ namespace drape {
 
 /// Σ_t ‖s_t‖², s_t = Σ weight (θ - θ̄) over the triangle's terms (see ShapeOperators).
 ///
-/// Dihedral angles are computed once each, several at a time, and triangles then sum them: an angle belongs
-/// to up to six triangles. The Hessian, by moments m = 2 Σ_t weight·s_t of the angles, is
+/// Dihedral angles are computed once, in packs, and triangles then sum them: an angle belongs to up to six
+/// triangles. The Hessian, by moments m = 2 Σ_t weight·s_t of the angles, is
 ///
 ///     Σ_t 2 Σ_i ∇s_t,i ∇s_t,iᵀ + Σ m ∇²θ,
 ///
-/// whose first part is positive semidefinite; the second is projected angle by angle.
+/// whose first part is positive semidefinite; the second is projected for each angle.
 class BoundMidedgeBending final : public BoundEnergy {
  public:
   BoundMidedgeBending(const Level& level, const ShapeOperators& operators);
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;
-  /// Rows of the angles, then of the triangles; -1 where one has fewer vertices than the widest.
+  /// Rows of the angles, then of the triangles; -1 where a row has fewer vertices than the widest.
   Stencils stencils() const override { return stencils_; }
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override;
 
@@ -33,7 +33,7 @@ class BoundMidedgeBending final : public BoundEnergy {
   using Numbers = std::vector<Eigen::Vector3d>;
 
   struct Term {
-    int item;  ///< the angle of a triangle's term, or the triangle of an angle's
+    int item;  ///< the angle of a triangle's term, or the triangle of an angle's term
     Eigen::Vector3d weight;
   };
   struct Terms {
@@ -49,20 +49,20 @@ class BoundMidedgeBending final : public BoundEnergy {
 
   template <class Body>
   void for_each_angle_pack(int chunk, const Body& body) const;
-  /// θ - θ̄ of every angle; also their gradients where these are asked for.
+  /// θ - θ̄ of every angle, and optionally the gradients.
   std::vector<double> bends(const Positions& x, std::vector<AngleGradient>* gradients = nullptr) const;
   Eigen::Vector3d numbers_of(int triangle, const std::vector<double>& bends) const;
   /// ∂E/∂θ of a pack's angles.
   Pack<W> moments(const Angles& pack, const Numbers& numbers) const;
   void add_triangle(int t, const std::vector<AngleGradient>& gradients, BlockSink& sink) const;
 
-  // Angles and triangles are numbered by their places in these.
+  // Angles and triangles are numbered by their positions in these.
   ElementOrder angle_order_, triangle_order_;
   std::vector<Angles> packs_;
   std::vector<int> first_pack_;  // of each chunk of angles, and one more
   std::vector<double> rest_angles_;
   Terms of_triangle_, of_angle_;
-  // Of each term of of_triangle_: where its angle's vertices stand in the triangle's row of stencils_.
+  // For each term of of_triangle_: columns of its angle's vertices in the triangle's row of stencils_.
   std::vector<std::array<signed char, 4>> local_;
   Stencils stencils_;
   int angle_count_ = 0;

@@ -5,8 +5,8 @@
 
 namespace drape {
 
-/// Bending of a Kirchhoff–Love plate from normals at the middles of edges, on any triangulation and of any
-/// rest shape: Σ_t Ā k ((1 - ν) tr S² + ν (tr S)²), k = E_bend d³ / (24 (1 - ν²)).
+/// Kirchhoff–Love plate bending from normals at edge midpoints, for any triangulation and rest shape: Σ_t Ā k
+/// ((1 - ν) tr S² + ν (tr S)²), k = E_bend d³ / (24 (1 - ν²)).
 class MidedgeBending final : public Energy {
  public:
   struct Parameters {
@@ -17,7 +17,7 @@ class MidedgeBending final : public Energy {
           .at_least(0)
           .at_most(1)
           .meaning(
-              "smallest weight of a neighbouring dihedral angle that still corrects an edge's normal, where "
+              "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
               "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
           .source("this project");
     }

@@ -24,7 +24,7 @@ int corner_opposite(const Level& level, int triangle, int edge) {
   return 2;
 }
 
-/// Where a point stands beside an edge: how far along (0 … 1 on the edge) and its distance from the edge.
+/// A point's foot on an edge (0 … 1 along it) and its distance from the edge.
 struct Foot {
   double along, distance;
 
@@ -41,8 +41,7 @@ struct Unfolded {
   Point left, right;  // the triangles' other corners, seen along the edge
   double left_distance, right_distance;
 
-  /// How much the slope across the edge changes at it, where the function is linear on either triangle, for
-  /// x²/2, xy and y²/2.
+  /// Jump of the slope across the edge for the piecewise linear interpolants of x²/2, xy and y²/2.
   Eigen::Vector3d slope_changes() const {
     const Point edge = to - from;
     const double left_along = edge.dot(left - from) / edge.squaredNorm(),
@@ -63,8 +62,8 @@ Point right_corner(const Point& from, const Point& to, double along, double dist
   return from + along * edge + distance / edge.norm() * Point(edge.y(), -edge.x());
 }
 
-/// The slope at an edge's middle, less half the slope's change there, from the triangle on its left to that
-/// on its right, is this sum over dihedral angles for every quadratic function.
+/// For every quadratic function, this sum over dihedral angles equals the slope at an edge's midpoint less
+/// half the slope's jump there, from the left triangle to the right one.
 struct Correction {
   int hinges[5];
   double weights[5];
@@ -131,16 +130,16 @@ class EdgeNormals {
  private:
   Eigen::Vector3d vertex(int v) const { return level_.rest.vertices.row(v).transpose(); }
 
-  /// The weights of least square sum with changes · weights = what is missing; none if all are small.
+  /// The weights of smallest square sum with changes · weights = residual; none if all are small.
   template <class Changes>
   void least_weights(const Unfolded& own, const Changes& changes, Correction& result) const {
-    // Slopes across the edge at its middle are 0 for all three functions; on triangle 0 they are these.
+    // Slopes across the edge at its midpoint are 0 for all three functions; on triangle 0 they are these.
     const Eigen::Vector3d left_slope =
         (Unfolded::quadratics(own.left) - Unfolded::quadratics(own.from) * (0.5 - own.left.x()) -
          Unfolded::quadratics(own.to) * (0.5 + own.left.x())) /
         own.left_distance;
     const Eigen::Vector3d missing = left_slope - own.slope_changes() / 2;
-    // Directions in which these angles hardly see a curvature would ask for large weights.
+    // Directions in which these angles hardly depend on curvature would need large weights.
     constexpr double smallest = 0.05 * 0.05;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(changes * changes.transpose());
     Eigen::Vector3d solution = Eigen::Vector3d::Zero();
@@ -193,7 +192,7 @@ ShapeOperators ShapeOperators::of(const Level& level, double k, double poisson_r
     for (int i = 0; i < 3; ++i) x[i] = level.rest.vertices.row(level.rest.triangles(t, i)).transpose();
     const std::array<Eigen::Vector3d, 3> directions = edge_directions(x, poisson_ratio);
 
-    // A free normal takes away what its direction has of the others.
+    // A free normal removes its component from the others.
     Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() * std::sqrt(k * normals.triangle_area(t));
     for (int i = 0; i < 3; ++i) {
       if (normals.hinge(level.topology.triangle_edges(t, i)) != -1) continue;

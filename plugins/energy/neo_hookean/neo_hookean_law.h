@@ -26,7 +26,7 @@ struct NeoHookeanLaw : MembraneStrain<T> {
     a11 = f2.squaredNorm() * inverse_det;
     a22 = f1.squaredNorm() * inverse_det;
     a12 = -2.0 * g12 * inverse_det;
-    // det C - 1 exactly enough: near 1, the digits that `det` lost are put back to first order.
+    // det C - 1 to first order near 1, where `det` loses digits.
     const T det_minus_1 = 2.0 * (g11 + g22) + 4.0 * (g11 * g22 - g12 * g12);
     log_j = 0.5 * (log(det) + (det_minus_1 - (det - 1.0)) * min(det, inverse_det));
   }

@@ -6,7 +6,7 @@
 
 using namespace drape;
 
-TEST_CASE("neo_hookean: what every membrane owes") {
+TEST_CASE("neo_hookean: properties of every membrane") {
   check_membrane<NeoHookeanLaw>(
       NeoHookean({}),
       [](double mu, double lambda, long double a, long double b) {

@@ -16,8 +16,8 @@ using Vector = Eigen::Vector3d;
 ///
 ///     V = Σ det(a, b, c - d) / 18,   ∂V/∂a = Σ b × (c - d) / 12,   ∂²V/∂a∂b = -[c - d]× / 6.
 ///
-/// Every triangle gives each of its edges a third of its det / 6. At the border d is the centre. By edges the
-/// Hessian does not depend on the origin, and its projection has a closed form.
+/// Every triangle contributes a third of its det / 6 to each edge. At the border d is the centre. In this
+/// form the Hessian does not depend on the origin, and its projection has a closed form.
 class BoundPressure final : public BoundEnergy {
  public:
   BoundPressure(double pressure, Vector centre, const Level& level)
@@ -77,7 +77,7 @@ class BoundPressure final : public BoundEnergy {
   /// across w on both vertices, n = w/|w|, and |M| = |p| |w| / 6 times it.
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     const bool clamp = projection.kind == Projection::clamp;
-    const double lifted = projection.is_exact() ? 0 : clamp ? projection.share / 2 : projection.share;
+    const double lifted = projection.is_exact() ? 0 : clamp ? projection.blend / 2 : projection.blend;
     const Vector origin = origin_at(x);
     order_.for_each_chunk([&](int c) {
       for (int e = order_.chunk_start[c]; e < order_.chunk_start[c + 1]; ++e) {
@@ -112,8 +112,8 @@ class BoundPressure final : public BoundEnergy {
 
   static double determinant(const Edge& edge) { return edge.a.dot(edge.b.cross(edge.across)); }
 
-  /// A closed surface's volume does not depend on it: a place on the cloth, so that far away is as exact as
-  /// near.
+  /// Origin of the coordinates, on the cloth: keeps accuracy far from the global origin. A closed surface's
+  /// volume does not depend on it.
   Vector origin_at(const Positions& x) const { return closed_ ? Vector(x.row(0)) : centre_; }
 
   double energy(const Sums& sums) const {

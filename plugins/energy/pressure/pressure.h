@@ -6,8 +6,8 @@
 
 namespace drape {
 
-/// Pressure on one side of the cloth that turns with it, E = -p V(x): V is the volume that the cloth
-/// encloses, an open cloth being closed by the cone from its border to a fixed centre.
+/// Follower pressure E = -p V(x) with the enclosed volume V. A cone from its border to a fixed centre closes
+/// an open cloth.
 class Pressure final : public Energy {
  public:
   struct Parameters {
@@ -19,15 +19,15 @@ class Pressure final : public Energy {
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .meaning("on the back of every triangle, so that it pushes along the normal; negative for suction")
+          .meaning("pressure along the normal of every triangle; negative for suction")
           .source("this project");
       d.add("centre", &Parameters::centre)
           .unit("m")
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
           .meaning(
-              "where the cone that closes an open cloth ends; of no effect where the border is pinned, "
-              "nor on a closed mesh")
+              "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
+              "mesh")
           .source("this project");
     }
   };

@@ -26,7 +26,7 @@ Positions noisy(const Positions& x, double size, unsigned seed) {
   return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
 }
 
-/// Six times the volume, triangle by triangle, the cone from the border to the centre with it.
+/// Six times the volume by triangles, including the cone from the border to the centre.
 double six_volumes(const Level& level, const Positions& x, const Eigen::Vector3d& centre) {
   double sum = 0;
   for (int t = 0; t < level.triangle_count(); ++t) {
@@ -64,7 +64,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
   const Positions x = noisy(level.rest.vertices, 0.1, 4);
   const auto energy = bound(level, -30);
   const Eigen::MatrixXd exact = dense(hessian_of(*energy, x, Projection::none));
-  for (const double share : {1.0, 0.3}) {
+  for (const double blend : {1.0, 0.3}) {
     Eigen::MatrixXd clamped = Eigen::MatrixXd::Zero(12, 12), absolute = clamped;
     int edges = 0;
     for (int i = 0; i < 4; ++i)
@@ -75,7 +75,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
         edges += one.norm() > 0;
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(one);
         const auto with = [&](const Eigen::VectorXd& lifted) {
-          const Eigen::VectorXd values = (1 - share) * eigen.eigenvalues() + share * lifted;
+          const Eigen::VectorXd values = (1 - blend) * eigen.eigenvalues() + blend * lifted;
           return Eigen::MatrixXd(eigen.eigenvectors() * values.asDiagonal() *
                                  eigen.eigenvectors().transpose());
         };
@@ -83,7 +83,7 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
         absolute += with(eigen.eigenvalues().cwiseAbs());
       }
     REQUIRE(edges == 5);
-    const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, share})); };
+    const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, blend})); };
     CHECK((found(Projection::clamp) - clamped).norm() <= 1e-12 * exact.norm());
     CHECK((found(Projection::absolute) - absolute).norm() <= 1e-12 * exact.norm());
   }
@@ -100,7 +100,7 @@ TEST_CASE("pressure: a closed mesh feels no net force and no torque, wherever it
     torque += Eigen::Vector3d(x.row(i)).cross(Eigen::Vector3d(near.row(i)));
   CHECK(torque.norm() <= 1e-14 * near.norm());
 
-  // 1 km away, rounded to a grid that both places have, nothing is lost.
+  // Translated by 1 km on a common grid of doubles: no digits are lost.
   Positions rounded = (x * 1048576).array().round().matrix() / 1048576, away = rounded;
   away.rowwise() += Eigen::RowVector3d(1024, -512, 256);
   CHECK(energy->value(away) == energy->value(rounded));

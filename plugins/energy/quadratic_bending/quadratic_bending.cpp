@@ -25,12 +25,12 @@ void require_flat(const Eigen::Vector3d* d, const Level& level, int v0, int v1) 
 std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Material& material) const {
   const double nu = material.poisson_ratio;
   const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
-  const Positions& places = level.rest.vertices;
+  const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<QuadraticBendingKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
     Eigen::Vector3d d[3];
-    for (int i = 0; i < 3; ++i) d[i] = places.row(hinges(h, i + 1)) - places.row(hinges(h, 0));
+    for (int i = 0; i < 3; ++i) d[i] = x.row(hinges(h, i + 1)) - x.row(hinges(h, 0));
     require_flat(d, level, hinges(h, 0), hinges(h, 1));
     rest.push_back(QuadraticBendingKernel::rest(d, k));
   }

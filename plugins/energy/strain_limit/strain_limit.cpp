@@ -14,7 +14,7 @@ namespace drape {
 namespace {
 
 using Kernel = StretchKernel<StrainLimitLaw>;
-constexpr double kept_room = 0.1;  // of what is left below the limit, after a filtered step
+constexpr double min_margin_fraction = 0.1;  // of the margin to the limit, left after a filtered step
 
 /// The limited triangles of a level.
 struct Limited {
@@ -22,12 +22,12 @@ struct Limited {
   std::vector<int> triangles;  ///< by rising index
   Stencils corners;            ///< of each
   std::vector<Kernel::Rest> rest;
-  std::shared_ptr<const Positions> places;
+  std::shared_ptr<const Positions> rest_positions;
 };
 
 class BoundStrainLimit final : public BoundEnergy, public StepFilter, public StretchLimited {
  public:
-  /// `order` is of limited.corners.
+  /// `order` orders limited.corners.
   BoundStrainLimit(double limit, Limited limited, ElementOrder order)
       : limit_(limit),
         limited_(std::move(limited)),
@@ -62,7 +62,7 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
 
   double limit() const override { return limit_; }
 
-  std::vector<StretchedTriangle> beyond(const Positions& x) const override {
+  std::vector<StretchedTriangle> violations(const Positions& x) const override {
     std::vector<StretchedTriangle> found;
     for (int i = 0; i < count(); ++i) {
       const double stretch = path(i, x, x).at(0).largest;
@@ -71,19 +71,19 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
     return found;
   }
 
-  std::unique_ptr<BoundEnergy> without(const std::vector<char>& skipped) const override {
-    if (static_cast<int>(skipped.size()) != limited_.level_triangles)
-      throw std::runtime_error("strain_limit: " + std::to_string(skipped.size()) + " flags for " +
+  std::unique_ptr<BoundEnergy> restricted(const std::vector<char>& excluded) const override {
+    if (static_cast<int>(excluded.size()) != limited_.level_triangles)
+      throw std::runtime_error("strain_limit: " + std::to_string(excluded.size()) + " flags for " +
                                std::to_string(limited_.level_triangles) + " triangles");
-    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, limited_.places};
+    Limited left{limited_.level_triangles, {}, Stencils(count(), 3), {}, limited_.rest_positions};
     for (int i = 0; i < count(); ++i) {
-      if (skipped[limited_.triangles[i]]) continue;
+      if (excluded[limited_.triangles[i]]) continue;
       left.corners.row(left.triangles.size()) = limited_.corners.row(i);
       left.triangles.push_back(limited_.triangles[i]);
       left.rest.push_back(limited_.rest[i]);
     }
     left.corners.conservativeResize(left.triangles.size(), 3);
-    ElementOrder order = ElementOrder::of(left.corners, *left.places);
+    ElementOrder order = ElementOrder::of(left.corners, *left.rest_positions);
     return std::make_unique<BoundStrainLimit>(limit_, std::move(left), std::move(order));
   }
 
@@ -106,11 +106,11 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
     return path;
   }
 
-  /// How far a triangle may go, a part of its room kept. A triangle that is not stretched has all of s - 1.
+  /// Largest step fraction that leaves a triangle part of its margin. Without stretch the margin is s - 1.
   double reach(const StretchPath& path) const {
     const double stretch = path.at(0).largest;
     if (!(stretch < limit_)) return 0;
-    const double bound = limit_ - kept_room * (limit_ - std::max(stretch, 1.0));
+    const double bound = limit_ - min_margin_fraction * (limit_ - std::max(stretch, 1.0));
     return stretch < bound ? path.reach(bound) : 0;
   }
 

@@ -6,8 +6,8 @@
 
 namespace drape {
 
-/// C-IPC's strain limit (docs/method.md, section 5): a barrier on the principal stretches above 1, +∞ at the
-/// limit. What it binds is a StepFilter and a StretchLimited too.
+/// Strain limit of C-IPC (docs/method.md, section 5): a barrier on principal stretches above 1, +∞ at the
+/// limit. Its bound energy is also a StepFilter and StretchLimited.
 class StrainLimit final : public Energy {
  public:
   struct Parameters {
@@ -24,7 +24,7 @@ class StrainLimit final : public Energy {
           .unit("Pa")
           .at_least(1e-9)
           .at_most(bounds::largest_modulus)
-          .meaning("κ_s, energy per volume that the barrier is scaled by")
+          .meaning("κ_s, stiffness of the barrier: energy per volume")
           .source("Li et al. 2021, section 5");
     }
   };

@@ -8,9 +8,9 @@
 
 namespace drape {
 
-/// φ(σ) = -κV y² ln(1 - y), y = (σ - 1)/(s - 1), for σ > 1; 0 below; not a number or +∞ from s on (Li et al.
-/// 2021, section 5). φ is κV y³ at first order: twice continuously differentiable at σ = 1, φ''' jumps there.
-/// All its derivatives are positive for 1 < σ < s, so the energy of a triangle is convex in x.
+/// φ(σ) = -κV y² ln(1 - y), y = (σ - 1)/(s - 1), for σ > 1; 0 below; NaN or +∞ for σ ≥ s (Li et al.
+/// 2021, section 5). φ is κV y³ to leading order: twice continuously differentiable at σ = 1, where φ'''
+/// jumps. All its derivatives are positive for 1 < σ < s, so the energy of a triangle is convex in x.
 struct StrainLimitLaw {
   static constexpr int constants = 2;  ///< κV [J] and 1/(s - 1)
   static constexpr bool convex = true;
@@ -32,7 +32,7 @@ struct StrainLimitLaw {
     slopes.first2 = scale1 * y2 * (2.0 * log2 + y2 / room2);
     slopes.second1 = scale2 * (2.0 * log1 + y1 / room1 * (2.0 + (2.0 - y1) / room1));
     slopes.second2 = scale2 * (2.0 * log2 + y2 / room2 * (2.0 + (2.0 - y2) / room2));
-    // Term by term, so that nothing cancels where y₁ = y₂. Where σ₂ < 1, only the way above 1 counts.
+    // Term by term: nothing cancels if y₁ = y₂. If σ₂ < 1, only the part above 1 counts.
     const T divided =
         2.0 * (log1 + y2 / room2 * log_ratio(room1 / room2)) + (y1 + y2 - y1 * y2) / (room1 * room2);
     const T whole = max((s1 - s2) * constants[1], T(std::numeric_limits<double>::min()));
@@ -47,7 +47,7 @@ struct StrainLimitLaw {
     return max(stretch - 1.0, T(0.0)) * constants[1];
   }
 
-  /// ln(u) / (u - 1): rounding of u does it no harm (Kahan).
+  /// ln(u) / (u - 1), insensitive to round-off in u (Kahan).
   template <class T>
   static T log_ratio(const T& u) {
     using std::log;

@@ -190,7 +190,7 @@ TEST_CASE("strain_limit: a stretched sheet has the energy of its volume, and +in
   }
 }
 
-TEST_CASE("strain_limit: a step ends where a tenth of the room is left, and never beyond the limit") {
+TEST_CASE("strain_limit: a filtered step leaves a tenth of the margin and never violates the limit") {
   const Level level = square();
   const auto energy = bound_to(level);
   const Positions x0 = moved(level.rest.vertices, 0.002, 1);
@@ -202,7 +202,8 @@ TEST_CASE("strain_limit: a step ends where a tenth of the room is left, and neve
     const StepLimit step = filter(*energy).max_step(x0, x1);
     REQUIRE(step.fraction > 0);
     REQUIRE(step.fraction < 1);
-    // All keep to their bounds; the one that ends the step would not go a hundred-thousandth further.
+    // All triangles stay within their bounds; the limiting one would violate its bound a hundred-thousandth
+    // further.
     double slack = -1;
     int tight = -1;
     const Positions end = x0 + step.fraction * (x1 - x0), beyond = x0 + 1.00001 * step.fraction * (x1 - x0);
@@ -252,12 +253,12 @@ TEST_CASE("strain_limit: rigid motions and shrinking take full steps") {
   CHECK(filter(*energy).max_step(x0, 0.2 * x0).fraction == 1);
 }
 
-TEST_CASE("strain_limit: a start beyond the limit is named, can be left out, and the rest still limits") {
+TEST_CASE("strain_limit: violations are listed, can be excluded, and the rest still limits") {
   const Level level = square();
   const auto all = bound_to(level);
   Positions x = level.rest.vertices;
   x(0, 0) -= 0.1;  // a corner
-  const auto beyond = limited(*all).beyond(x);
+  const auto beyond = limited(*all).violations(x);
   REQUIRE(!beyond.empty());
   REQUIRE(static_cast<int>(beyond.size()) < level.triangle_count());
   CHECK(limited(*all).limit() == limit);
@@ -269,16 +270,16 @@ TEST_CASE("strain_limit: a start beyond the limit is named, can be left out, and
 
   std::vector<char> skipped(level.triangle_count(), 0);
   for (const auto& triangle : beyond) skipped[triangle.triangle] = 1;
-  const auto left = limited(*all).without(skipped);
-  CHECK(limited(*left).beyond(x).empty());
+  const auto left = limited(*all).restricted(skipped);
+  CHECK(limited(*left).violations(x).empty());
   CHECK(std::isfinite(left->value(x)));
   CHECK(left->stencils().rows() == level.triangle_count() - static_cast<int>(beyond.size()));
   CHECK(filter(*left).max_step(x, level.rest.vertices).fraction == 1);
   CHECK(filter(*left).max_step(x, 1.5 * x).fraction < 1);
-  const auto none = limited(*left).without(std::vector<char>(level.triangle_count(), 1));
+  const auto none = limited(*left).restricted(std::vector<char>(level.triangle_count(), 1));
   CHECK(none->value(1e3 * x) == 0);
   CHECK(filter(*none).max_step(x, 1e3 * x).fraction == 1);
-  CHECK_THROWS_WITH(limited(*all).without({0, 1}), Catch::Contains("2 flags for 24 triangles"));
+  CHECK_THROWS_WITH(limited(*all).restricted({0, 1}), Catch::Contains("2 flags for 24 triangles"));
 }
 
 TEST_CASE("strain_limit: same bits with any number of threads") {

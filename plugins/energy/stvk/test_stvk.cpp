@@ -4,7 +4,7 @@
 
 using namespace drape;
 
-TEST_CASE("stvk: what every membrane owes") {
+TEST_CASE("stvk: properties of every membrane") {
   check_membrane<StvkLaw>(
       Stvk({}),
       [](double mu, double lambda, long double a, long double b) {

@@ -4,5 +4,5 @@
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::LoopRefiner>(
-      "loop", "Loop subdivision with B-spline borders and interpolated corners: smooth, the surface moves.");
+      "loop", "Loop subdivision with B-spline borders and interpolated corners: smooth; the surface moves.");
 }

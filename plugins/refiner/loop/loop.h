@@ -26,8 +26,8 @@ class LoopRefiner : public Refiner {
           .at_least(0)
           .at_most(360)
           .meaning(
-              "A border vertex whose rest interior angle differs from 180 degrees by more than this "
-              "is a corner and is interpolated; others are rounded off.")
+              "border vertices whose interior rest angle differs from 180 degrees by more than this are "
+              "corners and are interpolated; others are smoothed")
           .source("docs/method.md, section 4");
     }
   };
@@ -57,8 +57,8 @@ class LoopRefiner : public Refiner {
     return refinement;
   }
 
-  /// n flags, 1 where a border vertex is interpolated. A flat rest shape keeps its corners on every finer
-  /// level: the new neighbours of a corner lie on the old border edges, so that its angle stays.
+  /// n flags, 1 for interpolated border vertices. A flat rest shape keeps its corners on every finer level:
+  /// the new neighbours of a corner lie on the old border edges and keep its angle.
   std::vector<char> corners(const Level& level) const {
     Eigen::VectorXd angle = Eigen::VectorXd::Zero(level.vertex_count());  // [radian]
     for (int t = 0; t < level.triangle_count(); ++t)
@@ -82,7 +82,7 @@ class LoopRefiner : public Refiner {
  private:
   using Weights = std::vector<Eigen::Triplet<double>>;
 
-  /// Of each border vertex, its two neighbours along the border.
+  /// The two neighbours along the border of each border vertex.
   static std::vector<std::array<int, 2>> border_neighbours(const Topology& topology, int vertex_count) {
     std::vector<std::array<int, 2>> neighbours(vertex_count, {-1, -1});
     for (int e = 0; e < topology.edges.rows(); ++e) {

@@ -4,5 +4,5 @@
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::MidpointRefiner>(
-      "midpoint", "Midpoint subdivision: every triangle is split in four and the surface stays where it is.");
+      "midpoint", "Midpoint subdivision: every triangle is split into four; the surface does not move.");
 }

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Midpoint subdivision: splits every triangle in four and leaves the surface where it is.
+/// Midpoint subdivision: splits every triangle into four and does not move the surface.
 class MidpointRefiner : public Refiner {
  public:
   struct Parameters {

@@ -4,8 +4,8 @@
 
 namespace drape {
 
-/// Coarse to fine, each level under its own energy, in the style of Sensitive Couture (Umetani et al.
-/// 2011): the finest level is plain Newton from a better start.
+/// Solves coarse to fine, each level under its own energy, in the style of Sensitive Couture (Umetani et al.
+/// 2011). The finest level is plain Newton from a better start.
 class CascadicSolver : public ResumableSolver {
  public:
   struct Parameters {
@@ -14,7 +14,7 @@ class CascadicSolver : public ResumableSolver {
     static void declare(Declaration<Parameters>& d) {
       d.add_choice("prolongation", &Parameters::prolongation,
                    {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
-          .meaning("carries a level's state up: by edge midpoints, or by the experiment's refiner")
+          .meaning("prolongs a level's state: by edge midpoints, or by the experiment's refiner")
           .source("docs/method.md section 3");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }

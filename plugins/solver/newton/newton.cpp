@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Each level on its own, from the scene's start, under its own energy (docs/method.md, section 3).
+/// Solves each level from the scene's start under its own energy (docs/method.md, section 3).
 class NewtonSolver : public ResumableSolver {
  public:
   struct Parameters {
@@ -20,17 +20,18 @@ class NewtonSolver : public ResumableSolver {
                                   Observer& observer) const override {
     const Stopwatch clock(from.seconds);
     NewtonParameters parameters = p_.newton;
-    parameters.refine_at = parameters.refine_ratio = 0;  // no level goes on from another's state
+    // No level starts from another's state.
+    parameters.early_refinement_tolerance = parameters.early_refinement_ratio = 0;
     std::vector<LevelResult> results = from.finished;
-    restore_conditions(problem, from);
+    restore_load_stepping(problem, from);
     for (int l = from.level; l <= problem.finest(); ++l) {
       const NewtonState* state = from.of(l);
       if (!state) observer.level_started(l);
-      if (problem.conditions && !state) problem.conditions->begin(l, true);
+      if (problem.load_stepping && !state) problem.load_stepping->begin(l, true);
       PlainObjective objective(*problem.models[l]);
       results.push_back(minimise(objective, problem.starts[l], parameters,
-                                 {clock, observer, l < problem.finest(), {}, state, problem.conditions}));
-      results.back().afresh = true;
+                                 {clock, observer, l < problem.finest(), {}, state, problem.load_stepping}));
+      results.back().from_initial_state = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;
     }

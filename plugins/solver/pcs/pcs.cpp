@@ -7,10 +7,10 @@
 
 namespace drape {
 
-/// What becomes of a coarse level that is at the equilibrium of its proxy.
+/// What a coarse level minimises after its proxy.
 enum class Relaxation {
-  plain,  ///< on to the equilibrium of the level's own plain energy
-  none    ///< the proxy's equilibrium is the level's state
+  plain,  ///< the level's own plain energy
+  none    ///< nothing: the proxy's equilibrium is the level's state
 };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
@@ -31,24 +31,25 @@ class PcsSolver : public ResumableSolver {
           .at_least(0)
           .at_most(8)
           .meaning(
-              "levels from a coarse one to that whose energy it minimises, where there are so many; 0 for "
-              "the finest")
+              "levels from a coarse level up to the one whose energy it minimises, at most to the finest; 0 "
+              "for the finest")
           .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
-          .meaning("matrix on coarse levels: the plain coarse model's, or that of what is minimised")
+          .meaning(
+              "matrix on coarse levels: that of the plain coarse model, or the Galerkin product of the proxy")
           .source("PCS section 4.2 for coarse; galerkin is a departure");
       d.add("depth", &Parameters::depth)
           .at_least(1)
           .at_most(8)
           .meaning(
-              "levels up to the model whose matrix galerkin carries down, of energies that the refiner's "
-              "mesh is needed for, where there are so many");
+              "levels up to the model whose matrix the Galerkin product restricts, for energies that are "
+              "evaluated on the refiner's mesh; at most to the proxy's target");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
           .meaning(
-              "what follows the proxy's equilibrium on a coarse level: that of the level's own plain energy "
-              "from there, in which folds are as sharp as the level can have them, or nothing")
+              "what a coarse level minimises after its proxy: its own plain energy, which makes folds as "
+              "sharp as the level allows, or nothing")
           .source("PCS section 4 for none; plain is a departure (docs/locking.md)");
       d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
     }

@@ -7,8 +7,8 @@ namespace drape {
 
 namespace {
 
-/// Of each block of `part`, its place in `whole`, which has them all.
-std::vector<int> places(const BlockPattern& part, const BlockPattern& whole) {
+/// Index in `whole` of each block of `part`.
+std::vector<int> slots_of(const BlockPattern& part, const BlockPattern& whole) {
   std::vector<int> result;
   result.reserve(part.blocks());
   for (int i = 0; i < part.rows(); ++i)
@@ -31,10 +31,10 @@ std::shared_ptr<const BlockPattern> united(const std::vector<std::shared_ptr<con
   return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
 }
 
-void add_blocks(const BlockMatrix& part, const std::vector<int>& place, double factor, BlockMatrix& whole) {
-  for (std::size_t b = 0; b < place.size(); ++b) {
+void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double factor, BlockMatrix& whole) {
+  for (std::size_t b = 0; b < slots.size(); ++b) {
     const double* from = part.block(static_cast<int>(b));
-    double* to = whole.block(place[b]);
+    double* to = whole.block(slots[b]);
     for (int i = 0; i < 9; ++i) to[i] += factor * from[i];
   }
 }
@@ -58,7 +58,7 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     FinerPart& finer = finer_.emplace_back();
     finer.part = part;
     for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level + k]);
-    finer.carried.resize(part.above);
+    finer.prolonged.resize(part.above);
     finer.forces.resize(part.above);
     if (kind_ == ProxyMatrix::coarse) continue;
     finer.matrices.emplace_back(problem.models[level + part.matrix_above]->pattern());
@@ -69,12 +69,12 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     patterns.push_back(finer.matrices.back().pattern);
   }
   if (kind_ == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(plain_.pattern());
-  lay_out(patterns);
+  build_pattern(patterns);
 }
 
-bool ProxyObjective::relax() {
-  if (!relaxes_ || relaxed_) return false;
-  relaxed_ = true;
+bool ProxyObjective::switch_to_plain() {
+  if (!relaxes_ || is_plain_) return false;
+  is_plain_ = true;
   smooth_changed();
   if (matrix_.pattern != plain_.pattern()) {
     matrix_ = BlockMatrix(plain_.pattern());
@@ -83,26 +83,26 @@ bool ProxyObjective::relax() {
   return true;
 }
 
-void ProxyObjective::lay_out(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
+void ProxyObjective::build_pattern(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
   matrix_ = BlockMatrix(united(patterns));
   for (FinerPart& finer : finer_)
-    if (!finer.matrices.empty()) finer.place = places(*finer.matrices.back().pattern, *matrix_.pattern);
+    if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
   if (kind_ == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == plain_.pattern()) return;
   own_matrix_ = BlockMatrix(plain_.pattern());
-  own_place_ = places(*plain_.pattern(), *matrix_.pattern);
+  own_slots_ = slots_of(*plain_.pattern(), *matrix_.pattern);
 }
 
-const Positions& ProxyObjective::FinerPart::carry(const Positions& x, int count) {
+const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int count) {
   const Positions* from = &x;
   for (int k = 0; k < count; ++k) {
-    transfers[k].prolong(*from, carried[k]);
-    from = &carried[k];
+    transfers[k].prolong(*from, prolonged[k]);
+    from = &prolonged[k];
   }
   return *from;
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
-  if (relaxed_) return plain_.gradient(x, g);
+  if (is_plain_) return plain_.gradient(x, g);
   g.resize(x.rows(), 3);
   double sum = 0;
   bool first = true;
@@ -120,8 +120,8 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
   for (FinerPart& finer : finer_) {
     const int above = finer.part.above;
     const LevelModel& model = *problem_.models[level_ + above];
-    sum +=
-        finer.part.factor * model.gradient(finer.carry(x, above), finer.forces[above - 1], finer.part.roles);
+    sum += finer.part.factor *
+           model.gradient(finer.prolong(x, above), finer.forces[above - 1], finer.part.roles);
     for (int k = above - 1; k > 0; --k) finer.transfers[k].restrict(finer.forces[k], finer.forces[k - 1]);
     finer.transfers[0].restrict(finer.forces[0], part_gradient_);
     add(finer.part.factor);
@@ -134,25 +134,25 @@ void ProxyObjective::add_own_hessians(const Positions& x, Projection projection,
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
-  if (relaxed_ || kind_ == ProxyMatrix::coarse) {
+  if (is_plain_ || kind_ == ProxyMatrix::coarse) {
     plain_.hessian(x, projection, matrix_);
     return matrix_;
   }
   matrix_.set_zero();
-  if (!own_.empty() && own_place_.empty()) {
+  if (!own_.empty() && own_slots_.empty()) {
     add_own_hessians(x, projection, matrix_);
   } else if (!own_.empty()) {
     own_matrix_.set_zero();
     add_own_hessians(x, projection, own_matrix_);
-    add_blocks(own_matrix_, own_place_, 1, matrix_);
+    add_blocks(own_matrix_, own_slots_, 1, matrix_);
   }
   for (FinerPart& finer : finer_) {
     const int above = finer.part.matrix_above;
-    problem_.models[level_ + above]->hessian(finer.carry(x, above), projection, finer.matrices[0],
+    problem_.models[level_ + above]->hessian(finer.prolong(x, above), projection, finer.matrices[0],
                                              finer.part.roles);
     for (std::size_t k = 0; k < finer.products.size(); ++k)
       finer.products[k].form(finer.matrices[k], finer.matrices[k + 1]);
-    add_blocks(finer.matrices.back(), finer.place, finer.part.factor, matrix_);
+    add_blocks(finer.matrices.back(), finer.slots, finer.part.factor, matrix_);
   }
   return matrix_;
 }

@@ -12,17 +12,17 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
                         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
   };
   add("membrane", &ProxyInterpolation::membrane)
-      .meaning("where stretching is measured: on the coarse surface itself, or on the refiner's, which locks")
+      .meaning("surface on which stretching is measured: the coarse one, or the refiner's, which locks")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("bending", &ProxyInterpolation::bending)
       .meaning(
-          "where bending is measured: on the coarse surface with folds at its edges, or on the refiner's")
+          "surface on which bending is measured: the coarse one with folds at its edges, or the refiner's")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("external", &ProxyInterpolation::external)
-      .meaning("where loads and soft positions act")
+      .meaning("surface on which loads and handles act")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("state", &ProxyInterpolation::state)
-      .meaning("carries a level's state up to the next")
+      .meaning("prolongs a level's state to the next level")
       .source("PCS section 4.3 for refiner; midpoint is a departure (docs/locking.md)");
 }
 
@@ -39,18 +39,18 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above,
     parts.push_back(wanted);
     parts.back().roles.add(role);
   };
-  for (const auto& [role, way] : {std::pair(EnergyRole::membrane, interpolation.membrane),
-                                  std::pair(EnergyRole::external, interpolation.external),
-                                  std::pair(EnergyRole::position, interpolation.external),
-                                  std::pair(EnergyRole::bending, interpolation.bending)}) {
+  for (const auto& [role, interpolated_by] : {std::pair(EnergyRole::membrane, interpolation.membrane),
+                                              std::pair(EnergyRole::external, interpolation.external),
+                                              std::pair(EnergyRole::position, interpolation.external),
+                                              std::pair(EnergyRole::bending, interpolation.bending)}) {
     ProxyPart part;
     const auto factor = problem.models[level]->midpoint_factor(role);
-    if (way == Interpolation::midpoint && factor) {
+    if (interpolated_by == Interpolation::midpoint && factor) {
       part.factor = std::pow(*factor, above);
     } else {
       part.above = above;
       part.matrix_above = std::min(depth, above);
-      part.interpolation = &problem.hierarchy.weights(way);
+      part.interpolation = &problem.hierarchy.weights(interpolated_by);
     }
     add(part, role);
   }

@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// By which interpolation a proxy's energies see the fine mesh, role by role.
+/// Interpolation through which a proxy's energies see the fine mesh, for each role.
 struct ProxyInterpolation {
   Interpolation membrane = Interpolation::midpoint;
   Interpolation bending = Interpolation::midpoint;
@@ -17,9 +17,9 @@ struct ProxyInterpolation {
   static void declare(Declaration<ProxyInterpolation>& d);
 };
 
-/// The parts of level l's proxy, which stands for the model `above` levels up: an energy that midpoints leave
-/// equal to the level's own, or to a multiple of it (Energy::midpoint_factor), is evaluated there, any other
-/// on the finer model.
+/// Parts of the proxy of `level` for the model `above` levels up. An energy that midpoint refinement
+/// multiplies by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the
+/// finer model.
 std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,
                                    const ProxyInterpolation& interpolation);
 

@@ -40,7 +40,7 @@ constexpr ProxyInterpolation by_midpoints;
 constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refiner, Interpolation::midpoint,
                                    Interpolation::midpoint};
 
-/// The proxy of a level that stands for the finest one.
+/// The proxy of a level for the finest one.
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
                         const ProxyInterpolation& interpolation = by_refiner,
                         ProxyMatrix matrix = ProxyMatrix::galerkin) {
@@ -153,13 +153,13 @@ TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
   REQUIRE((dense(galerkin.matrix(x, Projection::clamp)) - dense(plain)).norm() > 1e-3 * dense(plain).norm());
 }
 
-TEST_CASE("A proxy that relaxes becomes the plain energy of its level, once", "[proxy_objective]") {
+TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once", "[proxy_objective]") {
   const Fixture f;
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
   const auto parts = proxy_parts(f.problem, 0, 2, 1, interpolation);
   const Positions x = f.state(0);
   ProxyObjective never(f.problem, 0, parts, ProxyMatrix::galerkin);
-  CHECK_FALSE(never.relax());
+  CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
   ProxyObjective proxy(f.problem, 0, parts, ProxyMatrix::galerkin, true);
   PlainObjective plain(*f.problem.models[0]);
@@ -168,8 +168,8 @@ TEST_CASE("A proxy that relaxes becomes the plain energy of its level, once", "[
   proxy.gradient(x, g);
   REQUIRE((g - expected).norm() > 1e-3 * expected.norm());
   proxy.matrix(x, Projection::clamp);
-  REQUIRE(proxy.relax());
-  CHECK_FALSE(proxy.relax());
+  REQUIRE(proxy.switch_to_plain());
+  CHECK_FALSE(proxy.switch_to_plain());
   CHECK_FALSE(proxy.is_proxy());
   CHECK(proxy.gradient(x, g) == plain.gradient(x, expected));
   CHECK(g == expected);
@@ -202,7 +202,7 @@ methods: {pcs: {}}
   const double limit = problem.models[0]->limits()[0]->value(x);
   REQUIRE(barrier > 0);
   REQUIRE(limit > 0);
-  // Every state of the differences is evaluated as the start of a way of its own.
+  // Every state of the differences is evaluated as the start of its own step.
   const auto prepared = [&](const Positions& y) -> ProxyObjective& {
     proxy.max_step(y, y);
     return proxy;

@@ -8,15 +8,15 @@ using namespace drape;
 
 namespace {
 
-/// Keeps what a level came to under each of its conditions, and counts what it must not do on the way.
-struct Changes : Observer {
-  explicit Changes(const Solved& solved) : s(solved) {}
+/// Records the result of every increment, and counts intersections.
+struct Increments : Observer {
+  explicit Increments(const Solved& solved) : s(solved) {}
   const Solved& s;
-  std::vector<ChangeRow> rows;
+  std::vector<IncrementRow> rows;
   std::vector<Positions> states;
   std::size_t intersections = 0;
 
-  void change_finished(const ChangeRow& row, const Positions& x) override {
+  void increment_finished(const IncrementRow& row, const Positions& x) override {
     rows.push_back(row);
     states.push_back(x);
   }
@@ -26,8 +26,8 @@ struct Changes : Observer {
   }
 };
 
-void run(Solved& s, Changes& changes) {
-  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), changes);
+void run(Solved& s, Increments& increments) {
+  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), increments);
 }
 
 }  // namespace
@@ -47,27 +47,27 @@ schedule:
        to: [[0, 0, -0.981], [0, 0, -9.81], [0, 0, -49.05], [0, 0, -196.2], [0, 0, -981]]}
     - {set: pins.0.move, at: [0, 6], to: [[0, 0, 0], [0.3, -0.2, 0.9]]}
 )"));
-  Changes changes(s);
-  run(s, changes);
+  Increments increments(s);
+  run(s, increments);
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  REQUIRE(changes.rows.size() == 7);
+  REQUIRE(increments.rows.size() == 7);
   row("\nTip angle [degrees] of a cantilever that is moved while its weight grows");
   row("%8s %12s %12s %8s", "gamma", "hinge", "exact", "steps");
   const std::pair<int, double> loads[] = {{0, 0.1}, {3, 1}, {4, 5}, {5, 20}, {6, 100}};
-  for (const auto& [change, gamma] : loads) {
+  for (const auto& [increment, gamma] : loads) {
     const double exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
-    s.levels[0].x = changes.states[change];
+    s.levels[0].x = increments.states[increment];
     const double angle = tip_angle(s, cells);
-    row("%8g %12.5f %12.5f %8d", gamma, angle, exact, changes.rows[change].steps);
+    row("%8g %12.5f %12.5f %8d", gamma, angle, exact, increments.rows[increment].steps);
     CHECK(std::abs(angle - exact) < 0.02);
-    // The clamp is where it was told to be, to the bit.
-    const Eigen::Vector3d moved = Eigen::Vector3d(0.3, -0.2, 0.9) * (change / 6.0);
-    CHECK((changes.states[change].row(0) - s.rest().row(0) - moved.transpose()).norm() < 1e-15);
+    // The clamp reaches its target exactly.
+    const Eigen::Vector3d moved = Eigen::Vector3d(0.3, -0.2, 0.9) * (increment / 6.0);
+    CHECK((increments.states[increment].row(0) - s.rest().row(0) - moved.transpose()).norm() < 1e-15);
   }
 }
 
-TEST_CASE("A ribbon that is twisted forth and back slowly has the energy that it had", "[physics]") {
+TEST_CASE("A ribbon that is slowly twisted and untwisted recovers its energy", "[physics]") {
   Solved s = scene_from(R"(
 name: ribbon
 cloth: {shape: rectangle, size: [0.4, 0.05], triangulation: criss_cross, columns: 33, rows: 5}
@@ -86,20 +86,20 @@ schedule:
     - {set: pins.1.turn, at: [0, 1, 2], to: [[0, 0, 0], [60, 0, 0], [0, 0, 0]]}
 methods: {newton: {}}
 )");
-  Changes changes(s);
-  run(s, changes);
+  Increments increments(s);
+  run(s, increments);
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  REQUIRE(changes.rows.size() == 13);
+  REQUIRE(increments.rows.size() == 13);
   row("\nEnergy [J] of a ribbon, its end turned");
-  for (const ChangeRow& r : changes.rows)
+  for (const IncrementRow& r : increments.rows)
     row("%8.3f %14.8f %6d steps", 60 * (r.time <= 1 ? r.time : 2 - r.time), r.energy, r.steps);
-  const double before = changes.rows.front().energy, twisted = changes.rows[6].energy;
+  const double before = increments.rows.front().energy, twisted = increments.rows[6].energy;
   REQUIRE(std::abs(twisted - before) > 0.1 * std::abs(before));
-  CHECK(std::abs(changes.rows.back().energy - before) < 0.01 * std::abs(before));
+  CHECK(std::abs(increments.rows.back().energy - before) < 0.01 * std::abs(before));
 }
 
-TEST_CASE("Handles carry the weight that is on them, as far as they give way", "[physics]") {
+TEST_CASE("Handles carry the weight by their displacement", "[physics]") {
   const double stiffness = 2000;
   for (const int levels : {1, 2}) {
     Solved s = scene_from(R"(
@@ -116,8 +116,8 @@ energies: [neo_hookean, hinge, gravity]
 newton: {force_tolerance: 1e-7}
 methods: {pcs: {}}
 )");
-    Changes changes(s);
-    run(s, changes);
+    Increments increments(s);
+    run(s, increments);
     REQUIRE(s.levels.back().outcome == Outcome::converged);
     const Level& coarsest = s.scene->hierarchy.levels[0];
     const double area_density = s.model().material().area_density();
@@ -128,7 +128,7 @@ methods: {pcs: {}}
   }
 }
 
-TEST_CASE("A pin that is dragged into an obstacle stops at it and is named", "[physics]") {
+TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[physics]") {
   Solved s = scene_from(R"(
 name: dragged
 cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
@@ -144,24 +144,24 @@ schedule:
   keys: [{set: pins.0.move, at: [0, 1], to: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
 methods: {pcs: {}}
 )");
-  Changes changes(s);
-  run(s, changes);
+  Increments increments(s);
+  run(s, increments);
   REQUIRE(s.levels.size() == 2);
   for (const LevelResult& level : s.levels) {
     CHECK(level.outcome == Outcome::infeasible);
     CHECK_THAT(level.message,
                Catch::StartsWith("pin 0 stopped 0.0") &&
-                   Catch::Contains(" short of its place (vertex 44), held by cloth triangle ") &&
+                   Catch::Contains(" short of its target (vertex 44), blocked by cloth triangle ") &&
                    Catch::EndsWith("and ball: sphere; the rest of the cloth is at equilibrium"));
     CHECK(level.force_residual <= 1e-3);
     const double above = level.x.row(44).norm() - 0.2;
     CHECK(above > 0);
     CHECK(above < 1e-3);
   }
-  CHECK(changes.intersections == 0);
+  CHECK(increments.intersections == 0);
 }
 
-TEST_CASE("Loads and materials and limits that jump leave a state that is allowed", "[physics]") {
+TEST_CASE("Jumps of loads, materials and limits leave a feasible state", "[physics]") {
   Solved s = scene_from(R"(
 name: jumps
 cloth: {shape: square, side: 0.4, columns: 10, rows: 10}
@@ -182,21 +182,21 @@ schedule:
     - {set: material.density, between: jump, at: [0, 6], to: [470, 100]}
 methods: {pcs: {}}
 )");
-  Changes changes(s);
-  run(s, changes);
+  Increments increments(s);
+  run(s, increments);
   for (const LevelResult& level : s.levels) {
     INFO(level.message);
     CHECK(level.outcome == Outcome::converged);
   }
-  CHECK(changes.intersections == 0);
-  REQUIRE(changes.rows.size() == 8);  // of level 0, and the last ones of level 1
+  CHECK(increments.intersections == 0);
+  REQUIRE(increments.rows.size() == 8);  // of level 0, and the last ones of level 1
   CHECK(s.model().material().density == 100);
   const auto& limit = dynamic_cast<const StretchLimited&>(*s.model().limits()[0]);
   CHECK(limit.limit() == 1.05);
-  CHECK(limit.beyond(s.x()).empty());
+  CHECK(limit.violations(s.x()).empty());
 }
 
-TEST_CASE("A floor that rises under a cloth lifts it, and one that closes in is stopped", "[physics]") {
+TEST_CASE("A rising floor lifts a cloth, and a closing lid is stopped", "[physics]") {
   const auto scene = [](const std::string& keys) {
     return scene_from(R"(
 name: lifted
@@ -215,21 +215,22 @@ methods: {newton: {}}
   };
   Solved s =
       scene("{set: contact.ipc.obstacles.plate.translate, at: [0, 1], to: [[0, 0, 0.04], [0.05, 0, 0.24]]}");
-  Changes changes(s);
-  run(s, changes);
+  Increments increments(s);
+  run(s, increments);
   INFO(s.levels[0].message);
   REQUIRE(s.levels[0].outcome == Outcome::converged);
-  CHECK(changes.intersections == 0);
-  const Eigen::RowVector3d middle = s.x().colwise().mean();
-  CHECK(middle.z() == Approx(0.245).margin(1.5e-3));
+  CHECK(increments.intersections == 0);
+  const Eigen::RowVector3d centroid = s.x().colwise().mean();
+  CHECK(centroid.z() == Approx(0.245).margin(1.5e-3));
   // Friction drags it sideways too, except for what slid while it was lifted off the start.
-  CHECK(middle.x() > 0.03);
+  CHECK(centroid.x() > 0.03);
 
   Solved closing =
       scene("{set: contact.shapes.shapes.lid.centre, at: [0, 1], to: [[0, 0, 0.5], [0, 0, 0.045]]}");
-  Changes on_the_way(closing);
-  run(closing, on_the_way);
+  Increments closing_increments(closing);
+  run(closing, closing_increments);
   CHECK(closing.levels[0].outcome == Outcome::infeasible);
-  CHECK_THAT(closing.levels[0].message, Catch::Contains("cannot be reached") && Catch::Contains("lid: box"));
-  CHECK(on_the_way.intersections == 0);
+  CHECK_THAT(closing.levels[0].message,
+             Catch::Contains("cannot be completed") && Catch::Contains("lid: box"));
+  CHECK(closing_increments.intersections == 0);
 }

@@ -1,4 +1,4 @@
-#include "core/numerics/sum_matrix.h"
+#include "core/numerics/hessian_assembler.h"
 
 #include <catch2/catch.hpp>
 
@@ -45,7 +45,7 @@ class Springs : public BoundEnergy {
   std::vector<std::pair<int, int>> pairs_;
 };
 
-/// A chain of vertices, whose matrix is the sum's base.
+/// A chain of vertices, whose matrix is the smooth part.
 struct Chain {
   static constexpr int n = 12;
   Springs springs{[] {
@@ -56,20 +56,20 @@ struct Chain {
   std::shared_ptr<const BlockPattern> pattern = BlockPattern::of(n, {springs.stencils()});
   BlockMatrix matrix{pattern};
   Positions x = Positions::Zero(n, 3);
-  SumMatrix sum;
+  HessianAssembler assembler;
 
-  const BlockMatrix& with(const Springs& passing, const std::vector<const BoundEnergy*>& lasting = {}) {
+  const BlockMatrix& with(const Springs& transient, const std::vector<const BoundEnergy*>& persistent = {}) {
     matrix.set_zero();
     const BlockSlots slots(*pattern, springs.stencils());
     BlockSink sink(slots, matrix);
     springs.add_hessian(x, Projection::none, sink);
-    return sum.add(matrix, lasting, {&passing}, x, Projection::none);
+    return assembler.add(matrix, persistent, {&transient}, x, Projection::none);
   }
 };
 
 }  // namespace
 
-TEST_CASE("elements that the pattern has room for are added in place", "[sum_matrix]") {
+TEST_CASE("elements whose blocks the pattern has are added in place", "[hessian_assembler]") {
   Chain chain;
   const Springs near({{3, 4}, {7, 6}, {0, -1}});
   const BlockMatrix& sum = chain.with(near);
@@ -77,20 +77,21 @@ TEST_CASE("elements that the pattern has room for are added in place", "[sum_mat
   CHECK(dense(sum) == chain.springs.expected(Chain::n) + near.expected(Chain::n));
 }
 
-TEST_CASE("elements that it has no room for are added all the same", "[sum_matrix]") {
+TEST_CASE("elements with missing blocks extend the pattern", "[hessian_assembler]") {
   Chain chain;
-  const Springs far({{11, 2}, {5, 0}, {3, 4}}), lasting({{8, 9}, {2, -1}});
+  const Springs far({{11, 2}, {5, 0}, {3, 4}}), persistent({{8, 9}, {2, -1}});
   const Eigen::MatrixXd expected =
-      chain.springs.expected(Chain::n) + far.expected(Chain::n) + lasting.expected(Chain::n);
-  CHECK(dense(chain.with(far, {&lasting})) == expected);
-  CHECK(dense(chain.with(far, {&lasting})) == expected);  // nothing is left over from the last time
+      chain.springs.expected(Chain::n) + far.expected(Chain::n) + persistent.expected(Chain::n);
+  CHECK(dense(chain.with(far, {&persistent})) == expected);
+  CHECK(dense(chain.with(far, {&persistent})) == expected);  // independent of the last call
 }
 
-TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone", "[sum_matrix]") {
+TEST_CASE("the pattern stays while contacts slide, and drops blocks that were long unused",
+          "[hessian_assembler]") {
   Chain chain;
   const auto first = chain.with(Springs({{2, 9}})).pattern;
   CHECK(first != chain.pattern);
-  CHECK(first->find(2, 8) >= 0);  // where it may slide to
+  CHECK(first->find(2, 8) >= 0);  // padding: where contacts slide next
   CHECK(first->find(2, 6) < 0);
   CHECK(chain.with(Springs({{2, 8}})).pattern == first);
   CHECK(chain.with(Springs({})).pattern == first);
@@ -103,29 +104,29 @@ TEST_CASE("the pattern lasts while contacts slide, and forgets what is long gone
   CHECK(dense(chain.with(again)) == chain.springs.expected(Chain::n) + again.expected(Chain::n));
 }
 
-TEST_CASE("from the room that it had, a matrix grows and forgets as if it had gone on", "[sum_matrix]") {
-  // Contacts that come, slide, lie idle for long and come again.
-  std::vector<Springs> passing;
+TEST_CASE("a restored extra pattern grows and shrinks as if not interrupted", "[hessian_assembler]") {
+  // Contacts that appear, slide, vanish for long and appear again.
+  std::vector<Springs> transient;
   for (int k = 0; k < 60; ++k)
-    passing.emplace_back(k % 25 < 3   ? std::vector<std::pair<int, int>>{{2, 9 - k % 3}}
-                         : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
-                                      : std::vector<std::pair<int, int>>{});
+    transient.emplace_back(k % 25 < 3   ? std::vector<std::pair<int, int>>{{2, 9 - k % 3}}
+                           : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
+                                        : std::vector<std::pair<int, int>>{});
   Chain whole;
-  std::vector<SumMatrix::Room> rooms;
+  std::vector<HessianAssembler::ExtraPattern> extras;
   std::vector<std::vector<int>> columns;
   std::size_t most = 0, shrunk = 0;
-  for (const Springs& springs : passing) {
-    rooms.push_back(whole.sum.room());
+  for (const Springs& springs : transient) {
+    extras.push_back(whole.assembler.extra());
     columns.push_back(whole.with(springs).pattern->columns);
     shrunk += columns.back().size() < most;
     most = std::max(most, columns.back().size());
   }
   REQUIRE(shrunk > 0);
-  for (std::size_t k = 0; k < passing.size(); ++k) {
+  for (std::size_t k = 0; k < transient.size(); ++k) {
     Chain again;
-    const auto pattern = again.sum.restore(again.pattern, rooms[k]);
+    const auto pattern = again.assembler.restore(again.pattern, extras[k]);
     if (k > 0) CHECK(pattern->columns == columns[k - 1]);
-    for (std::size_t i = k; i < passing.size(); ++i)
-      REQUIRE(again.with(passing[i]).pattern->columns == columns[i]);
+    for (std::size_t i = k; i < transient.size(); ++i)
+      REQUIRE(again.with(transient[i]).pattern->columns == columns[i]);
   }
 }

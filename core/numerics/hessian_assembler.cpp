@@ -1,4 +1,4 @@
-#include "core/numerics/sum_matrix.h"
+#include "core/numerics/hessian_assembler.h"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@ namespace drape {
 
 namespace {
 
-/// Extra blocks are kept, once there, for so many calls without use when the pattern changes anyway.
-constexpr int patience = 20;
+/// When the pattern changes, extra blocks that were unused for more calls than this are dropped.
+constexpr int max_idle = 20;
 
 /// The pairs i < j of an element's vertices that the pattern has no block for, ascending, each once.
 std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
@@ -39,10 +39,10 @@ std::vector<std::vector<int>> neighbours_in(const BlockPattern& pattern) {
   return neighbours;
 }
 
-/// The pairs, and those of each one's end with the neighbours of the other.
-std::vector<std::pair<int, int>> widened(const std::vector<std::pair<int, int>>& pairs,
-                                         const std::vector<std::vector<int>>& neighbours,
-                                         const BlockPattern& base) {
+/// Pads the pairs: adds those of each end with the neighbours of the other. Leaves out blocks of `base`.
+std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, int>>& pairs,
+                                              const std::vector<std::vector<int>>& neighbours,
+                                              const BlockPattern& base) {
   std::vector<std::pair<int, int>> all;
   const auto add = [&](int i, int j) {
     if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
@@ -66,9 +66,9 @@ std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
     const auto first = static_cast<std::ptrdiff_t>(columns.size());
     columns.insert(columns.end(), base.columns.begin() + base.row_start[i],
                    base.columns.begin() + base.row_start[i + 1]);
-    const auto middle = static_cast<std::ptrdiff_t>(columns.size());
+    const auto extra_begin = static_cast<std::ptrdiff_t>(columns.size());
     for (; next < extra.size() && extra[next].first == i; ++next) columns.push_back(extra[next].second);
-    std::inplace_merge(columns.begin() + first, columns.begin() + middle, columns.end());
+    std::inplace_merge(columns.begin() + first, columns.begin() + extra_begin, columns.end());
     row_start.push_back(static_cast<int>(columns.size()));
   }
   return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
@@ -76,29 +76,29 @@ std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
 
 }  // namespace
 
-void SumMatrix::begin_over(const std::shared_ptr<const BlockPattern>& base) {
+void HessianAssembler::reset(const std::shared_ptr<const BlockPattern>& base) {
   base_ = pattern_ = base;
-  place_.clear();
-  room_ = {};
-  lasting_slots_.clear();
+  base_slot_.clear();
+  extra_ = {};
+  persistent_slots_.clear();
   neighbours_.clear();
 }
 
-const std::shared_ptr<const BlockPattern>& SumMatrix::restore(const std::shared_ptr<const BlockPattern>& base,
-                                                              Room room) {
-  begin_over(base);
-  room_ = std::move(room);
-  if (!room_.blocks.empty()) lay_out();
+const std::shared_ptr<const BlockPattern>& HessianAssembler::restore(
+    const std::shared_ptr<const BlockPattern>& base, ExtraPattern extra) {
+  reset(base);
+  extra_ = std::move(extra);
+  if (!extra_.blocks.empty()) build_pattern();
   return pattern_;
 }
 
-void SumMatrix::make_room(const std::shared_ptr<const BlockPattern>& base,
-                          const std::vector<Stencils>& stencils) {
-  if (base != base_) begin_over(base);
-  std::vector<std::pair<int, int>>& extra = room_.blocks;
-  std::vector<int>& idle = room_.idle;
+void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& base,
+                                    const std::vector<Stencils>& stencils) {
+  if (base != base_) reset(base);
+  std::vector<std::pair<int, int>>& extra = extra_.blocks;
+  std::vector<int>& idle = extra_.idle;
   const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
-  std::vector<std::pair<int, int>> kept;
+  std::vector<std::pair<int, int>> retained;
   bool grows = false;
   std::size_t k = 0;
   for (const auto& pair : needed) {
@@ -112,62 +112,63 @@ void SumMatrix::make_room(const std::shared_ptr<const BlockPattern>& base,
   if (!grows) return;
 
   for (std::size_t e = 0; e < extra.size(); ++e)
-    if (idle[e] <= patience) kept.push_back(extra[e]);
-  std::vector<int> kept_idle;
+    if (idle[e] <= max_idle) retained.push_back(extra[e]);
+  std::vector<int> retained_idle;
   for (std::size_t e = 0; e < extra.size(); ++e)
-    if (idle[e] <= patience) kept_idle.push_back(idle[e]);
+    if (idle[e] <= max_idle) retained_idle.push_back(idle[e]);
   if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
-  const std::vector<std::pair<int, int>> wide = widened(needed, neighbours_, *base_);
+  const std::vector<std::pair<int, int>> padded = padded_pairs(needed, neighbours_, *base_);
   std::vector<std::pair<int, int>> all;
-  std::set_union(kept.begin(), kept.end(), wide.begin(), wide.end(), std::back_inserter(all));
+  std::set_union(retained.begin(), retained.end(), padded.begin(), padded.end(), std::back_inserter(all));
   idle.assign(all.size(), 0);
-  for (std::size_t a = 0, e = 0; a < all.size() && e < kept.size(); ++a)
-    if (all[a] == kept[e]) idle[a] = kept_idle[e++];
+  for (std::size_t a = 0, e = 0; a < all.size() && e < retained.size(); ++a)
+    if (all[a] == retained[e]) idle[a] = retained_idle[e++];
   extra = std::move(all);
-  lay_out();
+  build_pattern();
 }
 
-void SumMatrix::lay_out() {
-  pattern_ = with_blocks(*base_, room_.blocks);
-  lasting_slots_.clear();
-  place_.resize(base_->columns.size());
+void HessianAssembler::build_pattern() {
+  pattern_ = with_blocks(*base_, extra_.blocks);
+  persistent_slots_.clear();
+  base_slot_.resize(base_->columns.size());
   parallel_for(base_->rows(), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       int to = pattern_->row_start[i];
       for (int b = base_->row_start[i]; b < base_->row_start[i + 1]; ++b) {
         while (pattern_->columns[to] != base_->columns[b]) ++to;
-        place_[b] = to;
+        base_slot_[b] = to;
       }
     }
   });
 }
 
-const BlockMatrix& SumMatrix::add(BlockMatrix& smooth, const std::vector<const BoundEnergy*>& lasting,
-                                  const std::vector<const BoundEnergy*>& passing, const Positions& x,
-                                  Projection projection) {
+const BlockMatrix& HessianAssembler::add(BlockMatrix& smooth,
+                                         const std::vector<const BoundEnergy*>& persistent,
+                                         const std::vector<const BoundEnergy*>& transient, const Positions& x,
+                                         Projection projection) {
   std::vector<Stencils> stencils;
-  for (const BoundEnergy* energy : passing) stencils.push_back(energy->stencils());
-  make_room(smooth.pattern, stencils);
+  for (const BoundEnergy* energy : transient) stencils.push_back(energy->stencils());
+  grow_pattern(smooth.pattern, stencils);
   BlockMatrix* sum = &smooth;
-  if (!place_.empty()) {
+  if (!base_slot_.empty()) {
     if (matrix_.pattern != pattern_) matrix_ = BlockMatrix(pattern_);
     matrix_.set_zero();
-    parallel_for(static_cast<int>(place_.size()), 8192, [&](int begin, int end) {
-      for (int b = begin; b < end; ++b) std::copy_n(smooth.block(b), 9, matrix_.block(place_[b]));
+    parallel_for(static_cast<int>(base_slot_.size()), 8192, [&](int begin, int end) {
+      for (int b = begin; b < end; ++b) std::copy_n(smooth.block(b), 9, matrix_.block(base_slot_[b]));
     });
     sum = &matrix_;
   }
-  if (lasting_slots_.empty())
-    for (const BoundEnergy* energy : lasting)
-      lasting_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
-  for (std::size_t k = 0; k < lasting.size(); ++k) {
-    BlockSink sink(*lasting_slots_[k], *sum);
-    lasting[k]->add_hessian(x, projection, sink);
+  if (persistent_slots_.empty())
+    for (const BoundEnergy* energy : persistent)
+      persistent_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
+  for (std::size_t k = 0; k < persistent.size(); ++k) {
+    BlockSink sink(*persistent_slots_[k], *sum);
+    persistent[k]->add_hessian(x, projection, sink);
   }
-  for (std::size_t k = 0; k < passing.size(); ++k) {
+  for (std::size_t k = 0; k < transient.size(); ++k) {
     const BlockSlots slots(*pattern_, stencils[k]);
     BlockSink sink(slots, *sum);
-    passing[k]->add_hessian(x, projection, sink);
+    transient[k]->add_hessian(x, projection, sink);
   }
   return *sum;
 }
