@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/words.h"
@@ -158,7 +159,32 @@ void convert(const ConfigNode& node, int& value) { value = parse_integer(node.sc
 void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
 void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
 
+void check_former_names(const Schema& schema) {
+  for (const Parameter& p : schema.parameters)
+    for (const Parameter& other : schema.parameters)
+      if (std::find(p.former_names.begin(), p.former_names.end(), other.name) != p.former_names.end())
+        throw std::runtime_error("\"" + other.name + "\" is declared, and as a former name of \"" + p.name +
+                                 "\"");
+}
+
 }  // namespace parameter_detail
+
+namespace {
+
+/// `"old" in newton is now called "new"` for a key of an earlier version, else "". `renamed` receives the
+/// parameter that has the new name, if it is of the same section.
+std::string renaming_of(const std::string& key, const std::string& in, const Schema& schema,
+                        const Parameter** renamed) {
+  for (const Parameter& p : schema.parameters)
+    if (std::find(p.former_names.begin(), p.former_names.end(), key) != p.former_names.end()) {
+      *renamed = &p;
+      return "\"" + key + "\"" + in + " is now called \"" + p.name + "\"";
+    }
+  const auto moved = schema.moved.find(key);
+  return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
+}
+
+}  // namespace
 
 void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
   const std::string in = name.empty() ? "" : " in " + name;
@@ -170,6 +196,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   std::vector<std::string> known;
   for (const Parameter& p : parameters) known.push_back(p.name);
   std::map<std::string, size_t> first_of;
+  std::set<const Parameter*> renamed;  // written under a former name
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
@@ -178,6 +205,12 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       errors.push_back({map.key_places[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                "; it is first set at " + map.key_places[first].text()});
     } else if (index == known.size()) {
+      const Parameter* parameter = nullptr;
+      if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
+        errors.push_back({map.key_places[i], renaming});
+        renamed.insert(parameter);
+        continue;
+      }
       const std::string nearest = nearest_word(key, known);
       const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
                                : known.empty()  ? "; it takes no keys"
@@ -189,7 +222,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     }
   }
   for (const Parameter& p : parameters)
-    if (p.required && !map.find(p.name))
+    if (p.required && !map.find(p.name) && !renamed.count(&p))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,7 +17,8 @@ namespace drape {
 /// and the saved config all derive from it. Its default is the member's value in a fresh struct.
 struct Parameter {
   std::string name;
-  std::string type;  ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::vector<std::string> former_names;  ///< refused, with a message that gives the name
+  std::string type;                       ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
   std::string meaning;
   std::string unit;    ///< SI; empty or "1" where there is none
   std::string source;  ///< paper and equation, or design note
@@ -44,10 +46,12 @@ class Schema {
  public:
   std::string name;  ///< what error texts call it ("in newton"); may be empty
   std::vector<Parameter> parameters;
+  std::map<std::string, std::string> moved;  ///< keys that went to another section, and their new paths
   std::function<std::shared_ptr<void>()> fresh;  ///< a struct with its defaults
 
-  /// Reads a map into `object` (a struct with this schema). Unknown keys (with the nearest known name),
-  /// wrong types, values out of range, missing required and repeated keys are all appended to `errors`.
+  /// Reads a map into `object` (a struct with this schema). Unknown keys (with their new name if they had
+  /// been renamed, else with the nearest known name), wrong types, values out of range, missing required and
+  /// repeated keys are all appended to `errors`.
   void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
   /// The object as a map with every parameter in it.
   ConfigNode write(const void* object) const;
@@ -59,6 +63,12 @@ class ParameterHandle {
   explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
   ParameterHandle& meaning(std::string text) {
     p_.meaning = std::move(text);
+    return *this;
+  }
+  /// A name that the parameter had in an earlier version. It is refused, with a message that gives the new
+  /// one; there are no aliases. Works for sections too.
+  ParameterHandle& formerly(std::string name) {
+    p_.former_names.push_back(std::move(name));
     return *this;
   }
   ParameterHandle& unit(std::string text) {

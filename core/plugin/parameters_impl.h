@@ -38,6 +38,9 @@ void convert(const ConfigNode& node, std::optional<T>& value) {
   if (node.kind != ConfigNode::Kind::null) convert(node, value.emplace());
 }
 
+/// Throws std::runtime_error if a former name is one that is in use.
+void check_former_names(const Schema& schema);
+
 inline ConfigNode to_node(double value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(int value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(bool value) { return ConfigNode::of(value); }
@@ -189,6 +192,9 @@ class Declaration {
     return add(name, member);
   }
 
+  /// A key that this section had in an earlier version and that is now at `path`, from the top of the file.
+  void moved(const std::string& key, const std::string& path) { schema.moved[key] = path; }
+
  private:
   Parameter& append(const std::string& name, const std::string& type) {
     for (const Parameter& p : schema.parameters)
@@ -204,6 +210,7 @@ template <class Struct>
 Schema schema_of(const std::string& name) {
   Declaration<Struct> declaration;
   Struct::declare(declaration);
+  parameter_detail::check_former_names(declaration.schema);
   declaration.schema.name = name;
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
   return declaration.schema;
