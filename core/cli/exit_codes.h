@@ -15,7 +15,7 @@ constexpr int exit_by_signal = 128;
 
 struct ExitCode {
   int code;
-  const char* meaning;
+  const char* description;
 };
 
 constexpr ExitCode exit_codes[] = {

@@ -17,7 +17,7 @@
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/compare.h"
 #include "core/report/report.h"
 #include "core/report/run_set.h"
@@ -150,7 +150,7 @@ std::string exit_codes_help() {
   std::string text = "Exit codes:\n";
   for (const ExitCode& code : exit_codes) {
     const std::string number = std::to_string(code.code);
-    text += "  " + number + std::string(6 - number.size(), ' ') + code.meaning + "\n";
+    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
   }
   return text;
 }

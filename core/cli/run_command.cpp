@@ -11,7 +11,7 @@
 #include "core/experiment/run_folder.h"
 #include "core/mesh/message_text.h"
 #include "core/numerics/parallel.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/view/live_view.h"
 
 namespace drape {

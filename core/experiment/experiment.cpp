@@ -19,85 +19,86 @@ void LoopParameters::declare(Declaration<LoopParameters>& d) {
       .unit("m")
       .at_least(-bounds::largest_length)
       .at_most(bounds::largest_length)
-      .meaning("x0, y0, x1, y1, … around the outline")
+      .description("x0, y0, x1, y1, … around the outline")
       .required();
 }
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape)
       .choices({"square", "rectangle", "disc", "polygon", "file"})
-      .meaning("pattern, flat in z = 0 with a corner (a disc: its centre) at the origin, or a mesh file");
+      .description("pattern, flat in z = 0 with a corner (a disc: its centre) at the origin, or a mesh file");
   d.add("side", &ClothParameters::side)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("side of a square");
+      .description("side of a square");
   d.add("size", &ClothParameters::size)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("width and height of a rectangle");
+      .description("width and height of a rectangle");
   d.add("radius", &ClothParameters::radius)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("radius of a disc");
-  d.add_sections("loops", &ClothParameters::loops).meaning("a polygon's outline, then its holes");
+      .description("radius of a disc");
+  d.add_sections("loops", &ClothParameters::loops).description("a polygon's outline, then its holes");
   d.add("file", &ClothParameters::file)
       .path()
-      .meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
+      .description("OBJ, OFF or PLY with the rest shape, relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
-      .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
+      .description("of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
       .at_least(3)
       .at_most(bounds::most_vertices)
-      .meaning("about how many vertices the coarsest level has");
+      .description("about how many vertices the coarsest level has");
   d.add("columns", &ClothParameters::columns)
       .at_least(0)
       .at_most(bounds::most_vertices)
-      .meaning("vertices along the width of a grid; 0 takes it from `vertices`");
+      .description("vertices along the width of a grid; 0 takes it from `vertices`");
   d.add("rows", &ClothParameters::rows)
       .at_least(0)
       .at_most(bounds::most_vertices)
-      .meaning("vertices along the height of a grid; 0 takes it from `vertices`");
+      .description("vertices along the height of a grid; 0 takes it from `vertices`");
   d.add("seed", &ClothParameters::seed)
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning("of a random triangulation");
+      .description("of a random triangulation");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("file", &StartParameters::file)
       .path()
-      .meaning(
+      .description(
           "a mesh with the coarsest level's triangles, in place of the rest shape; split at midpoints on "
           "finer levels");
   d.add("scale", &StartParameters::scale)
       .at_least(-bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .meaning("factors on the rest shape's x, y, z");
+      .description("factors on the rest shape's x, y, z");
   d.add("rotate", &StartParameters::rotate)
-      .unit("°")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("then turned about x, y, z, in this order");
+      .description("then turned about x, y, z, in this order");
   d.add("translate", &StartParameters::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("then moved");
+      .description("then moved");
   d.add("perturbation", &StartParameters::perturbation)
       .unit("m")
       .at_least(0)
       .at_most(bounds::largest_length)
-      .meaning("amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
+      .description(
+          "amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("wavelength of the noise");
-  d.add("seed", &StartParameters::seed).at_least(0).at_most(bounds::largest_int).meaning("of the noise");
+      .description("wavelength of the noise");
+  d.add("seed", &StartParameters::seed).at_least(0).at_most(bounds::largest_int).description("of the noise");
 }
 
 namespace {
@@ -110,48 +111,49 @@ void declare_place(Declaration<Place>& d) {
   };
   d.add("region", member(&PlaceParameters::region))
       .choices({"nearest", "ball", "box", "border", "vertices"})
-      .meaning(
+      .description(
           "which vertices: the one of the coarsest level nearest to `point`, those within `radius` of it, "
           "those in a box, the border, or by index on the coarsest level");
   d.add("point", member(&PlaceParameters::point))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("of nearest and ball, in the rest shape");
+      .description("of nearest and ball, in the rest shape");
   d.add("radius", member(&PlaceParameters::radius))
       .unit("m")
       .at_least(0)
       .at_most(bounds::largest_coordinate)
-      .meaning("of a ball");
+      .description("of a ball");
   d.add("lower", member(&PlaceParameters::lower))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("corner of a box, in the rest shape");
+      .description("corner of a box, in the rest shape");
   d.add("upper", member(&PlaceParameters::upper))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("opposite corner of a box");
+      .description("opposite corner of a box");
   d.add("vertices", member(&PlaceParameters::vertices))
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning("indices, from 0");
+      .description("indices, from 0");
   d.add("move", member(&PlaceParameters::move))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("to the rest place, after `turn`, moved by this; without both, to where the start puts them");
+      .description(
+          "to the rest place, after `turn`, moved by this; without both, to where the start puts them");
   d.add("turn", member(&PlaceParameters::turn))
-      .unit("°")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("to the rest place turned about x, y, z, in this order, through `about`");
+      .description("to the rest place turned about x, y, z, in this order, through `about`");
   d.add("about", member(&PlaceParameters::about))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("centre of `turn`, in the rest shape");
+      .description("centre of `turn`, in the rest shape");
 }
 
 }  // namespace
@@ -164,73 +166,76 @@ void HandleParameters::declare(Declaration<HandleParameters>& d) {
       .unit("1/s²")
       .at_least(0)
       .at_most(bounds::largest_modulus)
-      .meaning("κ_B of the pull κ_B/2 m ‖x − x̃‖²; by default the number of the membrane modulus")
+      .description("κ_B of the pull κ_B/2 m ‖x − x̃‖²; by default the number of the membrane modulus")
       .source("supplement, section 4");
 }
 
 void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
   d.add("method", &ReferenceParameters::method)
-      .meaning(
+      .description(
           "method whose finest state it is; `lowest` takes, of all methods' finest states that have "
           "converged, "
           "the one of lowest energy");
   d.add("force_tolerance", &ReferenceParameters::force_tolerance)
       .at_least(0)
       .at_most(1e12)
-      .meaning("to which that state is solved further, once all methods have ended; 0 leaves it as it is");
+      .description(
+          "to which that state is solved further, once all methods have ended; 0 leaves it as it is");
   d.add("file", &ReferenceParameters::file)
       .path()
-      .meaning(
+      .description(
           "in place of a method: a mesh on the finest level, or the folder of a run that had a reference");
 }
 
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
-  d.add("name", &ExperimentParameters::name).required().meaning("names the results folder and the report");
-  d.add("description", &ExperimentParameters::description).meaning("one sentence for the report");
+  d.add("name", &ExperimentParameters::name)
+      .required()
+      .description("names the results folder and the report");
+  d.add("description", &ExperimentParameters::description).description("one sentence for the report");
   d.add("table1_scene", &ExperimentParameters::table1_scene)
-      .meaning("block of the supplement's Table 1 that the report sets beside the result");
-  d.add_section("cloth", &ExperimentParameters::cloth).meaning("the coarsest level");
+      .description("block of the supplement's Table 1 that the report sets beside the result");
+  d.add_section("cloth", &ExperimentParameters::cloth).description("the coarsest level");
   d.add("levels", &ExperimentParameters::levels)
       .at_least(1)
       .at_most(10)
-      .meaning("each 1→4 finer than the last");
-  d.add_section("material", &ExperimentParameters::material).meaning("of the cloth");
-  d.add_section("start", &ExperimentParameters::start).meaning("where the cloth starts");
+      .description("each 1→4 finer than the last");
+  d.add_section("material", &ExperimentParameters::material).description("of the cloth");
+  d.add_section("start", &ExperimentParameters::start).description("where the cloth starts");
   d.add_sections("pins", &ExperimentParameters::pins)
-      .meaning("vertices held in place (hard positions); what they hold they bring there");
+      .description("vertices held in place (hard positions); what they hold they bring there");
   d.add_sections("handles", &ExperimentParameters::handles)
-      .meaning("vertices pulled to places (soft positions)");
+      .description("vertices pulled to places (soft positions)");
   d.add_section("schedule", &ExperimentParameters::schedule)
-      .meaning(
+      .description(
           "conditions that change while a level is solved that begins at the scene's start; later levels "
           "have "
           "the last ones");
-  d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
-  d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
+  d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().description("summed");
+  d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").description("loop if not given");
   d.add_node("contact", &ExperimentParameters::contact)
       .plugin("contact")
       .or_list()
-      .meaning("one or a list of them; none if not given");
+      .description("one or a list of them; none if not given");
   d.add_section("newton", &ExperimentParameters::newton)
-      .meaning("of every method, where it says nothing else");
+      .description("of every method, where it says nothing else");
   d.add_node("methods", &ExperimentParameters::methods)
       .required()
-      .meaning("a map: the method's name, then its solver; without `type`, the name is the solver's");
+      .description("a map: the method's name, then its solver; without `type`, the name is the solver's");
   d.add_node("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
-      .meaning("all that there are if not given");
+      .description("all that there are if not given");
   d.add_section("reference", &ExperimentParameters::reference)
-      .or_word("method")
-      .meaning(
+      .shorthand("method")
+      .description(
           "what errors are measured against, beside each method's own finest state; a method's name, "
           "or `lowest`, is enough");
   d.add("frames", &ExperimentParameters::frames)
       .at_least(0)
       .at_most(1000)
-      .meaning("states a level that are kept on the way and whose errors are measured; 0 for none");
+      .description("states a level that are kept on the way and whose errors are measured; 0 for none");
   d.add_choice("verify", &ExperimentParameters::verify,
                {{"every_level", Verify::every_level}, {"every_step", Verify::every_step}})
-      .meaning("when intersections are counted, by exact predicates where the shapes are meshes");
+      .description("when intersections are counted, by exact predicates where the shapes are meshes");
 }
 
 void check_name(const std::string& what, const std::string& name, const Location& where,

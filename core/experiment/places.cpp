@@ -1,6 +1,6 @@
 #include "core/experiment/places.h"
 
-#include "core/mesh/turn.h"
+#include "core/mesh/rotation.h"
 #include "core/model/position_penalty.h"
 
 namespace drape {
@@ -59,14 +59,14 @@ class Handles final : public Energy {
 }  // namespace
 
 Eigen::Vector3d PlaceParameters::place(const Eigen::Vector3d& rest) const {
-  const Eigen::Vector3d at = turn ? Eigen::Vector3d(turned(*turn) * (rest - about) + about) : rest;
+  const Eigen::Vector3d at = turn ? Eigen::Vector3d(rotation_matrix(*turn) * (rest - about) + about) : rest;
   return move ? Eigen::Vector3d(at + *move) : at;
 }
 
 Eigen::Vector3d StartParameters::place(const Eigen::Vector3d& rest, double noise) const {
   Eigen::Vector3d p = rest.cwiseProduct(scale);
   p.z() += noise;
-  return turned(rotate) * p + translate;
+  return rotation_matrix(rotate) * p + translate;
 }
 
 std::vector<int> vertices_of(const PlaceParameters& region, const Level& level, const Level& coarsest) {

@@ -12,7 +12,7 @@
 #include "core/mesh/io.h"
 #include "core/mesh/message_text.h"
 #include "core/numerics/stopwatch.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 

@@ -8,7 +8,7 @@
 #include "core/mesh/message_text.h"
 #include "core/model/stretch_limit.h"
 #include "core/plugin/make.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 
@@ -95,31 +95,31 @@ StepLimit obstacles_way(const LevelModel& from, const LevelModel& to, const Posi
 void KeyParameters::declare(Declaration<KeyParameters>& d) {
   d.add("set", &KeyParameters::set)
       .required()
-      .meaning(
+      .description(
           "path of the parameter, as for --set: in material, energies, contact, pins or handles; a plugin "
           "of a list by its place or its name, as in energies.gravity.acceleration");
-  d.add("at", &KeyParameters::at).at_least(-1e9).at_most(1e9).required().meaning("pseudo-times, rising");
+  d.add("at", &KeyParameters::at).at_least(-1e9).at_most(1e9).required().description("pseudo-times, rising");
   d.add_node("to", &KeyParameters::to)
       .required()
-      .meaning("a list of as many values, numbers or lists of them");
+      .description("a list of as many values, numbers or lists of them");
   d.add_choice("between", &KeyParameters::between,
                {{"linear", Between::linear}, {"log", Between::log}, {"jump", Between::jump}})
-      .meaning("from one time to the next; before the first and after the last the value stays");
+      .description("from one time to the next; before the first and after the last the value stays");
 }
 
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("duration", &ScheduleParameters::duration)
       .at_least(0)
       .at_most(1e9)
-      .meaning("pseudo-time in all, in the unit of the keys; 0 goes to the last of them");
+      .description("pseudo-time in all, in the unit of the keys; 0 goes to the last of them");
   d.add("steps", &ScheduleParameters::steps)
       .at_least(1)
       .at_most(1e6)
-      .meaning("changes of the conditions in that time, evenly spaced")
+      .description("changes of the conditions in that time, evenly spaced")
       .source("supplement, section 4");
   d.add("settle", &ScheduleParameters::settle)
-      .meaning("to equilibrium after every change; if not, one implicit step. After the last always");
-  d.add_sections("keys", &ScheduleParameters::keys).meaning("what changes");
+      .description("to equilibrium after every change; if not, one implicit step. After the last always");
+  d.add_sections("keys", &ScheduleParameters::keys).description("what changes");
 }
 
 void set_first_keys(ConfigNode& source) {

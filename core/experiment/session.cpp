@@ -6,7 +6,7 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/run_data.h"
 #include "core/version.h"
 

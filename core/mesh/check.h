@@ -22,7 +22,7 @@ std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 /// mesh with no extent, and one so far from the origin that rounding changes its shape.
 std::vector<std::string> check_coordinates(const Positions& x);
 
-/// The smallest angle of all triangles [degrees]; 0 for a mesh without triangles.
+/// The smallest angle of all triangles [degree]; 0 for a mesh without triangles.
 double smallest_angle(const TriangleMesh& mesh);
 
 }  // namespace drape

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -92,7 +92,7 @@ std::string describe(const Schema& schema) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;
-    std::string note = p.meaning;
+    std::string note = p.description;
     if (!p.source.empty()) note += (note.empty() ? "[" : " [") + p.source + "]";
     if (!note.empty()) text += "      " + std::string(2 * size_t(rows[i - 1].depth), ' ') + note + "\n";
   }
@@ -108,12 +108,12 @@ std::string describe_markdown(const Schema& schema) {
   const std::vector<Row> rows = rows_of(schema);
   if (rows.empty()) return "No parameters.\n";
   std::string text =
-      "| name | type | default | unit | range | meaning | source |\n|---|---|---|---|---|---|---|\n";
+      "| name | type | default | unit | range | description | source |\n|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows) {
     const Parameter& p = *row.parameter;
     const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
     text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
-            cell(row.range) + cell(p.meaning) + cell(p.source) + "\n";
+            cell(row.range) + cell(p.description) + cell(p.source) + "\n";
   }
   return text;
 }

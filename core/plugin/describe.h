@@ -7,7 +7,7 @@
 
 namespace drape {
 
-/// For the terminal: a row for each parameter with type, default and range, its meaning and source below;
+/// For the terminal: a row for each parameter with type, default and range, its description and source below;
 /// the parameters of sections are indented.
 std::string describe(const Schema& schema);
 std::string describe(const RegistryEntry& entry);  ///< the same after the entry's name, summary and library

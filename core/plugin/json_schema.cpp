@@ -52,9 +52,9 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
     json = item_schema(p.type, p, registry);
     if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
   }
-  if (!p.word_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
+  if (!p.shorthand_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
   if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
-  std::string description = p.meaning;
+  std::string description = p.description;
   if (!p.unit.empty() && p.unit != "1") description += (description.empty() ? "[" : " [") + p.unit + "]";
   if (!description.empty()) json["description"] = description;
   return json;

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/mesh/message_text.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -119,14 +119,14 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
 /// A section that was written as a bare word, as the map that it stands for; set_path has made one of it
 /// already, with the word as its type, where it set another key.
 ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
-  if (p.word_key.empty()) return node;
+  if (p.shorthand_key.empty()) return node;
   ConfigNode map = node;
   for (auto& [key, value] : map.entries)
-    if (key == "type") key = p.word_key;
+    if (key == "type") key = p.shorthand_key;
   if (node.kind != Kind::scalar) return map;
   map = ConfigNode();
   map.where = node.where;
-  map.add(p.word_key, node);
+  map.add(p.shorthand_key, node);
   return map;
 }
 

@@ -18,10 +18,10 @@ namespace drape {
 struct Parameter {
   std::string name;
   std::vector<std::string> former_names;  ///< refused, with a message that gives the name
-  std::string type;                       ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
-  std::string meaning;
-  std::string unit;    ///< SI; empty or "1" where there is none
-  std::string source;  ///< paper and equation, or design note
+  std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::string description;  ///< one phrase: what it sets
+  std::string unit;         ///< SI; empty or "1" where there is none
+  std::string source;       ///< paper and equation, or design note
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool open_minimum = false;  ///< the minimum itself is refused
@@ -32,7 +32,7 @@ struct Parameter {
   std::vector<std::string> choices;  ///< text: the allowed words, empty for any
   std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
   bool or_list = false;              ///< a node: a list of such nodes is taken too
-  std::string word_key;              ///< a section: a bare word stands for the map with it under this key
+  std::string shorthand_key;         ///< a section: a bare word stands for the map with it under this key
   bool path = false;                 ///< text: a file, relative to the one it is written in
 
   // Type-erased access to the member of a struct; `read` is given only nodes that passed the checks above.
@@ -46,7 +46,7 @@ class Schema {
  public:
   std::string name;  ///< what error texts call it ("in newton"); may be empty
   std::vector<Parameter> parameters;
-  std::map<std::string, std::string> moved;  ///< keys that went to another section, and their new paths
+  std::map<std::string, std::string> moved;      ///< keys that went to another section, and their new paths
   std::function<std::shared_ptr<void>()> fresh;  ///< a struct with its defaults
 
   /// Reads a map into `object` (a struct with this schema). Unknown keys (with their new name if they had
@@ -61,8 +61,8 @@ class Schema {
 class ParameterHandle {
  public:
   explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
-  ParameterHandle& meaning(std::string text) {
-    p_.meaning = std::move(text);
+  ParameterHandle& description(std::string text) {
+    p_.description = std::move(text);
     return *this;
   }
   /// A name that the parameter had in an earlier version. It is refused, with a message that gives the new
@@ -117,8 +117,8 @@ class ParameterHandle {
     p_.or_list = true;
     return *this;
   }
-  ParameterHandle& or_word(std::string key) {
-    p_.word_key = std::move(key);
+  ParameterHandle& shorthand(std::string key) {
+    p_.shorthand_key = std::move(key);
     return *this;
   }
   ParameterHandle& path() {
@@ -135,7 +135,7 @@ class ParameterHandle {
 ///     struct NewtonParameters {
 ///       double step_size = 0.5;
 ///       static void declare(Declaration<NewtonParameters>& d) {
-///         d.add("step_size", &NewtonParameters::step_size).unit("s").above(0).meaning("…").source("…");
+///         d.add("step_size", &NewtonParameters::step_size).unit("s").above(0).description("…").source("…");
 ///       }
 ///     };
 ///

@@ -7,7 +7,7 @@
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/parameters.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/pair_measures.h"
 #include "core/report/run_rows.h"

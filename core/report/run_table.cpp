@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/cli/exit_codes.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/tables.h"
 

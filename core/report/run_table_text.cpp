@@ -4,7 +4,7 @@
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/config_node.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/run_table.h"
 

@@ -9,7 +9,7 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/sweep/experiment_files.h"
 #include "core/sweep/variations.h"
 

@@ -7,56 +7,57 @@ namespace drape {
 void Expectation::declare(Declaration<Expectation>& d) {
   d.add("outcome", &Expectation::outcome)
       .choices({"converged", "converged_to_rounding", "infeasible", "stalled", "out_of_steps", "refused"})
-      .meaning("of every method's worst level; refused: before anything was computed");
+      .description("of every method's worst level; refused: before anything was computed");
   d.add("message", &Expectation::message)
-      .meaning("a part of what it says then; required where it is not to converge");
+      .description("a part of what it says then; required where it is not to converge");
 }
 
 void VariationParameters::declare(Declaration<VariationParameters>& d) {
-  d.add("name", &VariationParameters::name).required().meaning("names its runs, and their folder");
+  d.add("name", &VariationParameters::name).required().description("names its runs, and their folder");
   d.add_node("set", &VariationParameters::set)
-      .meaning("a map: a path of keys in the experiment (methods.pcs.hessian, energies.0), then its value");
+      .description(
+          "a map: a path of keys in the experiment (methods.pcs.hessian, energies.0), then its value");
   d.add("levels", &VariationParameters::levels)
       .at_least(1)
       .at_most(10)
-      .meaning("in place of the experiment's");
+      .description("in place of the experiment's");
   d.add("methods", &VariationParameters::methods)
-      .meaning("which methods to run; those of the sweep if not given");
+      .description("which methods to run; those of the sweep if not given");
   d.add_section("expect", &VariationParameters::expect)
-      .meaning("how its runs are to end; `drape table` and the exit code say whether they did");
+      .description("how its runs are to end; `drape table` and the exit code say whether they did");
 }
 
 void SweepParameters::declare(Declaration<SweepParameters>& d) {
-  d.add("name", &SweepParameters::name).required().meaning("names the sweep's folder");
-  d.add("description", &SweepParameters::description).meaning("one sentence");
+  d.add("name", &SweepParameters::name).required().description("names the sweep's folder");
+  d.add("description", &SweepParameters::description).description("one sentence");
   d.add("base", &SweepParameters::base)
       .path()
-      .meaning("the experiment that is varied, relative to this file; required without experiments");
+      .description("the experiment that is varied, relative to this file; required without experiments");
   d.add("experiments", &SweepParameters::experiments)
-      .meaning(
+      .description(
           "several that are varied alike, in place of base; * in a file's name stands for anything, in the "
           "order of the alphabet");
   d.add_node("set", &SweepParameters::set)
-      .meaning("a map: a path of keys in the experiment, then its value, for every variation");
+      .description("a map: a path of keys in the experiment, then its value, for every variation");
   d.add("seeds", &SweepParameters::seeds)
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning(
+      .description(
           "every variation is run with each of these as start.seed; the experiment's alone if not given");
   d.add("repeats", &SweepParameters::repeats)
       .at_least(1)
       .at_most(10000)
-      .meaning("short for the seeds 1, 2, … up to this");
+      .description("short for the seeds 1, 2, … up to this");
   d.add("methods", &SweepParameters::methods)
-      .meaning("which of the experiment's methods to run; all if not given");
-  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).meaning("of each run");
+      .description("which of the experiment's methods to run; all if not given");
+  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("of each run");
   d.add("time_limit", &SweepParameters::time_limit)
       .unit("s")
       .above(0)
       .at_most(1e9)
-      .meaning("a run that takes longer is ended, and has failed; none if not given");
+      .description("a run that takes longer is ended, and has failed; none if not given");
   d.add_node("ablation", &SweepParameters::ablation)
-      .meaning(
+      .description(
           "a list of variations, or {grid: {path: [values], …}}: every combination; the experiments as they "
           "are if not "
           "given");

@@ -219,6 +219,6 @@ TEST_CASE("The exit codes are in every help") {
     INFO(help);
     const Ended ended = drape_with(help, folder.path);
     CHECK(ended.exit_code == drape::exit_done);
-    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.meaning));
+    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.description));
   }
 }

@@ -39,7 +39,7 @@ struct Everything {
 
   static void declare(Declaration<Everything>& d) {
     using E = Everything;
-    d.add("step_size", &E::step_size).unit("s").above(0).meaning("step of the flow").source("PCS eq. 2");
+    d.add("step_size", &E::step_size).unit("s").above(0).description("step of the flow").source("PCS eq. 2");
     d.add("fraction", &E::fraction).unit("1").at_least(0).below(1);
     d.add("count", &E::count).at_least(1).at_most(10);
     d.add("on", &E::on);
@@ -315,7 +315,7 @@ TEST_CASE("a schema describes sections and lists of them") {
     std::optional<double> limit;
     double density = 0;
     static void declare(Declaration<Top>& d) {
-      d.add_section("ball", &Top::ball).meaning("the obstacle");
+      d.add_section("ball", &Top::ball).description("the obstacle");
       d.add_sections("balls", &Top::balls);
       d.add("word", &Top::word).choices({"left", "right"});
       d.add("center", &Top::center).unit("m");

@@ -29,7 +29,7 @@ class Loop final : public Ballast, public Refiner {
           .unit("deg")
           .above(0)
           .at_most(180)
-          .meaning("sharper corners stay | sharp")
+          .description("sharper corners stay | sharp")
           .source("Loop 1987");
     }
   };
@@ -153,7 +153,7 @@ TEST_CASE("an entry describes itself for the terminal and for the reference page
         "refiner linear: Midpoints.\nfrom /lib/a.so\n\n  no parameters\n");
   CHECK(describe_markdown(*registry.find("refiner", "loop")) ==
         "### refiner `loop`\n\nLoop subdivision.\n\n"
-        "| name | type | default | unit | range | meaning | source |\n"
+        "| name | type | default | unit | range | description | source |\n"
         "|---|---|---|---|---|---|---|\n"
         "| `corner_angle` | number | `30` | deg | > 0, <= 180 "
         "| sharper corners stay \\| sharp | Loop 1987 |\n");

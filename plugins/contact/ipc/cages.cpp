@@ -120,12 +120,13 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
   d.add("count", &P::count)
       .at_least(0)
       .at_most(8)
-      .meaning("how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
+      .description(
+          "how many: level l of the cloth meets cage l, levels from this one on the obstacle itself");
   d.add("alpha", &P::alpha)
       .unit("1")
       .at_least(5e-3)
       .below(1)
-      .meaning(
+      .description(
           "of the innermost cage, in diagonals of the mesh's box: smaller holes are closed, and triangles "
           "are about as large")
       .source("Portaneri et al. 2022");
@@ -133,13 +134,13 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .unit("1")
       .at_least(1e-4)
       .below(1)
-      .meaning("likewise, how far it is from the mesh")
+      .description("likewise, how far it is from the mesh")
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth)
       .unit("1")
       .at_least(1)
       .at_most(10)
-      .meaning("alpha and offset of a cage over those of the next finer one");
+      .description("alpha and offset of a cage over those of the next finer one");
 }
 
 std::string why_not_around(const SoundMesh& outer, const SoundMesh& inner) {

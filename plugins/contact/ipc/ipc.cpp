@@ -11,40 +11,41 @@ namespace drape {
 
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
-  d.add("self_contact", &P::self_contact).meaning("keep the cloth apart from itself");
-  d.add_sections("obstacles", &P::obstacles).meaning("meshes in the cloth's way");
+  d.add("self_contact", &P::self_contact).description("keep the cloth apart from itself");
+  d.add_sections("obstacles", &P::obstacles).description("meshes in the cloth's way");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("Coulomb's μ, of the cloth against itself and against obstacles without their own");
+      .description("Coulomb's μ, of the cloth against itself and against obstacles without their own");
   d.add("range", &P::range)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(1e3)
-      .meaning("distance d̂ below which the barrier acts")
+      .description("distance d̂ below which the barrier acts")
       .source("docs/method.md, section 6");
   d.add("stiffness", &P::stiffness)
       .unit("Pa")
       .at_least(1e-9)
       .at_most(bounds::largest_modulus)
-      .meaning("κ: pressure of the barrier is κ |b'(distance / d̂)|; null chooses it from the cloth's weight")
+      .description(
+          "κ: pressure of the barrier is κ |b'(distance / d̂)|; null chooses it from the cloth's weight")
       .source("core/contact/stiffness.h");
   d.add("slip_distance", &P::slip_distance)
       .unit("m")
       .at_least(1e-12)
       .at_most(1e3)
-      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
+      .description("a contact that has slid less than this sticks: friction is smoothed below")
       .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &P::keep)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
-      .meaning("part of every gap that a step leaves")
+      .description("part of every gap that a step leaves")
       .source("Li et al. 2021, additive CCD");
   d.add_choice("broad_phase", &P::broad_phase,
                {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
-      .meaning("how near pairs are looked for: own tree, FCL's or CGAL's; they find the same");
+      .description("how near pairs are looked for: own tree, FCL's or CGAL's; they find the same");
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/mesh/message_text.h"
-#include "core/mesh/turn.h"
+#include "core/mesh/rotation.h"
 #include "core/plugin/bounds.h"
 
 namespace drape {
@@ -66,61 +66,64 @@ Form form_of(const ObstacleParameters& p) {
 
 void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
-  d.add("name", &P::name).meaning("what messages call it; by default its shape and number");
+  d.add("name", &P::name).description("what messages call it; by default its shape and number");
   d.add("shape", &P::shape)
       .choices({"file", "box", "sphere"})
-      .meaning(
+      .description(
           "what it is: a mesh from a file, a box about the origin, or a sphere about it whose vertices lie "
           "on the sphere");
-  d.add("file", &P::file).path().meaning("shape file: the mesh (.obj, .off or .ply), relative to this file");
+  d.add("file", &P::file)
+      .path()
+      .description("shape file: the mesh (.obj, .off or .ply), relative to this file");
   d.add("size", &P::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape box: its edges");
+      .description("shape box: its edges");
   d.add("radius", &P::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape sphere: its radius");
+      .description("shape sphere: its radius");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
-      .meaning(
+      .description(
           "shape sphere: how often an icosahedron's triangles are cut in four, 20 · 4^subdivisions in all");
   d.add("animation", &P::animation)
       .path()
-      .meaning("in place of file: meshes with the same triangles, which it takes the form of in turn");
+      .description("in place of file: meshes with the same triangles, which it takes the form of in turn");
   d.add("frame", &P::frame)
       .unit("1")
       .at_least(0)
       .at_most(1e6)
-      .meaning("which mesh of the animation it is, from 0 and linear in between; for a schedule to change");
+      .description(
+          "which mesh of the animation it is, from 0 and linear in between; for a schedule to change");
   d.add_section("cages", &P::cages)
-      .meaning("closed surfaces around it that coarse levels of the cloth meet in its place");
+      .description("closed surfaces around it that coarse levels of the cloth meet in its place");
   d.add("scale", &P::scale)
       .unit("1")
       .at_least(1 / bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .meaning("factor on its coordinates, the first of its moves");
+      .description("factor on its coordinates, the first of its moves");
   d.add("rotate", &P::rotate)
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("then turned about the x, then the y, then the z axis by these angles");
+      .description("then turned about the x, then the y, then the z axis by these angles");
   d.add("translate", &P::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("then moved by this");
+      .description("then moved by this");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("its μ against the cloth, in place of the model's");
+      .description("its μ against the cloth, in place of the model's");
 }
 
-Eigen::Matrix3d Pose::linear() const { return scale * turned(rotate); }
+Eigen::Matrix3d Pose::linear() const { return scale * rotation_matrix(rotate); }
 
 Positions Form::own_places(double frame) const {
   const int last = static_cast<int>(frames.size()) - 1;

@@ -6,8 +6,8 @@
 
 #include "core/contact/bent_advance.h"
 #include "core/contact/pair_geometry.h"
+#include "core/mesh/rotation.h"
 #include "core/mesh/same_triangles.h"
-#include "core/mesh/turn.h"
 #include "core/numerics/parallel.h"
 
 namespace drape {
@@ -180,7 +180,7 @@ Leg ObstacleWay::leg(double begin, double end) const {
     const Form &from = before_.bodies[i].form, &to = after_.bodies[i].form;
     body.from = between(from.pose, to.pose, begin);
     body.to = between(from.pose, to.pose, end);
-    body.turn = turned(body.from.rotate);
+    body.turn = rotation_matrix(body.from.rotate);
     const auto own_at = [&](double t) {
       if (from.frames == to.frames && from.stretch == to.stretch)
         return from.own_places(between<double>(from.frame, to.frame, t));

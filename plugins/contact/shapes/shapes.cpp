@@ -53,85 +53,89 @@ std::string word(SolidKind kind) {
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
   d.add("name", &ShapeParameters::name)
-      .meaning("what messages call it; empty: its number")
+      .description("what messages call it; empty: its number")
       .source("this project");
   d.add_choice("shape", &ShapeParameters::shape, words)
       .required()
-      .meaning("capsule: all points within radius of a segment; half_space: all behind a plane")
+      .description("capsule: all points within radius of a segment; half_space: all behind a plane")
       .source("this project");
   d.add("centre", &ShapeParameters::centre)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("its middle; of a half_space any point of the plane")
+      .description("its middle; of a half_space any point of the plane")
       .source("this project");
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("of a sphere, capsule or cylinder")
+      .description("of a sphere, capsule or cylinder")
       .source("this project");
   d.add("size", &ShapeParameters::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("edges of a box")
+      .description("edges of a box")
       .source("this project");
   d.add("height", &ShapeParameters::height)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("along the z axis before it is turned: of a cylinder, or of a capsule without its round ends")
+      .description(
+          "along the z axis before it is turned: of a cylinder, or of a capsule without its round ends")
       .source("this project");
   d.add("rotate", &ShapeParameters::rotate)
-      .unit("degrees")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("about the x axis, then y, then z")
+      .description("about the x axis, then y, then z")
       .source("this project");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
-      .meaning("of a half_space, towards the cloth; any length")
+      .description("of a half_space, towards the cloth; any length")
       .source("this project");
   d.add("friction", &ShapeParameters::friction)
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("coefficient μ; null: that of all shapes")
+      .description("coefficient μ; null: that of all shapes")
       .source("Li et al. 2020, section 5");
 }
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
-  d.add_sections("shapes", &Parameters::shapes).required().meaning("the obstacles").source("this project");
+  d.add_sections("shapes", &Parameters::shapes)
+      .required()
+      .description("the obstacles")
+      .source("this project");
   d.add("friction", &Parameters::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("coefficient μ of Coulomb friction")
+      .description("coefficient μ of Coulomb friction")
       .source("Li et al. 2020, section 5");
   d.add("range", &Parameters::range)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(1e3)
-      .meaning("d̂, the distance below which the barrier acts")
+      .description("d̂, the distance below which the barrier acts")
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Parameters::stiffness)
       .unit("Pa")
       .at_least(1e-9)
       .at_most(bounds::largest_modulus)
-      .meaning("κ, the barrier's; null: ten times the cloth's weight a unit of area")
+      .description("κ, the barrier's; null: ten times the cloth's weight a unit of area")
       .source("this project");
   d.add("slip_distance", &Parameters::slip_distance)
       .unit("m")
       .at_least(1e-12)
       .at_most(1e3)
-      .meaning("a contact that has slid less than this sticks: friction is smoothed below")
+      .description("a contact that has slid less than this sticks: friction is smoothed below")
       .source("Li et al. 2020, equation 14: ε_v h");
   d.add("keep", &Parameters::keep)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
-      .meaning("part of every gap that a step leaves")
+      .description("part of every gap that a step leaves")
       .source("Li et al. 2021, additive CCD");
 }
 

@@ -19,13 +19,14 @@ class Pressure final : public Energy {
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .meaning("on the back of every triangle, so that it pushes along the normal; negative for suction")
+          .description(
+              "on the back of every triangle, so that it pushes along the normal; negative for suction")
           .source("this project");
       d.add("centre", &Parameters::centre)
           .unit("m")
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
-          .meaning(
+          .description(
               "where the cone that closes an open cloth ends; of no effect where the border is pinned, "
               "nor on a closed mesh")
           .source("this project");

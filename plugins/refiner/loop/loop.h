@@ -25,7 +25,7 @@ class LoopRefiner : public Refiner {
           .unit("degree")
           .at_least(0)
           .at_most(360)
-          .meaning(
+          .description(
               "A border vertex whose rest interior angle differs from 180 degrees by more than this "
               "is a corner and is interpolated; others are rounded off.")
           .source("docs/method.md, section 4");

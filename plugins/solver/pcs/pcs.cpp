@@ -26,31 +26,31 @@ class PcsSolver : public ResumableSolver {
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
       d.add_section("interpolation", &Parameters::interpolation)
-          .meaning("how a coarse level sees the fine mesh whose energy it minimises");
+          .description("how a coarse level sees the fine mesh whose energy it minimises");
       d.add("target", &Parameters::target)
           .at_least(0)
           .at_most(8)
-          .meaning(
+          .description(
               "levels from a coarse one to that whose energy it minimises, where there are so many; 0 for "
               "the finest")
           .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
-          .meaning("matrix on coarse levels: the plain coarse model's, or that of what is minimised")
+          .description("matrix on coarse levels: the plain coarse model's, or that of what is minimised")
           .source("PCS section 4.2 for coarse; galerkin is a departure");
       d.add("depth", &Parameters::depth)
           .at_least(1)
           .at_most(8)
-          .meaning(
+          .description(
               "levels up to the model whose matrix galerkin carries down, of energies that the refiner's "
               "mesh is needed for, where there are so many");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
-          .meaning(
+          .description(
               "what follows the proxy's equilibrium on a coarse level: that of the level's own plain energy "
               "from there, in which folds are as sharp as the level can have them, or nothing")
           .source("PCS section 4 for none; plain is a departure (docs/locking.md)");
-      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+      d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}

@@ -12,17 +12,18 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
                         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
   };
   add("membrane", &ProxyInterpolation::membrane)
-      .meaning("where stretching is measured: on the coarse surface itself, or on the refiner's, which locks")
+      .description(
+          "where stretching is measured: on the coarse surface itself, or on the refiner's, which locks")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("bending", &ProxyInterpolation::bending)
-      .meaning(
+      .description(
           "where bending is measured: on the coarse surface with folds at its edges, or on the refiner's")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("external", &ProxyInterpolation::external)
-      .meaning("where loads and soft positions act")
+      .description("where loads and soft positions act")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("state", &ProxyInterpolation::state)
-      .meaning("carries a level's state up to the next")
+      .description("carries a level's state up to the next")
       .source("PCS section 4.3 for refiner; midpoint is a departure (docs/locking.md)");
 }
 

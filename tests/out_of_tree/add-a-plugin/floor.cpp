@@ -113,12 +113,16 @@ class FloorModel : public drape::ContactModel {
     double height = 0, range = 1e-3;
 
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("height", &Parameters::height).unit("m").at_least(-1e3).at_most(1e3).meaning("z of the floor");
+      d.add("height", &Parameters::height)
+          .unit("m")
+          .at_least(-1e3)
+          .at_most(1e3)
+          .description("z of the floor");
       d.add("range", &Parameters::range)
           .unit("m")
           .at_least(1e-9)
           .at_most(1)
-          .meaning("d̂: gap below which the floor repels");
+          .description("d̂: gap below which the floor repels");
     }
   };
 

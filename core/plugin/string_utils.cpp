@@ -1,4 +1,4 @@
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 #include <algorithm>
 #include <cctype>
