@@ -52,8 +52,9 @@ Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
   experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments.large_memory(), errors);
   if (errors.empty())
-    scene = build_scene(*experiment, errors,
-                        arguments.allow_start_repair ? TouchingStart::kept : TouchingStart::refused);
+    scene =
+        build_scene(*experiment, errors,
+                    arguments.allow_start_repair ? IntersectingStart::allowed : IntersectingStart::refused);
   if (scene && arguments.allow_start_repair) repair(errors);
   if (!errors.empty()) exit_code = report_errors(errors);
 }

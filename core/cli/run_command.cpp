@@ -102,7 +102,7 @@ int RunCommand::look_after(const std::filesystem::path& folder, const Registry& 
   refuse_damaged_results(folder);
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  const auto scene = experiment ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (!errors.empty()) return report_errors(errors);
   const std::vector<std::string> again = write_rest(RunFolder::of_run(folder), *scene);
   if (!again.empty())
@@ -122,7 +122,7 @@ int RunCommand::resume(const Registry& registry) const {
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene && checkpoint.own_start)
     begin_from(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
   if (!errors.empty()) return report_errors(errors);
@@ -145,7 +145,7 @@ int RunCommand::flow_on(const Registry& registry) const {
   const auto experiment = read_experiment(config, arguments_.overrides(), registry, errors);
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments_.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene) begin_from(*experiment, *scene, state.level, state.x, errors);
   if (!errors.empty()) return report_errors(errors);
   options.methods = {state.method};

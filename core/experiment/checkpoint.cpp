@@ -80,17 +80,17 @@ void fields(A& a, Work& w) {
 }
 
 template <class A>
-void fields(A& a, Frame& f) {
+void fields(A& a, Snapshot& f) {
   a(f.work, f.x);
 }
 
 template <class A>
-void fields(A& a, Frames::Memory& m) {
+void fields(A& a, SnapshotRecorder::Memory& m) {
   a(m.spacing, m.seen, m.kept);
 }
 
 template <class A>
-void fields(A& a, LevelFrames& f) {
+void fields(A& a, LevelSnapshots& f) {
   a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged, f.checksum);
 }
 
@@ -101,7 +101,7 @@ void fields(A& a, RecordedState& s) {
 
 template <class A>
 void fields(A& a, RecorderState& s) {
-  a(s.results, s.method, s.sound, s.sound_of_method, s.states, s.frames, s.measured, s.spent, s.last,
+  a(s.results, s.method, s.sound, s.sound_of_method, s.states, s.snapshots, s.measured, s.spent, s.last,
     s.overhead, s.steps_bytes, s.log_bytes);
 }
 

@@ -144,14 +144,15 @@ class Check {
                                  entries[s.method]["levels"].size() == c_.state.finished.size()),
             "results.json as it was, of the method under way");
     for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
-    require(s.frames.spacing > 0 && s.frames.seen >= 0, "the frames");
+    require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))
-      for (const Frame& frame : s.frames.kept) positions(frame.x, c_.state.level, "the frames");
-    for (const LevelFrames& level : s.measured) {
-      positions(level.last, level.level, "the frames");
+      for (const Snapshot& snapshot : s.snapshots.kept)
+        positions(snapshot.x, c_.state.level, "the snapshots");
+    for (const LevelSnapshots& level : s.measured) {
+      positions(level.last, level.level, "the snapshots");
       require(level.work.size() == level.iterations.size() && level.work.size() == level.energies.size() &&
                   !level.work.empty(),
-              "the frames");
+              "the snapshots");
     }
   }
 

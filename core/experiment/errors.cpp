@@ -55,25 +55,25 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
 }
 
 nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelResult& result,
-                                       const std::vector<Frame>& frames, const Work& before,
+                                       const std::vector<Snapshot>& snapshots, const Work& before,
                                        const Work& spent) {
-  LevelFrames level;
+  LevelSnapshots level;
   level.method = method;
   level.level = result.level;
-  level.file = "frames/" + method + "_l" + std::to_string(result.level) + ".bin";
+  level.file = "snapshots/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
   level.converged = has_converged(result.outcome);
   const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
   nlohmann::ordered_json entry = {{"file", level.file}};
-  for (const Frame& frame : frames) {
-    level.work.push_back(before + frame.work);
-    level.iterations.push_back(frame.work.iterations);
-    level.energies.push_back(energy_on_finest(scene_, weights, result.level, frame.x));
-    entry["iterations"].push_back(frame.work.iterations);
-    entry["seconds"].push_back(spent.seconds + frame.work.seconds);
+  for (const Snapshot& snapshot : snapshots) {
+    level.work.push_back(before + snapshot.work);
+    level.iterations.push_back(snapshot.work.iterations);
+    level.energies.push_back(energy_on_finest(scene_, weights, result.level, snapshot.x));
+    entry["iterations"].push_back(snapshot.work.iterations);
+    entry["seconds"].push_back(spent.seconds + snapshot.work.seconds);
   }
-  make_folder(folder_.file("frames"));
-  level.checksum = write_frames(folder_.file(level.file), frames);
+  make_folder(folder_.file("snapshots"));
+  level.checksum = write_snapshots(folder_.file(level.file), snapshots);
   sync_to_disk(folder_.file(level.file));
   levels_.push_back(std::move(level));
   return entry;
@@ -88,9 +88,9 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
   text += "\n";
   std::optional<ErrorTarget> standard;
   if (reference) standard = {*reference, scene_.models.back()->value(*reference)};
-  for (const LevelFrames& level : levels_) {
+  for (const LevelSnapshots& level : levels_) {
     std::optional<ErrorTarget> own;
-    for (const LevelFrames& other : levels_)
+    for (const LevelSnapshots& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
         own = {other.last, other.energies.back()};
     const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
@@ -98,7 +98,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
     std::vector<Positions> states;
     try {
-      states = read_frames(folder_.file(level.file), vertices, level.checksum);
+      states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
     } catch (const std::exception& error) {
       fault(error.what());  // they are nowhere else
       continue;

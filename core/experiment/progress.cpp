@@ -12,7 +12,7 @@ namespace drape {
 
 namespace {
 
-/// "gravity.acceleration", "pins.0.move, contact.range", "pins.0.move and 3 more".
+/// "gravity.acceleration", "pins.0.translate, contact.range", "pins.0.translate and 3 more".
 std::string first_two(const std::vector<std::string>& names) {
   if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
   return names.empty() ? "" : names[0] + (names.size() == 2 ? ", " + names[1] : "");

@@ -43,7 +43,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
       scene_(scene),
       steps_(folder.file("steps.csv"), mode),
       log_(folder.file("log.jsonl"), mode),
-      frames_(experiment.parameters.frames),
+      snapshots_(experiment.parameters.snapshots),
       errors_(folder, experiment, scene) {}
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
@@ -77,7 +77,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   sound_ = state.sound;
   sound_of_method_ = state.sound_of_method;
   states_ = state.states;
-  frames_.restore(state.frames);
+  snapshots_.restore(state.snapshots);
   errors_.restore(state.measured);
   spent_ = state.spent;
   last_ = state.last;
@@ -91,7 +91,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 RecorderState Recorder::state() const {
   const auto [steps_bytes, log_bytes] = file_sizes(folder_);
-  RecorderState s{json_text(results_), method_, sound_, sound_of_method_, states_,     frames_.memory(),
+  RecorderState s{json_text(results_), method_, sound_, sound_of_method_, states_,     snapshots_.memory(),
                   errors_.levels(),    spent_,  last_,  overhead_,        steps_bytes, log_bytes};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
@@ -142,7 +142,7 @@ void Recorder::method_started(const std::string& method) {
 }
 
 void Recorder::level_started(int level) {
-  frames_.begin_level();
+  snapshots_.begin_level();
   last_ = Work();
   log({{"event", "level_started"}, {"method", method_}, {"level", level}});
 }
@@ -167,7 +167,7 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
   const double seconds = r.seconds - overhead_;
   last_ = {std::max(seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
-  if (frames_.any()) frames_.iteration(last_, x);
+  if (snapshots_.any()) snapshots_.iteration(last_, x);
   char line[400];
   std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
                 r.iteration, seconds, r.energy, r.decrement, r.force_residual, r.step_length);
@@ -180,7 +180,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   if (r.smallest_gap && std::isfinite(*r.smallest_gap))
     std::snprintf(line, sizeof line, "%.6g", *r.smallest_gap), steps_ << line;
   steps_ << ',';
-  if (experiment_.parameters.verify == Verify::every_step)
+  if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
     if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
   std::snprintf(line, sizeof line, ",%.9g", spent_.flops + r.flops), steps_ << line;
   steps_ << std::endl;
@@ -240,9 +240,9 @@ void Recorder::level_finished(const LevelResult& r) {
       checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
   // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
   const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
-  if (frames_.any())
-    entry["levels"].back()["frames"] =
-        errors_.add(method_, r, frames_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
+  if (snapshots_.any())
+    entry["levels"].back()["snapshots"] =
+        errors_.add(method_, r, snapshots_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
   states_.push_back(state);
   spent_ = spent_ + work;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;

@@ -6,8 +6,8 @@
 
 #include "core/experiment/errors.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/frames.h"
 #include "core/experiment/run_folder.h"
+#include "core/experiment/snapshots.h"
 
 namespace drape {
 
@@ -24,8 +24,8 @@ struct RecorderState {
   std::string method;
   bool sound = true, sound_of_method = true;
   std::vector<RecordedState> states;  ///< of all levels so far, in order
-  Frames::Memory frames;
-  std::vector<LevelFrames> measured;
+  SnapshotRecorder::Memory snapshots;
+  std::vector<LevelSnapshots> measured;
   Work spent, last;
   double overhead = 0;
   std::uint64_t steps_bytes = 0, log_bytes = 0;
@@ -60,7 +60,7 @@ class Recorder : public Observer {
   void method_finished(const std::vector<LevelResult>& results,
                        const std::optional<MethodFailure>& failure = std::nullopt);
   /// Finds the reference, where need be by solving on under `observer`, and measures every method's finest
-  /// state and every frame's error. False when it was stopped.
+  /// state and every snapshot's error. False when it was stopped.
   bool measure_errors(Observer& observer, bool cancelled);
   void run_finished(bool complete);
 
@@ -112,7 +112,7 @@ class Recorder : public Observer {
   bool sound_ = true, sound_of_method_ = true;
   std::vector<RecordedState> states_;  // of all levels so far
   std::vector<std::string> restored_;
-  Frames frames_;
+  SnapshotRecorder snapshots_;
   ErrorTable errors_;
   Work spent_;           // by the method, in the levels before this one
   Work last_;            // of this level's last iteration

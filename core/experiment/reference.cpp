@@ -11,7 +11,7 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
   const std::string& named = experiment.parameters.reference.file;
   if (named.empty()) return std::nullopt;
   const auto refuse = [&](const std::string& why) {
-    errors.push_back({experiment.place_of("reference"), "\"reference\": " + why});
+    errors.push_back({experiment.location_of("reference"), "\"reference\": " + why});
     return std::nullopt;
   };
   std::filesystem::path file = named;

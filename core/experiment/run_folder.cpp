@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 // What a run writes; the only names that --overwrite may remove.
 constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv",
                                      "log.jsonl",   "levels",       "fields",       "rest",
-                                     "pictures",    "obstacles",    "frames",       "errors.csv",
+                                     "pictures",    "obstacles",    "snapshots",    "errors.csv",
                                      "start.ply",   "checkpoint",   "reference.ply"};
 constexpr const char* lock_name = "checkpoint/lock";
 /// Of the names of a method's files, which begin with the method's.

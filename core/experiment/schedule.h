@@ -4,12 +4,12 @@
 
 namespace drape {
 
-/// Sets in an experiment's map what its schedule's keys say for their beginning, so that it is read with it.
-/// What is wrong with them is left to check_schedule.
+/// Sets the first value of every key of the schedule in an experiment's map, before the map is read.
+/// check_schedule reports faults of the keys.
 void set_first_keys(ConfigNode& source);
 
-/// Appends what is wrong with the schedule of an experiment that has been read otherwise: paths that may not
-/// change, times, and values that their parameters refuse.
+/// Appends the faults of a schedule: parameters that may not change, times that do not ascend, and values
+/// that their parameters refuse.
 void check_schedule(const Experiment& experiment, ConfigErrors& errors);
 
 /// What a level model is made of under the conditions of a moment.
@@ -26,7 +26,7 @@ class Schedule final : public Conditions {
   Schedule(Experiment experiment, Scene& scene);
 
   int changes() const override { return p_.steps; }
-  bool settles() const override { return p_.settle; }
+  bool settles() const override { return p_.equilibrate; }
   void begin(int level, bool from_start) override;
   ConditionsState state() const override { return {change_, effective_}; }
   void restore(int level, const ConditionsState& state) override;

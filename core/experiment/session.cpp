@@ -199,14 +199,14 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
   for (const char* key : {"cloth", "refiner"})
     if (to_yaml(*before.resolved.find(key)) != to_yaml(*changed.resolved.find(key)))
       errors.push_back(
-          {changed.place_of(key), "\"" + std::string(key) +
-                                      "\" cannot be changed: the saved state is one of the cloth "
-                                      "as it was; run the changed experiment from its start"});
+          {changed.location_of(key), "\"" + std::string(key) +
+                                         "\" cannot be changed: the saved state is one of the cloth "
+                                         "as it was; run the changed experiment from its start"});
   if (changed.parameters.levels <= level)
-    errors.push_back({changed.place_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
-                                                      ", for the saved state is one of level " +
-                                                      std::to_string(level) +
-                                                      "; choose a coarser one with --level"});
+    errors.push_back(
+        {changed.location_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
+                                            ", for the saved state is one of level " + std::to_string(level) +
+                                            "; choose a coarser one with --level"});
 }
 
 void begin_from(const Experiment& experiment, Scene& scene, int level, const Positions& x,
@@ -214,7 +214,7 @@ void begin_from(const Experiment& experiment, Scene& scene, int level, const Pos
   const LevelModel& model = *scene.models[level];
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
   scene.starts[level] = x;
-  refuse_touching_start(experiment, model, x, errors);
+  refuse_intersecting_start(experiment, model, x, errors);
   for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
     scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
 }

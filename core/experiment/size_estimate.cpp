@@ -111,7 +111,7 @@ void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& erro
   why += fitting > 0 ? "; take at most " + std::to_string(fitting) + (fitting == 1 ? " level" : " levels")
                      : "; ask for fewer vertices";
   if (finest <= max_finest_vertices) why += ", or allow it with --allow-memory";
-  errors.push_back({e.place_of(e.source.find("levels") ? "levels" : "cloth"), why});
+  errors.push_back({e.location_of(e.source.find("levels") ? "levels" : "cloth"), why});
 }
 
 }  // namespace drape

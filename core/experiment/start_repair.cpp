@@ -206,13 +206,13 @@ Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& 
   const bool touches = !start.touches.empty();
   if (!touches && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   if (!experiment.parameters.pins.empty()) {
-    if (touches) errors.push_back({experiment.place_of("start"), pinned_text(start)});
+    if (touches) errors.push_back({experiment.location_of("start"), pinned_text(start)});
     return Vector3d::Zero();
   }
   Search search(places, start);
   search.run();
   if (!search.found()) {
-    errors.push_back({experiment.place_of("start"), hopeless_text(start, search, places.diagonal())});
+    errors.push_back({experiment.location_of("start"), hopeless_text(start, search, places.diagonal())});
     return Vector3d::Zero();
   }
   if (!search.way().isZero(0)) move(experiment, search.way());

@@ -78,7 +78,7 @@ class Converter {
       }
       refuse_nul(entry.first.Scalar(), where);
       node.add(entry.first.Scalar(), convert(entry.second));
-      node.key_places.back() = where;
+      node.key_locations.back() = where;
       // yaml-cpp puts a missing value where the next thing stands.
       if (ConfigNode& value = node.entries.back().second; value.kind == Kind::null) value.where = where;
     }
@@ -162,7 +162,7 @@ void set_places(ConfigNode& node, const Location& where) {
   node.where = where;
   for (ConfigNode& item : node.items) set_places(item, where);
   for (auto& entry : node.entries) set_places(entry.second, where);
-  for (Location& key : node.key_places) key = where;
+  for (Location& key : node.key_locations) key = where;
 }
 
 /// Whether an item of a list goes by the word: a plugin by its type, other things by their name.

@@ -80,7 +80,7 @@ const ConfigNode* ConfigNode::find(const std::string& key) const {
 
 void ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
-  key_places.push_back(value.where);
+  key_locations.push_back(value.where);
   entries.emplace_back(key, std::move(value));
 }
 

@@ -28,7 +28,7 @@ struct ConfigNode {
   bool quoted = false;                                      ///< scalar only: text, whatever it looks like
   std::vector<ConfigNode> items;                            ///< list only
   std::vector<std::pair<std::string, ConfigNode>> entries;  ///< map only, in order of writing
-  std::vector<Location> key_places;                         ///< map only, one an entry
+  std::vector<Location> key_locations;                      ///< map only, one an entry
 
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
 

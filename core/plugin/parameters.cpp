@@ -202,12 +202,12 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     const size_t first = first_of.emplace(key, i).first->second;
     const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
     if (first != i) {
-      errors.push_back({map.key_places[i], "repeated key \"" + excerpt(key) + "\"" + in +
-                                               "; it is first set at " + map.key_places[first].text()});
+      errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
+                                                  "; it is first set at " + map.key_locations[first].text()});
     } else if (index == known.size()) {
       const Parameter* parameter = nullptr;
       if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
-        errors.push_back({map.key_places[i], renaming});
+        errors.push_back({map.key_locations[i], renaming});
         renamed.insert(parameter);
         continue;
       }
@@ -215,7 +215,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
                                : known.empty()  ? "; it takes no keys"
                                                 : "; known keys are " + joined(known);
-      errors.push_back({map.key_places[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
+      errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
       parameters[index].read(
           object, parameters[index].path ? from_here(node) : spelt_out(node, parameters[index]), errors);

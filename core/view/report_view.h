@@ -14,8 +14,8 @@ struct ReportView {
   std::vector<std::string> notes;  ///< what cannot be shown and why, one line each
 };
 
-/// Made of the meshes in the run's folder: every level's last state, and recorded frames, spread evenly, as
-/// far as a few megabytes go.
+/// Made of the meshes in the run's folder: every level's last state, and recorded snapshots, spread evenly,
+/// as far as a few megabytes go.
 ReportView report_view(const RunData& run);
 
 /// three.js and the viewer's own scripts, as <script> elements.

@@ -51,7 +51,7 @@ const std::string top_keys =
     "name, description, table1_scene, cloth, levels, material, start, pins, handles, schedule, energies, "
     "refiner, contact, "
     "newton, "
-    "methods, metrics, reference, frames, verify";
+    "methods, metrics, reference, snapshots, check_intersections";
 
 }  // namespace
 
@@ -293,15 +293,15 @@ TEST_CASE("energies, methods and their names") {
   CHECK(said_of_edit("reference: newton", "reference: {file: .}") ==
         "error: e.yaml:14:12: \"reference\": . holds no reference.ply; name a mesh, as in "
         "./levels/newton_l3.ply, or run that experiment with a reference of its own\n");
-  CHECK(said_of_set("frames=-1") == "error: --set frames: \"frames\" must be at least 0, not -1\n");
+  CHECK(said_of_set("snapshots=-1") == "error: --set snapshots: \"snapshots\" must be at least 0, not -1\n");
 }
 
 TEST_CASE("pins that hold nothing, or what is not there") {
   const std::string corner = "{region: nearest, point: [1, 0, 0]}";
   CHECK(said_of_edit(corner, "{region: ball, point: [5, 5, 5]}") ==
-        "error: e.yaml:7:5: pin 1 (ball) holds no vertex of the coarsest level; widen its region\n");
+        "error: e.yaml:7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region\n");
   CHECK(said_of_edit(corner, "{region: vertices}") ==
-        "error: e.yaml:7:5: pin 1 (vertices) holds no vertex of the coarsest level; list some under "
+        "error: e.yaml:7:5: pin 1 (vertices) selects no vertex of the coarsest level; list some under "
         "\"vertices\"\n");
   CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, 36]}") ==
         "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to "

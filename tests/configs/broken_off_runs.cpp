@@ -141,7 +141,7 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
   folder.write("e.yaml", small_experiment());
   const std::string arguments =
       " run e.yaml --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
-      "--set newton.max_steps=3 --set frames=0 --out ";
+      "--set newton.max_steps=3 --set snapshots=0 --out ";
   REQUIRE(drape_with(arguments + "whole", folder.path).exit_code == drape::exit_not_converged);
   // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
   // what has the whole state in it.
@@ -175,7 +175,7 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
   CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_broken_off);
   const Ended rows =
       limited(16 * 512,
-              " run e.yaml --quiet --no-report --method newton --levels 1 --set frames=0 "
+              " run e.yaml --quiet --no-report --method newton --levels 1 --set snapshots=0 "
               "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
   CHECK(rows.exit_code == drape::exit_broken_off);
   CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));

@@ -20,7 +20,7 @@ contact:
     obstacles:
       - {name: ball, shape: sphere, radius: 0.1, subdivisions: 2, cages: {count: 2, alpha: 0.05, offset: 0.03}}
 newton: {force_tolerance: 1e-2, step_size: 0.05}
-verify: every_step
+check_intersections: every_step
 methods: {pcs: {}, cascadic: {}}
 )";
 

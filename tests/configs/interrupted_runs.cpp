@@ -120,7 +120,7 @@ TEST_CASE("a second signal ends a run at once while metrics and the report are m
       "exec " + drape_command +
           " run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
           "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
-          "--set frames=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
+          "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
       folder.path);
   wait_for_lines(command, folder / "out/log.jsonl", 6);  // both levels have ended
   CHECK(ended_by_two_signals(command).exit_code == 128 + SIGTERM);

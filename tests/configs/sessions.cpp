@@ -73,7 +73,7 @@ std::string without_column(const std::string& text, const std::string& name) {
 /// All that two equal runs have in common, by file.
 std::map<std::string, std::string> outcome_of(const fs::path& folder) {
   std::map<std::string, std::string> all;
-  for (const char* part : {"levels", "frames", "fields"})
+  for (const char* part : {"levels", "snapshots", "fields"})
     if (fs::exists(folder / part))
       for (const auto& entry : fs::directory_iterator(folder / part))
         all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
@@ -183,24 +183,24 @@ TEST_CASE("So has one whose conditions change, held vertices being pulled and ob
   // The ball rises into the sheets, which are held at two corners, one of which is moved, and become softer.
   const std::string schedule = R"(
 pins:
-  - {region: vertices, vertices: [0], move: [-0.2, -0.2, 0.1015]}
-  - {region: vertices, vertices: [35], move: [-0.2, -0.2, 0.1015]}
+  - {region: vertices, vertices: [0], translate: [-0.2, -0.2, 0.1015]}
+  - {region: vertices, vertices: [35], translate: [-0.2, -0.2, 0.1015]}
 schedule:
   steps: 6
   keys:
-    - {set: material.bending_modulus, at: [0, 0.5], to: [8e4, 8e3], between: log}
-    - {set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.03]]}
-    - set: pins.1.move
-      at: [0, 0.5, 1]
-      to: [[-0.2, -0.2, 0.1015], [-0.25, -0.2, 0], [-0.2, -0.2, 0.1015]]
-    - {set: energies.strain_limit.limit, at: [0, 1], to: [1.06, 1.04]}
+    - {parameter: material.bending_modulus, times: [0, 0.5], values: [8e4, 8e3], interpolation: log}
+    - {parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.03]]}
+    - parameter: pins.1.translate
+      times: [0, 0.5, 1]
+      values: [[-0.2, -0.2, 0.1015], [-0.25, -0.2, 0], [-0.2, -0.2, 0.1015]]
+    - {parameter: energies.strain_limit.limit, times: [0, 1], values: [1.06, 1.04]}
 )";
-  for (const char* settle : {"false", "true"}) {
+  for (const char* equilibrate : {"false", "true"}) {
     const Scratch folder;
     write_sheets(folder);
     folder.write("e.yaml", text_of(folder / "e.yaml") + schedule);
-    const Overrides some =
-        some_steps({{"schedule.settle", settle}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
+    const Overrides some = some_steps(
+        {{"schedule.equilibrate", equilibrate}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
     CHECK(check_in_parts(experiment_in(folder / "e.yaml", some), folder.path) > 40);
   }
 }
@@ -214,7 +214,7 @@ start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
 energies: [neo_hookean, hinge, gravity]
 contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
   {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
-schedule: {steps: 2, settle: true, keys: [{set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.05]]}]}
+schedule: {steps: 2, equilibrate: true, keys: [{parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.05]]}]}
 newton: {force_tolerance: 1e-2}
 methods: {pcs: {}}
 )");
@@ -247,12 +247,12 @@ TEST_CASE("So has one with a level that is begun from the scene's start, conditi
                replaced(text_of(fs::path(folders::source()) / "configs/hard/drape.yaml"),
                         "{shape: square, side: 1, columns: 16, rows: 16}", "{shape: file, file: fan.obj}") +
                    R"(
-schedule: {steps: 3, keys: [{set: energies.gravity.acceleration, at: [0, 1], to: [[0, 0, -9.81], [1, 0, -9.81]]}]}
+schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [1, 0, -9.81]]}]}
 )");
   const Experiment experiment = experiment_in(folder / "e.yaml", {{"start.translate", "[-0.5, -0.3, 0.32]"},
                                                                   {"start.perturbation", "1e-6"},
                                                                   {"methods", "{cascadic: {}}"},
-                                                                  {"frames", "2"},
+                                                                  {"snapshots", "2"},
                                                                   {"newton.max_steps", "60"}});
   CHECK(check_in_parts(experiment, folder.path) > 15);
   const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
@@ -426,18 +426,18 @@ TEST_CASE("What is damaged or gone of an interrupted run's files is written agai
   check_equal(folder / "out", folder / "whole");
 }
 
-TEST_CASE("Frames that are damaged leave their rows out of errors.csv, and cost nothing else") {
+TEST_CASE("Snapshots that are damaged leave their rows out of errors.csv, and cost nothing else") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Experiment experiment = experiment_in(folder / "e.yaml");
   RunOptions options = silent(folder / "out");
   options.stop = [&] { return fs::exists(folder / "out/levels/cascadic_l0.ply"); };
   run_experiment(experiment, *scene_of(experiment), options);
-  std::string frames = text_of(folder / "out/frames/pcs_l0.bin");
-  frames[frames.size() / 2] ^= 1;
-  folder.write("out/frames/pcs_l0.bin", frames);
+  std::string snapshots = text_of(folder / "out/snapshots/pcs_l0.bin");
+  snapshots[snapshots.size() / 2] ^= 1;
+  folder.write("out/snapshots/pcs_l0.bin", snapshots);
   CHECK(drape_with("run --resume out --quiet --no-report", folder.path).exit_code == 0);
-  CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("frames/pcs_l0.bin: is damaged"));
+  CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("snapshots/pcs_l0.bin: is damaged"));
   const std::string errors = text_of(folder / "out/errors.csv");
   CHECK(errors.find("\npcs,0,") == std::string::npos);
   CHECK(errors.find("\npcs,1,") != std::string::npos);
@@ -521,8 +521,8 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("results.json as it was", [](auto& c) { c.recorder.results = "{"; });
   refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
   refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });
-  refused("the frames", [](auto& c) { c.recorder.frames.spacing = 0; });
-  refused("the frames", [](auto& c) { c.recorder.measured = {LevelFrames()}; });
+  refused("the snapshots", [](auto& c) { c.recorder.snapshots.spacing = 0; });
+  refused("the snapshots", [](auto& c) { c.recorder.measured = {LevelSnapshots()}; });
   CHECK(text_of(folder / "out/log.jsonl") == before);
 }
 

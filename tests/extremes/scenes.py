@@ -30,7 +30,7 @@ DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
            "contact": [{"type": "shapes",
                         "shapes": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
                                    {"shape": "cylinder", "radius": 0.03, "height": 0.08, "centre": [-0.1, 0, 0]}]}],
-           "schedule": {"steps": 2, "keys": [{"set": "pins.0.move", "at": [0, 1], "to": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
+           "schedule": {"steps": 2, "keys": [{"parameter": "pins.0.translate", "times": [0, 1], "values": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
 PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
                     "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
                               {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
@@ -214,7 +214,7 @@ class Case:
         there = [sum(steps_there(s, p) for p, _ in chosen) for s in SCENES]
         suited = [s for s, n in zip(SCENES, there) if n == max(there)]
         self.config = {"name": f"extreme_{number}", "levels": 2, **copy.deepcopy(rng.choice(suited)),
-                       "newton": {"force_tolerance": 1e-2, "max_steps": 25}, "methods": {}, "frames": 2}
+                       "newton": {"force_tolerance": 1e-2, "max_steps": 25}, "methods": {}, "snapshots": 2}
         for p, value in chosen:
             put(self.config, schema, p, value, rng)
         if not self.config["methods"]:

@@ -65,7 +65,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(rows[2]["iterations"] == 1);
   CHECK(rows[0]["energy"].is_number());
   CHECK(rows[1]["vertices"].is_null());
-  CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("holds no vertex"));
+  CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("selects no vertex"));
 
   const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
   CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));

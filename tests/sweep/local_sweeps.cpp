@@ -193,7 +193,7 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
                "  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
-  const std::string error = "pin 0 (ball) holds no vertex of the coarsest level; widen its region";
+  const std::string error = "pin 0 (ball) selects no vertex of the coarsest level; widen its region";
   const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));

@@ -57,7 +57,7 @@ Checkpoint full() {
   c.own_start = Positions::Random(4, 3);
   c.recorder.results = "{}";
   c.recorder.states = {{"pcs", 1, Positions::Random(9, 3)}};
-  c.recorder.frames = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
+  c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
   c.recorder.steps_bytes = 12345;
   return c;

@@ -531,7 +531,7 @@ TEST_CASE("every method has a verdict beside the others that converged") {
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }
 
-TEST_CASE("the viewer has every state, and recorded frames that fit their mesh") {
+TEST_CASE("the viewer has every state, and recorded snapshots that fit their mesh") {
   SampleRun run;
   const auto whole_page = [&] {
     run.page();
@@ -542,14 +542,15 @@ TEST_CASE("the viewer has every state, and recorded frames that fit their mesh")
   CHECK(contains(page, "id=\"viewer-m1l1-stretch\""));
   CHECK_FALSE(contains(page, "id=\"viewer-m0l0f0\""));
 
-  fs::create_directories(run.folder / "frames");
+  fs::create_directories(run.folder / "snapshots");
   Json& level = run.results["methods"]["pcs"]["levels"][0];
-  level["frames"] = {{"file", "frames/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
-  write_file(run.folder / "frames/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
+  level["snapshots"] = {
+      {"file", "snapshots/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
   CHECK(contains(whole_page(), "id=\"viewer-m0l0f1\""));
-  write_file(run.folder / "frames/pcs_l0.bin", std::string(100, '\0'));
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(100, '\0'));
   const std::string without = whole_page();
   CHECK_FALSE(contains(without, "id=\"viewer-m0l0f1\""));
   CHECK(contains(without, "id=\"viewer-m0l0\""));
-  CHECK(contains(without, "frames/pcs_l0.bin: holds 100 bytes, not 3 frames of 169 vertices"));
+  CHECK(contains(without, "snapshots/pcs_l0.bin: holds 100 bytes, not 3 snapshots of 169 vertices"));
 }

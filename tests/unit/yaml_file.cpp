@@ -38,7 +38,7 @@ TEST_CASE("nodes bear the place where they stand") {
   const ConfigNode node = parsed("a: 1\nlist:\n  - x\n  - {k: \"v\"}\n");
   REQUIRE(node.entries.size() == 2);
   CHECK(node.find("a")->where.text() == "f:1:4");
-  CHECK(node.key_places[1].text() == "f:2:1");
+  CHECK(node.key_locations[1].text() == "f:2:1");
   const ConfigNode& list = *node.find("list");
   REQUIRE(list.items.size() == 2);
   CHECK(list.items[0].where.text() == "f:3:5");
@@ -55,7 +55,7 @@ TEST_CASE("anchors and aliases work, repeated keys are kept") {
   CHECK(node.find("b")->one_line() == "{r: 1}");
   CHECK(node.entries[2].first == "a");
   CHECK(node.entries[2].second.scalar == "2");
-  CHECK(node.key_places[2].text() == "f:3:1");
+  CHECK(node.key_locations[2].text() == "f:3:1");
 }
 
 TEST_CASE("null, quoted and tagged scalars are told apart") {
@@ -167,6 +167,6 @@ TEST_CASE("what a path sets bears the path as its place") {
   REQUIRE(set_path(node, "b.c", "{d: [5]}", errors));
   const ConfigNode& c = *node.find("b")->find("c");
   CHECK(c.find("d")->items[0].where.text() == "--set b.c");
-  CHECK(c.key_places[0].text() == "--set b.c");
-  CHECK(node.key_places[1].text() == "--set b.c");
+  CHECK(c.key_locations[0].text() == "--set b.c");
+  CHECK(node.key_locations[1].text() == "--set b.c");
 }

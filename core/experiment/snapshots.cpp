@@ -1,4 +1,4 @@
-#include "core/experiment/frames.h"
+#include "core/experiment/snapshots.h"
 
 #include <bit>
 #include <cstring>
@@ -8,11 +8,11 @@
 
 namespace drape {
 
-static_assert(std::endian::native == std::endian::little, "frames are written as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "snapshots are written as they lie in memory");
 
-void Frames::begin_level() { m_ = {}; }
+void SnapshotRecorder::begin_level() { m_ = {}; }
 
-void Frames::iteration(const Work& work, const Positions& x) {
+void SnapshotRecorder::iteration(const Work& work, const Positions& x) {
   const bool wanted = most_ > 1 && m_.seen % m_.spacing == 0;
   ++m_.seen;
   if (!wanted) return;
@@ -25,38 +25,38 @@ void Frames::iteration(const Work& work, const Positions& x) {
   m_.kept.push_back({work, x});
 }
 
-std::vector<Frame> Frames::end_level(const Work& work, const Positions& last) {
+std::vector<Snapshot> SnapshotRecorder::end_level(const Work& work, const Positions& last) {
   if (!m_.kept.empty() && m_.kept.back().work.iterations == work.iterations) m_.kept.pop_back();
   m_.kept.push_back({work, last});
   return std::move(m_.kept);
 }
 
-std::uint32_t write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames) {
+std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots) {
   std::string bytes;
-  for (const Frame& frame : frames) {
-    const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x = frame.x.cast<float>();
+  for (const Snapshot& snapshot : snapshots) {
+    const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x = snapshot.x.cast<float>();
     bytes.append(reinterpret_cast<const char*>(x.data()), sizeof(float) * x.size());
   }
   write_file(file, bytes);
   return checksum_of(bytes);
 }
 
-std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices,
-                                   std::optional<std::uint32_t> checksum) {
+std::vector<Positions> read_snapshots(const std::filesystem::path& file, int vertices,
+                                      std::optional<std::uint32_t> checksum) {
   const std::string bytes = read_file(file);
   const std::size_t size = sizeof(float) * 3 * vertices;
   if (size == 0 || bytes.size() % size != 0)
-    throw std::runtime_error(file.string() + ": not made of frames of " + std::to_string(vertices) +
+    throw std::runtime_error(file.string() + ": not made of snapshots of " + std::to_string(vertices) +
                              " vertices; is it cut short?");
   if (checksum && checksum_of(bytes) != *checksum)
     throw std::runtime_error(file.string() + ": is damaged: its checksum does not fit");
-  std::vector<Positions> frames;
+  std::vector<Positions> snapshots;
   for (std::size_t at = 0; at < bytes.size(); at += size) {
     Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x(vertices, 3);
     std::memcpy(x.data(), bytes.data() + at, size);
-    frames.push_back(x.cast<double>());
+    snapshots.push_back(x.cast<double>());
   }
-  return frames;
+  return snapshots;
 }
 
 }  // namespace drape

@@ -22,22 +22,22 @@ inline Work operator+(const Work& a, const Work& b) {
 }
 
 /// A state on the way through a level.
-struct Frame {
+struct Snapshot {
   Work work;    ///< since the level's start
   Positions x;  ///< n×3 [m]
 };
 
 /// Keeps states of a level while it is solved, evenly over its iterations and not more than so many: when
 /// there are too many, every second one goes and the spacing doubles.
-class Frames {
+class SnapshotRecorder {
  public:
-  /// At most `most` frames a level, its last state among them; 0 keeps nothing and costs nothing.
-  explicit Frames(int most) : most_(most) {}
+  /// At most `most` snapshots a level, its last state among them; 0 keeps nothing and costs nothing.
+  explicit SnapshotRecorder(int most) : most_(most) {}
 
   /// Of the level under way.
   struct Memory {
     int spacing = 1, seen = 0;
-    std::vector<Frame> kept;
+    std::vector<Snapshot> kept;
   };
   const Memory& memory() const { return m_; }
   void restore(Memory memory) { m_ = std::move(memory); }
@@ -46,21 +46,21 @@ class Frames {
   void begin_level();
   /// The state after an iteration; `work` counts from the level's start.
   void iteration(const Work& work, const Positions& x);
-  /// The level's frames, `last` at their end.
-  std::vector<Frame> end_level(const Work& work, const Positions& last);
+  /// The level's snapshots, `last` at their end.
+  std::vector<Snapshot> end_level(const Work& work, const Positions& last);
 
  private:
   int most_;
   Memory m_;
 };
 
-/// float32, little-endian, frame after frame, row by row. Written as a whole, then renamed. The checksum of
-/// the file.
-std::uint32_t write_frames(const std::filesystem::path& file, const std::vector<Frame>& frames);
+/// float32, little-endian, snapshot after snapshot, row by row. Written as a whole, then renamed. The
+/// checksum of the file.
+std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots);
 
 /// The positions of such a file, `vertices` rows each. Throws std::runtime_error when the file is not made of
 /// them, or has another checksum than this.
-std::vector<Positions> read_frames(const std::filesystem::path& file, int vertices,
-                                   std::optional<std::uint32_t> checksum = std::nullopt);
+std::vector<Positions> read_snapshots(const std::filesystem::path& file, int vertices,
+                                      std::optional<std::uint32_t> checksum = std::nullopt);
 
 }  // namespace drape
