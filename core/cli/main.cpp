@@ -20,7 +20,7 @@
 #include "core/plugin/string_utils.h"
 #include "core/report/compare.h"
 #include "core/report/report.h"
-#include "core/report/run_set.h"
+#include "core/report/run_collection.h"
 #include "core/report/run_table.h"
 #include "core/report/runs_report.h"
 #include "core/report/tables.h"
@@ -36,7 +36,7 @@ constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metr
 int check(const ConfigArguments& arguments, const Registry& registry) {
   Loaded loaded(arguments, registry);
   if (loaded.exit_code) return loaded.exit_code;
-  std::cout << arguments.config << ": sound.";
+  std::cout << arguments.config << ": valid.";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
   std::cout << "\nMemory to solve them, at most about:";

@@ -85,7 +85,7 @@ int RunCommand::run(const Registry& registry) const {
     refuse(
         "with --set, --levels, --level or --method leaves the run that it begins from as it is; name "
         "another folder with --out");
-  return flow_on(registry);
+  return warm_start(registry);
 }
 
 int RunCommand::run_config(const Registry& registry) const {
@@ -108,7 +108,7 @@ int RunCommand::look_after(const std::filesystem::path& folder, const Registry& 
   if (!again.empty())
     std::cerr << "warning: damaged or gone since, and written again: " << joined(again) << "\n";
   std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
-  return methods_ended_as_asked(folder) ? exit_done : exit_not_converged;
+  return all_methods_succeeded(folder) ? exit_done : exit_not_converged;
 }
 
 /// Goes on with an interrupted run, in its folder.
@@ -124,7 +124,7 @@ int RunCommand::resume(const Registry& registry) const {
   if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene && checkpoint.own_start)
-    begin_from(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
+    warm_start(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
   if (!errors.empty()) return report_errors(errors);
   RunOptions options = options_;
   options.out = folder;
@@ -133,7 +133,7 @@ int RunCommand::resume(const Registry& registry) const {
 }
 
 /// Flows on from a state of a run, under an experiment that may be changed, in a folder of its own.
-int RunCommand::flow_on(const Registry& registry) const {
+int RunCommand::warm_start(const Registry& registry) const {
   const std::filesystem::path folder = resumed_, config = folder / "config.yaml";
   RunOptions options = options_;
   if (options.methods.size() > 1)
@@ -146,11 +146,11 @@ int RunCommand::flow_on(const Registry& registry) const {
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
-  if (scene) begin_from(*experiment, *scene, state.level, state.x, errors);
+  if (scene) warm_start(*experiment, *scene, state.level, state.x, errors);
   if (!errors.empty()) return report_errors(errors);
   options.methods = {state.method};
   options.first_level = state.level;
-  options.begun_from =
+  options.warm_started_from =
       folder.string() + ", method " + state.method + ", level " + std::to_string(state.level);
   return run(*experiment, *scene, std::move(options), std::nullopt);
 }

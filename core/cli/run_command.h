@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/cli/config_arguments.h"
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/runner.h"
-#include "core/experiment/session.h"
 
 namespace drape {
 
@@ -26,7 +26,7 @@ class RunCommand {
   int run_config(const Registry& registry) const;
   int look_after(const std::filesystem::path& folder, const Registry& registry) const;
   int resume(const Registry& registry) const;
-  int flow_on(const Registry& registry) const;
+  int warm_start(const Registry& registry) const;
   int run(const Experiment& experiment, const Scene& scene, RunOptions options,
           std::optional<Checkpoint> checkpoint) const;
 

@@ -75,13 +75,13 @@ void fields(A& a, MethodState& s) {
 }
 
 template <class A>
-void fields(A& a, Work& w) {
+void fields(A& a, Cost& w) {
   a(w.seconds, w.iterations, w.flops);
 }
 
 template <class A>
 void fields(A& a, Snapshot& f) {
-  a(f.work, f.x);
+  a(f.cost, f.x);
 }
 
 template <class A>
@@ -91,7 +91,7 @@ void fields(A& a, SnapshotRecorder::Memory& m) {
 
 template <class A>
 void fields(A& a, LevelSnapshots& f) {
-  a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged, f.checksum);
+  a(f.method, f.file, f.level, f.cost, f.iterations, f.energies, f.last, f.converged, f.checksum);
 }
 
 template <class A>
@@ -101,12 +101,12 @@ void fields(A& a, RecordedState& s) {
 
 template <class A>
 void fields(A& a, RecorderState& s) {
-  a(s.results, s.method, s.sound, s.sound_of_method, s.states, s.snapshots, s.measured, s.spent, s.last,
-    s.overhead, s.steps_bytes, s.log_bytes);
+  a(s.results, s.method, s.intersection_free, s.method_intersection_free, s.states, s.snapshots, s.measured,
+    s.spent, s.last, s.overhead, s.steps_bytes, s.log_bytes);
 }
 
 template <class A>
-void fields(A& a, FileMark& m) {
+void fields(A& a, FileFingerprint& m) {
   a(m.path, m.bytes, m.checksum);
 }
 

@@ -12,7 +12,7 @@
 namespace drape {
 
 /// What was in a file when a run read it.
-struct FileMark {
+struct FileFingerprint {
   std::string path;
   std::uint64_t bytes = 0;
   std::uint32_t checksum = 0;
@@ -20,12 +20,12 @@ struct FileMark {
 
 /// The whole state of a run: all that it takes to go on and to end with the same bits.
 struct Checkpoint {
-  std::string program;               ///< drape's version and commit
-  std::string config;                ///< what config.yaml holds
-  std::vector<FileMark> files;       ///< that the config names
-  std::vector<std::string> methods;  ///< of the run, in order
-  int method = 0;                    ///< the one under way, an index of `methods`
-  bool all_converged = true;         ///< in the methods before it
+  std::string program;                 ///< drape's version and commit
+  std::string config;                  ///< what config.yaml holds
+  std::vector<FileFingerprint> files;  ///< that the config names
+  std::vector<std::string> methods;    ///< of the run, in order
+  int method = 0;                      ///< the one under way, an index of `methods`
+  bool all_converged = true;           ///< in the methods before it
   MethodState state;
   int first_level = 0;                 ///< where every method begins
   std::optional<Positions> own_start;  ///< on that level, where it is not the scene's

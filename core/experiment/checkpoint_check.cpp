@@ -150,8 +150,8 @@ class Check {
         positions(snapshot.x, c_.state.level, "the snapshots");
     for (const LevelSnapshots& level : s.measured) {
       positions(level.last, level.level, "the snapshots");
-      require(level.work.size() == level.iterations.size() && level.work.size() == level.energies.size() &&
-                  !level.work.empty(),
+      require(level.cost.size() == level.iterations.size() && level.cost.size() == level.energies.size() &&
+                  !level.cost.empty(),
               "the snapshots");
     }
   }

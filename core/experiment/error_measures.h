@@ -10,6 +10,6 @@ inline constexpr std::array error_measures = {"rms", "hausdorff", "d_H_fit", "si
 /// What it is measured against: the finest state of the same method, and the run's reference.
 inline constexpr std::array error_targets = {"own", "reference"};
 /// What a state's cost is counted in.
-inline constexpr std::array error_works = {"seconds", "iterations", "flops"};
+inline constexpr std::array error_costs = {"seconds", "iterations", "flops"};
 
 }  // namespace drape

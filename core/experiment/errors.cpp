@@ -55,8 +55,8 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
 }
 
 nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelResult& result,
-                                       const std::vector<Snapshot>& snapshots, const Work& before,
-                                       const Work& spent) {
+                                       const std::vector<Snapshot>& snapshots, const Cost& before,
+                                       const Cost& spent) {
   LevelSnapshots level;
   level.method = method;
   level.level = result.level;
@@ -66,11 +66,11 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
   nlohmann::ordered_json entry = {{"file", level.file}};
   for (const Snapshot& snapshot : snapshots) {
-    level.work.push_back(before + snapshot.work);
-    level.iterations.push_back(snapshot.work.iterations);
+    level.cost.push_back(before + snapshot.cost);
+    level.iterations.push_back(snapshot.cost.iterations);
     level.energies.push_back(energy_on_finest(scene_, weights, result.level, snapshot.x));
-    entry["iterations"].push_back(snapshot.work.iterations);
-    entry["seconds"].push_back(spent.seconds + snapshot.work.seconds);
+    entry["iterations"].push_back(snapshot.cost.iterations);
+    entry["seconds"].push_back(spent.seconds + snapshot.cost.seconds);
   }
   make_folder(folder_.file("snapshots"));
   level.checksum = write_snapshots(folder_.file(level.file), snapshots);
@@ -103,7 +103,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
       fault(error.what());  // they are nowhere else
       continue;
     }
-    if (states.size() != level.work.size()) continue;
+    if (states.size() != level.cost.size()) continue;
     states.back() = level.last;
     for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
       const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
@@ -111,9 +111,9 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
         return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
       };
       const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
-      const Work& work = level.work[k];
+      const Cost& cost = level.cost[k];
       text += level.method + "," + std::to_string(level.level) + "," + std::to_string(level.iterations[k]) +
-              "," + number(work.seconds) + "," + std::to_string(work.iterations) + "," + number(work.flops) +
+              "," + number(cost.seconds) + "," + std::to_string(cost.iterations) + "," + number(cost.flops) +
               "," + std::to_string(vertices) + cells(to_own) + cells(to_standard) + "\n";
     }
   }

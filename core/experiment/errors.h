@@ -37,7 +37,7 @@ double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix
 struct LevelSnapshots {
   std::string method, file;
   int level = 0;
-  std::vector<Work> work;        ///< of each snapshot, with what it builds on
+  std::vector<Cost> cost;        ///< of each snapshot, with what it builds on
   std::vector<int> iterations;   ///< of the level
   std::vector<double> energies;  ///< on the finest level [J]
   Positions last;                ///< in full precision
@@ -53,10 +53,10 @@ class ErrorTable {
       : folder_(folder), experiment_(experiment), scene_(scene) {}
 
   /// Takes a level's snapshots in: writes them to their file, evaluates their energies and says, for
-  /// results.json, where they are. `before` is the work that the level builds on; `spent` all that the method
+  /// results.json, where they are. `before` is the cost that the level builds on; `spent` all that the method
   /// has done before it.
   nlohmann::ordered_json add(const std::string& method, const LevelResult& result,
-                             const std::vector<Snapshot>& snapshots, const Work& before, const Work& spent);
+                             const std::vector<Snapshot>& snapshots, const Cost& before, const Cost& spent);
 
   /// Measures every snapshot against the finest state of its method, where that converged, and against the
   /// reference, and writes errors.csv, without those whose file is damaged or gone; `fault` is told. Ends

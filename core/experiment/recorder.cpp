@@ -74,8 +74,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   cut_files(folder, state);
   results_ = Json::parse(state.results);
   method_ = state.method;
-  sound_ = state.sound;
-  sound_of_method_ = state.sound_of_method;
+  intersection_free_ = state.intersection_free;
+  method_intersection_free_ = state.method_intersection_free;
   states_ = state.states;
   snapshots_.restore(state.snapshots);
   errors_.restore(state.measured);
@@ -91,15 +91,25 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 RecorderState Recorder::state() const {
   const auto [steps_bytes, log_bytes] = file_sizes(folder_);
-  RecorderState s{json_text(results_), method_, sound_, sound_of_method_, states_,     snapshots_.memory(),
-                  errors_.levels(),    spent_,  last_,  overhead_,        steps_bytes, log_bytes};
+  RecorderState s{json_text(results_),
+                  method_,
+                  intersection_free_,
+                  method_intersection_free_,
+                  states_,
+                  snapshots_.memory(),
+                  errors_.levels(),
+                  spent_,
+                  last_,
+                  overhead_,
+                  steps_bytes,
+                  log_bytes};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
 }
 
-void Recorder::begun_from(const std::string& where) {
-  results_["begun_from"] = where;
+void Recorder::warm_started_from(const std::string& where) {
+  results_["warm_started_from"] = where;
   save();
 }
 
@@ -128,8 +138,8 @@ std::string Recorder::file_of(const std::string& method, int level, const char* 
 
 void Recorder::method_started(const std::string& method) {
   method_ = method;
-  sound_of_method_ = true;
-  spent_ = Work();
+  method_intersection_free_ = true;
+  spent_ = Cost();
   overhead_ = 0;
   reset_peak_memory();
   method_entry() = {{"status", "running"},
@@ -143,7 +153,7 @@ void Recorder::method_started(const std::string& method) {
 
 void Recorder::level_started(int level) {
   snapshots_.begin_level();
-  last_ = Work();
+  last_ = Cost();
   log({{"event", "level_started"}, {"method", method_}, {"level", level}});
 }
 
@@ -160,7 +170,7 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
            {"pair", to_string(touches[k])}});
     count += touches.size();
   }
-  if (count > 0) sound_ = sound_of_method_ = false;
+  if (count > 0) intersection_free_ = method_intersection_free_ = false;
   return count;
 }
 
@@ -239,12 +249,12 @@ void Recorder::level_finished(const LevelResult& r) {
   entry["levels"].back()["mesh_checksum"] =
       checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
   // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
-  const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
+  const Cost cost = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
   if (snapshots_.any())
     entry["levels"].back()["snapshots"] =
-        errors_.add(method_, r, snapshots_.end_level(work, r.x), r.afresh ? Work() : spent_, spent_);
+        errors_.add(method_, r, snapshots_.end_level(cost, r.x), r.afresh ? Cost() : spent_, spent_);
   states_.push_back(state);
-  spent_ = spent_ + work;
+  spent_ = spent_ + cost;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
@@ -319,7 +329,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }
-  if (!sound_of_method_) worst = Outcome::infeasible;
+  if (!method_intersection_free_) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {
     const Level& level = scene_.hierarchy.levels[failure->level];
@@ -367,19 +377,19 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   if (p.force_tolerance == 0 || cancelled) return &state->x;
   entry["force_tolerance"] = p.force_tolerance;
   try {
-    tightened_ = tighten(experiment_, scene_, state->x, observer);
+    solved_reference_ = solve_to_tolerance(experiment_, scene_, state->x, observer);
   } catch (const std::exception& error) {
     entry.update({{"status", failed}, {"message", error.what()}});
     log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
     return &state->x;
   }
-  entry.update({{"status", to_string(tightened_->outcome)},
-                {"message", tightened_->message},
-                {"force_residual", finite_or_null(tightened_->force_residual)},
-                {"newton_iterations", tightened_->iterations},
-                {"seconds", tightened_->seconds}});
-  log({{"event", "reference_solved"}, {"status", to_string(tightened_->outcome)}});
-  return &tightened_->x;
+  entry.update({{"status", to_string(solved_reference_->outcome)},
+                {"message", solved_reference_->message},
+                {"force_residual", finite_or_null(solved_reference_->force_residual)},
+                {"newton_iterations", solved_reference_->iterations},
+                {"seconds", solved_reference_->seconds}});
+  log({{"event", "reference_solved"}, {"status", to_string(solved_reference_->outcome)}});
+  return &solved_reference_->x;
 }
 
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {

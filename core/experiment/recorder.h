@@ -22,11 +22,11 @@ struct RecordedState {
 struct RecorderState {
   std::string results;  ///< of results.json
   std::string method;
-  bool sound = true, sound_of_method = true;
+  bool intersection_free = true, method_intersection_free = true;
   std::vector<RecordedState> states;  ///< of all levels so far, in order
   SnapshotRecorder::Memory snapshots;
   std::vector<LevelSnapshots> measured;
-  Work spent, last;
+  Cost spent, last;
   double overhead = 0;
   std::uint64_t steps_bytes = 0, log_bytes = 0;
 };
@@ -52,7 +52,7 @@ class Recorder : public Observer {
   /// The files that were written again.
   const std::vector<std::string>& restored() const { return restored_; }
   /// Says in results.json where the methods begin, if that is not the scene's start.
-  void begun_from(const std::string& where);
+  void warm_started_from(const std::string& where);
 
   void method_started(const std::string& method);
   /// Measures the levels reached and every pair of them, and writes results.json. A method that failed has
@@ -70,7 +70,7 @@ class Recorder : public Observer {
   void level_finished(const LevelResult& result) override;
 
   /// Whether no state that was looked at had an intersection.
-  bool sound() const { return sound_; }
+  bool intersection_free() const { return intersection_free_; }
 
  private:
   using Json = nlohmann::ordered_json;
@@ -109,15 +109,15 @@ class Recorder : public Observer {
   std::ofstream steps_, log_;
   Json results_;
   std::string method_;
-  bool sound_ = true, sound_of_method_ = true;
+  bool intersection_free_ = true, method_intersection_free_ = true;
   std::vector<RecordedState> states_;  // of all levels so far
   std::vector<std::string> restored_;
   SnapshotRecorder snapshots_;
   ErrorTable errors_;
-  Work spent_;           // by the method, in the levels before this one
-  Work last_;            // of this level's last iteration
+  Cost spent_;           // by the method, in the levels before this one
+  Cost last_;            // of this level's last iteration
   double overhead_ = 0;  // seconds that recording has taken between the levels of a method
-  std::optional<LevelResult> tightened_;
+  std::optional<LevelResult> solved_reference_;
 };
 
 }  // namespace drape

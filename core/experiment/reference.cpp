@@ -36,8 +36,8 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
   }
 }
 
-LevelResult tighten(const Experiment& experiment, const Scene& scene, const Positions& x,
-                    Observer& observer) {
+LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene, const Positions& x,
+                               Observer& observer) {
   NewtonParameters newton = experiment.parameters.newton;
   newton.force_tolerance = experiment.parameters.reference.force_tolerance;
   const Stopwatch clock;

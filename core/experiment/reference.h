@@ -13,6 +13,7 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
 
 /// Goes on from a state of the finest level, by the experiment's common Newton, to the force tolerance of the
 /// experiment's `reference`.
-LevelResult tighten(const Experiment& experiment, const Scene& scene, const Positions& x, Observer& observer);
+LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene, const Positions& x,
+                               Observer& observer);
 
 }  // namespace drape

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/progress.h"
 #include "core/experiment/recorder_files.h"
-#include "core/experiment/session.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
@@ -20,12 +20,12 @@ namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder, the session, the progress bar and the live view.
+/// Passes everything on to the recorder, the checkpoints, the progress bar and the live view.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, Session& session, Progress& progress, LiveView* view,
+  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress, LiveView* view,
               const std::function<bool()>& stop)
-      : recorder_(recorder), session_(session), progress_(progress), view_(view), stop_(stop) {}
+      : recorder_(recorder), checkpoints_(checkpoints), progress_(progress), view_(view), stop_(stop) {}
 
   void method_started(const std::string& name, bool resumable, const MethodState& state) {
     resumable_ = resumable;
@@ -63,18 +63,18 @@ class RunObserver : public Observer {
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
     finished_.push_back(result);
-    if (resumable_) session_.level_finished(result);
+    if (resumable_) checkpoints_.level_finished(result);
     progress_.level_finished(result);
     if (view_) view_->level_finished(result);
   }
-  bool checkpoint_due() override { return resumable_ && session_.due(stop_requested()); }
-  void checkpoint(const NewtonState& state) override { session_.save(state); }
+  bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
+  void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
   bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
   bool refine_requested() override { return view_ && view_->refine_requested(); }
 
  private:
   Recorder& recorder_;
-  Session& session_;
+  CheckpointManager& checkpoints_;
   Progress& progress_;
   LiveView* view_;
   bool resumable_ = false;
@@ -147,11 +147,11 @@ std::string cause_in_method() {
 }
 
 /// Does what belongs to a run that has begun.
-template <class Work>
-bool with_folder(const RunFolder& folder, const RunOptions& options, const Work& work) {
+template <class Action>
+bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {
   std::string cause;
   try {
-    return work();
+    return action();
   } catch (const RunBrokenOff&) {
     throw;
   } catch (const std::exception& error) {
@@ -190,13 +190,13 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
 /// Runs what is left: the method under way if `resumed`, those after it, what is measured of them all.
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
-  Session session(folder, recorder, begun, options.checkpoint);
+  CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
   const Problem problem = scene.problem();
   std::vector<std::string> changing;
-  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.set);
+  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
                     problem.conditions, changing);
-  RunObserver observer(recorder, session, progress, options.view, options.stop);
+  RunObserver observer(recorder, checkpoints, progress, options.view, options.stop);
 
   bool all_converged = begun.all_converged, cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
@@ -212,7 +212,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       observer.catch_up(state);
     } else {
       recorder.method_started(name);
-      session.method_started(m);
+      checkpoints.method_started(m);
     }
     std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
@@ -230,7 +230,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
     all_converged = all_converged && converged;
-    session.method_finished(converged);
+    checkpoints.method_finished(converged);
   }
   UnrecordedObserver unrecorded(progress, options.stop);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
@@ -238,7 +238,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
-  const bool good = all_converged && recorder.sound();
+  const bool good = all_converged && recorder.intersection_free();
   if (options.view)
     options.view->run_finished((cancelled ? "stopped on request"
                                 : good    ? "everything converged"
@@ -263,12 +263,12 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     begun.config = to_yaml(config);
     begun.methods = methods;
     begun.first_level = options.first_level;
-    if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
+    if (!options.warm_started_from.empty()) begun.own_start = scene.starts[options.first_level];
     folder.write_text("config.yaml", begun.config);
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
-    if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
-    begun.files = marks_of_files(config, folder.path());
+    if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
+    begun.files = fingerprints_of_files(config, folder.path());
     return run(experiment, scene, options, folder, recorder, begun, false);
   });
 }

@@ -21,9 +21,9 @@ struct RunOptions {
   bool report = true;                ///< write report.html and its pictures at the end
   double checkpoint = 5;             ///< about how often the state is saved [s]; 0 for at every step
   int first_level = 0;               ///< where every method begins
-  std::string begun_from;      ///< what else than the scene's start is there, in words; empty if nothing
-  std::function<bool()> stop;  ///< asked after every step; may be empty
-  LiveView* view = nullptr;    ///< shown the run, and may stop it; may be null
+  std::string warm_started_from;  ///< what else than the scene's start is there, in words; empty if nothing
+  std::function<bool()> stop;     ///< asked after every step; may be empty
+  LiveView* view = nullptr;       ///< shown the run, and may stop it; may be null
 };
 
 /// A run that had begun and cannot go on, as where nothing can be written any more. Its folder says so, as

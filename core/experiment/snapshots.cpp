@@ -12,7 +12,7 @@ static_assert(std::endian::native == std::endian::little, "snapshots are written
 
 void SnapshotRecorder::begin_level() { m_ = {}; }
 
-void SnapshotRecorder::iteration(const Work& work, const Positions& x) {
+void SnapshotRecorder::iteration(const Cost& cost, const Positions& x) {
   const bool wanted = most_ > 1 && m_.seen % m_.spacing == 0;
   ++m_.seen;
   if (!wanted) return;
@@ -22,12 +22,12 @@ void SnapshotRecorder::iteration(const Work& work, const Positions& x) {
     m_.spacing *= 2;
     if ((m_.seen - 1) % m_.spacing != 0 || static_cast<int>(m_.kept.size()) == most_ - 1) return;
   }
-  m_.kept.push_back({work, x});
+  m_.kept.push_back({cost, x});
 }
 
-std::vector<Snapshot> SnapshotRecorder::end_level(const Work& work, const Positions& last) {
-  if (!m_.kept.empty() && m_.kept.back().work.iterations == work.iterations) m_.kept.pop_back();
-  m_.kept.push_back({work, last});
+std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positions& last) {
+  if (!m_.kept.empty() && m_.kept.back().cost.iterations == cost.iterations) m_.kept.pop_back();
+  m_.kept.push_back({cost, last});
   return std::move(m_.kept);
 }
 

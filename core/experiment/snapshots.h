@@ -11,19 +11,19 @@
 namespace drape {
 
 /// What a state has cost.
-struct Work {
+struct Cost {
   double seconds = 0;
   int iterations = 0;
   double flops = 0;  ///< of factorisations
 };
 
-inline Work operator+(const Work& a, const Work& b) {
+inline Cost operator+(const Cost& a, const Cost& b) {
   return {a.seconds + b.seconds, a.iterations + b.iterations, a.flops + b.flops};
 }
 
 /// A state on the way through a level.
 struct Snapshot {
-  Work work;    ///< since the level's start
+  Cost cost;    ///< since the level's start
   Positions x;  ///< n×3 [m]
 };
 
@@ -44,10 +44,10 @@ class SnapshotRecorder {
 
   bool any() const { return most_ > 0; }
   void begin_level();
-  /// The state after an iteration; `work` counts from the level's start.
-  void iteration(const Work& work, const Positions& x);
+  /// The state after an iteration; `cost` counts from the level's start.
+  void iteration(const Cost& cost, const Positions& x);
   /// The level's snapshots, `last` at their end.
-  std::vector<Snapshot> end_level(const Work& work, const Positions& last);
+  std::vector<Snapshot> end_level(const Cost& cost, const Positions& last);
 
  private:
   int most_;

@@ -7,7 +7,7 @@
 
 namespace drape {
 
-/// Reads a file whose top is a map. Anchors and aliases work; repeated keys are kept for Schema::read to
+/// Reads a file whose top is a map. Anchors and aliases cost; repeated keys are kept for Schema::read to
 /// report. What is missing, unreadable, malformed or not a map is appended to `errors`, with its place,
 /// and gives a null node.
 ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors);

@@ -8,7 +8,7 @@
 namespace drape {
 
 /// The faults that keep a mesh from being a cloth or an obstacle, one line each, naming the element
-/// (vertices and triangles count from 0); of many, the first and their number. Empty for a sound mesh. Looked
+/// (vertices and triangles count from 0); of many, the first and their number. Empty for a sound mesh. Audit
 /// for are:
 /// - nothing there; an index out of range; a vertex without triangle; what check_coordinates looks for;
 /// - a triangle that repeats a vertex, has no area (height below 1e-12 of its longest edge) or occurs twice;

@@ -13,7 +13,7 @@ namespace drape {
 std::string chart_data(const RunData& run);
 
 /// Six digits: enough to draw, a third of the bytes; null where there is no figure.
-nlohmann::ordered_json rounded(const Figure& value);
+nlohmann::ordered_json rounded(const OptionalNumber& value);
 
 /// JSON made safe inside a script element.
 std::string script_json(const nlohmann::ordered_json& data);

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/report/run_set.h"
+#include "core/report/run_collection.h"
 
 namespace drape {
 
@@ -32,7 +32,7 @@ struct Change {
 class Comparison {
  public:
   /// Throws std::runtime_error when nothing matches and when a bound's figure is in no match.
-  Comparison(const RunSet& before, const RunSet& after, const std::vector<Bound>& bounds);
+  Comparison(const RunCollection& before, const RunCollection& after, const std::vector<Bound>& bounds);
 
   const std::vector<Change>& changes() const { return changes_; }
   /// Whether a bound does not hold, or cannot since what it bounds has stopped converging or gone.

@@ -19,7 +19,7 @@ class Csv {
   bool has(const std::string& column) const { return columns_.count(column) > 0; }
   /// Empty, or absent, where there is no such column.
   std::string text(std::size_t row, const std::string& column) const;
-  Figure figure(std::size_t row, const std::string& column) const;
+  OptionalNumber number(std::size_t row, const std::string& column) const;
 
  private:
   std::map<std::string, std::size_t> columns_;
@@ -27,6 +27,6 @@ class Csv {
 };
 
 /// The number that a text begins with, if it is finite.
-Figure figure_of(const std::string& cell);
+OptionalNumber number_of(const std::string& cell);
 
 }  // namespace drape

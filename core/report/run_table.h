@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/report/run_set.h"
+#include "core/report/run_collection.h"
 
 namespace drape {
 
@@ -14,7 +14,7 @@ using TableRow = nlohmann::ordered_json;
 /// ended for its time, `crash` by a signal, else `failed` or as its status says. A row passes when it has
 /// ended as its run is expected to, for the reason expected, every figure of its energy finite and no
 /// intersection anywhere.
-std::vector<TableRow> table_rows(const RunSet& set);
+std::vector<TableRow> table_rows(const RunCollection& collection);
 
 bool all_pass(const std::vector<TableRow>& rows);
 

@@ -11,9 +11,9 @@ namespace drape {
 /// How the run ended and who did best, as one sentence or two of HTML.
 std::string outcome_sentence(const RunData& run);
 
-/// Whether the states that were looked at keep apart, in one or two sentences of plain text.
+/// Whether the checked states are free of intersections, in one or two sentences of plain text.
 struct Verdict {
-  bool sound = true;
+  bool intersection_free = true;
   std::string text;
 };
 
@@ -24,7 +24,7 @@ std::optional<Verdict> intersection_verdict(const RunData& run);
 std::string troubles(const RunData& run);
 
 /// The energy of the finest model in the last state of a method [J].
-Figure final_energy(const RunData& run, const MethodRecord& method);
+OptionalNumber final_energy(const RunData& run, const MethodRecord& method);
 
 /// In a few words what a method has done beside the others that converged.
 std::string method_verdict(const RunData& run, const MethodRecord& method);

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* words[] = {"waiting", "running", "converged", "ended", "failed", "cancelled"};
+constexpr const char* words[] = {"pending", "running", "converged", "not_converged", "failed", "cancelled"};
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -68,6 +68,8 @@ RunStatus read_status(const RunFiles& files) {
   if (!json.is_object()) file.refuse("is not a run's status");
   RunStatus status;
   const auto word = file.at<std::string>(json, "status");
+  if (word == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
+  if (word == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
   const auto* found = std::find(std::begin(words), std::end(words), word);
   if (found == std::end(words)) file.refuse("no status is called \"" + excerpt(word) + "\"");
   status.state = RunState(found - words);
@@ -95,7 +97,8 @@ RunStatus settled(const RunFiles& files, RunStatus status) {
   status.state = RunState::converged;
   status.seconds = 0;
   for (const auto& [name, method] : results["methods"].items()) {
-    if (!has_converged(file.find<std::string>(method, "status").value_or(""))) status.state = RunState::ended;
+    if (!has_converged(file.find<std::string>(method, "status").value_or("")))
+      status.state = RunState::not_converged;
     status.seconds += file.find<double>(method, "seconds").value_or(0);
   }
   status.exit_code = status.state == RunState::converged ? exit_done : exit_not_converged;
@@ -130,7 +133,7 @@ bool RunProcess::ended() {
     const std::string said = last_lines(files_.log());
     if (too_slow_) {
       status_.exit_code = exit_too_slow;
-      status_.error = "was ended since it took longer than the sweep's time_limit";
+      status_.error = "exceeded the sweep's time_limit";
     } else if (exit->signal)
       status_.error =
           "ended by signal " + std::to_string(exit->signal) + " (" + strsignal(exit->signal) + ")";

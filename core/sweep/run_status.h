@@ -10,14 +10,14 @@
 
 namespace drape {
 
-/// `ended` has complete results that did not all converge; `failed` has none; `cancelled` was stopped, or
-/// its machine was.
-enum class RunState { waiting, running, converged, ended, failed, cancelled };
+/// `not_converged` has complete results of which some did not converge; `failed` has none; `cancelled` was
+/// stopped, or its machine was.
+enum class RunState { pending, running, converged, not_converged, failed, cancelled };
 const char* to_string(RunState state);
 
 /// What is known of one run. Each has a file of its own, so that no two machines write one.
 struct RunStatus {
-  RunState state = RunState::waiting;
+  RunState state = RunState::pending;
   std::string error;
   int exit_code = 0;
   double seconds = 0;
@@ -26,7 +26,7 @@ struct RunStatus {
 
   /// Neither computed nor crashed: what was asked for could not be, as it said.
   bool refused() const { return state == RunState::failed && exit_code == exit_bad_input; }
-  bool has_results() const { return state == RunState::converged || state == RunState::ended; }
+  bool has_results() const { return state == RunState::converged || state == RunState::not_converged; }
   nlohmann::ordered_json json() const;
 };
 

@@ -155,7 +155,7 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
     const Json sweep = folder.read();
     for (const Json& run : sweep["runs"]) {
       const RunState state = read_status(folder.files(run["folder"])).state;
-      done += state == RunState::converged || state == RunState::ended || state == RunState::failed;
+      done += state == RunState::converged || state == RunState::not_converged || state == RunState::failed;
       failed += state == RunState::failed;
     }
     if (done != told)

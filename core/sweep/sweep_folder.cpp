@@ -104,7 +104,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     RunStatus status = read_status(files);
     if (text_of_file(files.config()) != run.config) {
       if (status.state == RunState::failed) {  // at what was another experiment
-        status.state = RunState::waiting;
+        status.state = RunState::pending;
         write_status(files, status);
       }
       write_file(files.config(), run.config);

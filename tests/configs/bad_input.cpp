@@ -55,14 +55,14 @@ const std::string top_keys =
 
 }  // namespace
 
-TEST_CASE("the file of these cases is sound, so that each has one fault alone") {
+TEST_CASE("the file of these cases is valid, so that each has one fault alone") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Ended ended = drape_with("check e.yaml", folder.path);
   CHECK(ended.exit_code == 0);
   CHECK(ended.err == "");
   CHECK_THAT(ended.out,
-             Catch::Matches("e\\.yaml: sound\\. Vertices by level: 36, 121\n"
+             Catch::Matches("e\\.yaml: valid\\. Vertices by level: 36, 121\n"
                             "Memory to solve them, at most about: 0\\.1 GB, 0\\.1 GB; this machine has "
                             "[0-9.]+ GB\n"));
 }

@@ -185,5 +185,5 @@ TEST_CASE("a --set takes one value, so that the config may follow it") {
   folder.write("e.yaml", small_experiment());
   const Ended ended = drape_with("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path);
   CHECK(ended.err == "");
-  CHECK_THAT(ended.out, StartsWith("e.yaml: sound. Vertices by level: 42\n"));
+  CHECK_THAT(ended.out, StartsWith("e.yaml: valid. Vertices by level: 42\n"));
 }

@@ -44,8 +44,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   write_cases(folder);
   const Ended swept = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(swept.exit_code == 1);
-  CHECK_THAT(swept.err, Contains("endless, seed 1: failed") &&
-                            Contains("was ended since it took longer than the sweep's time_limit"));
+  CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
 
   const Ended ended = drape_with("table out --format json", folder.path);
   CHECK(ended.exit_code == 1);
@@ -59,7 +58,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(outcome(1) == "unheld: refused, passes");
   CHECK(outcome(2) == "short: out_of_steps, passes");
   CHECK(outcome(3) == "for another reason: out_of_steps");
-  CHECK(outcome(4) == "endless: hang");
+  CHECK(outcome(4) == "endless: timeout");
   CHECK(rows[0]["method"] == "newton");
   CHECK(rows[0]["vertices"] > 10);
   CHECK(rows[2]["iterations"] == 1);
@@ -70,7 +69,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
   CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));
   CHECK_THAT(few.out, Contains("| short | yes | out_of_steps | 1 |\n| for another reason | NO | out_of_steps "
-                               "| 2 |\n| endless | NO | hang |  |\n"));
+                               "| 2 |\n| endless | NO | timeout |  |\n"));
   const Ended csv = drape_with("table out --format csv --columns run,pass,outcome", folder.path);
   CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
@@ -78,7 +77,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
 }
 
 TEST_CASE("an intersection, or an energy that is no number, fails whatever the outcome") {
-  const auto rows = [](Figure energy, Figure intersections) {
+  const auto rows = [](OptionalNumber energy, OptionalNumber intersections) {
     RunData data;
     data.methods.push_back({});
     data.methods[0].name = "newton";
@@ -88,7 +87,7 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
     level.energy_on_finest = energy;
     level.intersections = intersections;
     data.methods[0].levels.push_back(level);
-    SetRun run;
+    RunRecord run;
     run.variation = "case";
     run.status = "converged";
     run.data = data;
@@ -108,7 +107,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
     level.status = status;
     level.energy_on_finest = 1;
     data.methods[0].levels.push_back(level);
-    SetRun run;
+    RunRecord run;
     run.status = "converged";
     run.expected = expected;
     run.data = data;

@@ -169,7 +169,7 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   const Json stopped = runs_of(folder / "out");
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");
-  CHECK(stopped[2]["status"] == "waiting");
+  CHECK(stopped[2]["status"] == "pending");
   CHECK(stopped[2]["starts"] == 0);
   const Json results = Json::parse(text_of(folder / "out/runs/endless/seed_1/results.json"));
   CHECK(results["methods"]["newton"]["status"] == "cancelled");
@@ -180,7 +180,7 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   CHECK(on.exit_code == 1);
   const Json after = runs_of(folder / "out");
   CHECK(after[0]["starts"] == 1);
-  CHECK(after[1]["status"] == "ended");
+  CHECK(after[1]["status"] == "not_converged");
   CHECK(after[1]["exit_code"] == 1);
   CHECK(after[1]["starts"] == 2);
   CHECK(after[2]["starts"] == 1);
@@ -327,7 +327,7 @@ TEST_CASE("a run whose end was not noted down has its results, and is not run ag
   REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 1);
   for (const std::string name : {"a", "b"}) {
     const std::string status = "out/runs/" + name + "/seed_1.status.json";
-    const std::string word = name == "a" ? "converged" : "ended";
+    const std::string word = name == "a" ? "converged" : "not_converged";
     folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
   }
   const Ended again = drape_with("sweep s.yaml --out out", folder.path);
@@ -335,7 +335,7 @@ TEST_CASE("a run whose end was not noted down has its results, and is not run ag
   CHECK(again.err == "");
   const Json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
-  CHECK(runs[1]["status"] == "ended");
+  CHECK(runs[1]["status"] == "not_converged");
   for (const Json& run : runs) CHECK(run["starts"] == 1);
 
   folder.write("out/runs/a/seed_1.status.json", "{");

@@ -169,7 +169,7 @@ TEST_CASE("--dry-run checks and lists, and leaves no trace") {
   CHECK(ended.err == "");
   CHECK_THAT(ended.out, Catch::Matchers::StartsWith(
                             "sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
-                            "waiting    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
+                            "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
                             "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
                             "\"newton.step_growth\":1.5}\n"));
   CHECK(fs::is_empty(folder.path));

@@ -403,8 +403,8 @@ TEST_CASE("figures in a report have three digits") {
   const std::pair<double, const char*> cases[] = {
       {0, "0"},         {403.4, "403"},     {9999, "1.00e4"},   {1234, "1230"},    {0.02134, "0.0213"},
       {0.9996, "1.00"}, {7.21e5, "7.21e5"}, {-1.2345, "-1.23"}, {4e-4, "4.00e-4"}, {99.96, "100"}};
-  for (const auto& [value, text] : cases) CHECK(html::figure(value) == text);
-  CHECK(html::figure({}) == "–");
+  for (const auto& [value, text] : cases) CHECK(html::number_text(value) == text);
+  CHECK(html::number_text({}) == "–");
   CHECK(html::count(1234567) == "1\u202f234\u202f567");
   CHECK(html::count(123) == "123");
   CHECK(html::bytes(2.5e9) == "2.50 GB");
@@ -494,7 +494,7 @@ TEST_CASE("errors are read, drawn and told of; a run without them says so") {
   const RunData data = read_run(run.folder);
   REQUIRE(data.errors.size() == 2);
   CHECK(data.errors[0].method == "pcs");
-  CHECK(data.errors[0].rows[0].work[2].value() == 1e6);
+  CHECK(data.errors[0].rows[0].cost[2].value() == 1e6);
   CHECK_FALSE(data.errors[0].rows[0].error[1][3]);  // a run of before there was that measure
   CHECK(data.errors[0].rows[0].error[1][4].value() == -0.01);
   CHECK(!data.errors[1].rows[0].error[1][0]);

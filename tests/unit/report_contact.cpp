@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-LevelRecord level_of(int index, Figure intersections, Figure gap) {
+LevelRecord level_of(int index, OptionalNumber intersections, OptionalNumber gap) {
   LevelRecord level;
   level.level = index;
   level.status = "converged";
@@ -44,10 +44,10 @@ RunData contact_run() {
   return run;
 }
 
-std::string verdict_of(const RunData& run, bool sound) {
+std::string verdict_of(const RunData& run, bool intersection_free) {
   const auto verdict = intersection_verdict(run);
   REQUIRE(verdict);
-  CHECK(verdict->sound == sound);
+  CHECK(verdict->intersection_free == intersection_free);
   return verdict->text;
 }
 
@@ -82,7 +82,7 @@ TEST_CASE("a run without contact has no verdict and no columns for it") {
   CHECK(summary_table(run).find("intersections") != std::string::npos);
   CHECK(level_table(run).find("smallest gap") != std::string::npos);
   for (MethodRecord& method : run.methods)
-    for (LevelRecord& level : method.levels) level.intersections = level.smallest_gap = Figure();
+    for (LevelRecord& level : method.levels) level.intersections = level.smallest_gap = OptionalNumber();
   CHECK_FALSE(intersection_verdict(run));
   CHECK(summary_table(run).find("intersections") == std::string::npos);
   CHECK(level_table(run).find("smallest gap") == std::string::npos);

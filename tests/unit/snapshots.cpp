@@ -18,8 +18,8 @@ std::vector<int> kept(int most, int iterations) {
   for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, state(k));
   std::vector<int> of;
   for (const Snapshot& snapshot : snapshots.end_level({0.1 * iterations, iterations, 0}, state(iterations))) {
-    CHECK((snapshot.x - state(snapshot.work.iterations)).norm() == 0);
-    of.push_back(snapshot.work.iterations);
+    CHECK((snapshot.x - state(snapshot.cost.iterations)).norm() == 0);
+    of.push_back(snapshot.cost.iterations);
   }
   return of;
 }

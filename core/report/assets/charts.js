@@ -14,7 +14,7 @@ const drape = (() => {
     d_H_fit: 'difference in mean curvature, d_H_fit', silhouette_mismatch: 'silhouettes, 1 − overlap',
     energy_gap: 'energy above the target, relative'};
   const targets = {reference: 'the reference', own: 'the method’s own finest state'};
-  const works = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
+  const costKinds = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 
   function axis(title, logarithmic) {
     const options = {
@@ -127,12 +127,12 @@ const drape = (() => {
   /// Choices above a plot, by the name of its select element; calls `draw` when one changes.
   function choices(id, draw) {
     const select = name => document.getElementById(id + '-' + name);
-    for (const [name, words] of [['measure', measures], ['target', targets], ['work', works]]) {
+    for (const [name, words] of [['measure', measures], ['target', targets], ['cost', costKinds]]) {
       if (!select(name)) continue;
       for (const [value, text] of Object.entries(words)) select(name).add(new Option(text, value));
       select(name).addEventListener('change', draw);
     }
-    return () => Object.fromEntries(['measure', 'target', 'work'].map(name => [name, select(name).value]));
+    return () => Object.fromEntries(['measure', 'target', 'cost'].map(name => [name, select(name).value]));
   }
 
   /// Calls `draw` now and whenever the theme changes; paper is light.
@@ -185,5 +185,5 @@ const drape = (() => {
     offer(below, 'table-' + (k + 1), 'the table: ' + title, () => cellsOf(frame.querySelector('table')));
   });
 
-  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, works};
+  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, costKinds};
 })();

@@ -76,10 +76,10 @@
 
   /// Levels that build on each other go on where the last one ends; a method's colour is its own.
   function drawErrors() {
-    const {measure, target, work} = chosenError();
+    const {measure, target, cost} = chosenError();
     const series = data.errors.map(s => Object.assign({error: (s[target] || {})[measure] || []}, s));
-    lines('errors', work, 'error', [drape.works[work], drape.measures[measure]], true, false, series,
-      s => Object.assign(lineStyle(Object.assign({iteration: s[work]}, s)), {pointRadius: 2.5}));
+    lines('errors', cost, 'error', [drape.costKinds[cost], drape.measures[measure]], true, false, series,
+      s => Object.assign(lineStyle(Object.assign({iteration: s[cost]}, s)), {pointRadius: 2.5}));
   }
   const chosenError = drape.choices('error', drawErrors);
 

@@ -10,10 +10,10 @@
 namespace drape {
 
 /// One of several runs: a variation with one seed.
-struct SetRun {
+struct RunRecord {
   std::string sweep;  ///< its name; empty for a run by itself
   std::string variation;
-  Figure seed;
+  OptionalNumber seed;
   std::string status;  ///< as sweep.json has it: "converged", "ended", "failed", …
   std::string error;   ///< of a failed one
   int exit_code = 0;   ///< of its process
@@ -25,14 +25,14 @@ struct SetRun {
 };
 
 /// Runs that are looked at together: those of a sweep, or some folders.
-struct RunSet {
+struct RunCollection {
   std::string name;
   bool complete = true;
-  std::vector<SetRun> runs;
+  std::vector<RunRecord> runs;
 
   std::vector<std::string> variations() const;  ///< in order of appearance
   std::vector<std::string> methods() const;     ///< likewise
-  std::vector<const SetRun*> of(const std::string& variation) const;
+  std::vector<const RunRecord*> of(const std::string& variation) const;
 };
 
 /// Whether the folder is a sweep's.
@@ -41,6 +41,6 @@ bool is_sweep(const std::filesystem::path& folder);
 /// Reads sweeps and runs together. Runs that are of one experiment but for the seed are one variation, named
 /// by the experiment; where others have that name too, by the folder. Throws std::runtime_error with one line
 /// for a folder that is neither a run nor a sweep.
-RunSet read_runs(const std::vector<std::filesystem::path>& folders);
+RunCollection read_runs(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace drape

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/runner.h"
-#include "core/experiment/session.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
@@ -555,7 +555,7 @@ TEST_CASE("A saved state flows on under changed parameters, in a folder of its o
   REQUIRE(drape_with(flow + "--out last", folder.path).exit_code == 1);
   CHECK(rows("last").starts_with("pcs,1,0,0,"));  // the level under way after 12 steps of 8 a level
   const Json last = Json::parse(text_of(folder / "last/results.json"));
-  CHECK(last["begun_from"] == "out, method pcs, level 1");
+  CHECK(last["warm_started_from"] == "out, method pcs, level 1");
   REQUIRE(last["methods"].size() == 1);
   REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);
   CHECK(last["methods"]["pcs"]["levels"][0]["afresh"] == true);

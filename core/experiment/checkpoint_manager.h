@@ -12,10 +12,10 @@ namespace drape {
 /// Saves the state of a run while it goes: when a method or a level of it begins, when the run is to stop,
 /// and about every `interval` seconds in between, less often where saving would take more than a hundredth of
 /// the time. What a run computes does not depend on it.
-class Session {
+class CheckpointManager {
  public:
   /// `begun` is what the run begins or goes on with.
-  Session(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval);
+  CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval);
 
   void method_started(int method);
   void method_finished(bool converged);
@@ -35,13 +35,14 @@ class Session {
 };
 
 /// Marks of the files that the config.yaml of a results folder names; paths of those in it are relative.
-std::vector<FileMark> marks_of_files(const ConfigNode& saved, const std::filesystem::path& folder);
+std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved,
+                                                   const std::filesystem::path& folder);
 
 /// Whether the run in the folder has ended by itself, so that nothing is left to go on with.
 bool is_complete(const std::filesystem::path& folder);
 
 /// Whether every method of the run in the folder ended as asked.
-bool methods_ended_as_asked(const std::filesystem::path& folder);
+bool all_methods_succeeded(const std::filesystem::path& folder);
 
 /// Of a complete run, which has no checkpoint any more: throws std::runtime_error naming every mesh of a
 /// level that is no longer what results.json says of it.
@@ -69,7 +70,7 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
 /// Lets the scene's methods begin at x on that level and, where they begin finer levels from the scene's
 /// start, at the same surface on these; held vertices are brought from there to their places. What the state
 /// touches is appended to `errors`.
-void begin_from(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+void warm_start(const Experiment& experiment, Scene& scene, int level, const Positions& x,
                 ConfigErrors& errors);
 
 }  // namespace drape
