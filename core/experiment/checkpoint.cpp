@@ -5,10 +5,10 @@
 
 namespace drape {
 
-/// An outcome that has no word is none.
+/// An outcome is valid if it has a name.
 bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
 
-// What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
+// Fields of a checkpoint's structs. Increment `format` with every change.
 
 template <class A>
 void fields(A& a, ConditionsState& s) {

@@ -1,5 +1,5 @@
-// Whether the values of a checkpoint make sense for the experiment that goes on from it. The checksum finds
-// what happens to files; this finds what a file says that another program wrote, or another version of drape.
+// Whether a checkpoint's values fit the experiment. The checksum detects damage; these checks detect files
+// that another program or another version of drape wrote.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Each greater than the one before it.
+/// Strictly ascending.
 template <class Values, class Key>
 bool ascends(const Values& values, const Key& key) {
   return std::adjacent_find(values.begin(), values.end(),

@@ -10,8 +10,7 @@ namespace drape {
 
 namespace {
 
-/// The value of a metric that a measure is, or, of an overlap, what it lacks of the whole; the energy gap
-/// needs none.
+/// The metric value behind each measure; an overlap counts as 1 − overlap. The energy gap needs no metric.
 constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit", "silhouette_overlap"};
 static_assert(metric_values.size() + 1 == error_measures.size());
 
@@ -100,7 +99,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     try {
       states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
     } catch (const std::exception& error) {
-      fault(error.what());  // they are nowhere else
+      fault(error.what());  // there is no copy of them
       continue;
     }
     if (states.size() != level.cost.size()) continue;

@@ -20,14 +20,14 @@ namespace drape {
 
 namespace {
 
-/// The status of a method that threw, and of the level that it was at; no solver gives it.
+/// Status of a method that threw, and of its current level; no solver returns it.
 constexpr const char* failed = "failed";
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
-/// The member of an object that a metric's name stands for; "a.b" is member b of member a.
+/// The member of an object with a dotted name: "a.b" is member b of member a.
 nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
   const std::size_t dot = name.find('.');
   return dot == std::string::npos ? object[name]
@@ -248,7 +248,7 @@ void Recorder::level_finished(const LevelResult& r) {
   entry["levels"].push_back(state_entry(r));
   entry["levels"].back()["mesh_checksum"] =
       checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
-  // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
+  // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
   const Cost cost = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
   if (snapshots_.any())
     entry["levels"].back()["snapshots"] =
@@ -280,7 +280,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
                                  const std::string& fields_file) {
-  Json row = Json::object();  // stays one without a metric of pairs
+  Json row = Json::object();  // not null, even without a metric of pairs
   VertexFields fields;
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
@@ -299,7 +299,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
 void Recorder::method_finished(const std::vector<LevelResult>& results,
                                const std::optional<MethodFailure>& failure) {
   Json& entry = method_entry();
-  // Of a level that fails while it is recorded there may be an entry.
+  // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
   Outcome worst = Outcome::converged;
   const int finest = static_cast<int>(scene_.models.size()) - 1;
@@ -316,12 +316,12 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   }
   write_collection(method_);
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
-  std::vector<Json> of_start;  // what the scene's start scores against each level's state
+  std::vector<Json> of_start;  // the initial state compared with each level's state
   for (const LevelResult& r : results)
     of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
-      const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
+      const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
       const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
       const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};

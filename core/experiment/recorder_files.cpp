@@ -17,7 +17,7 @@ std::uint64_t size_of(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Takes off what was written to a file after it had so many bytes.
+/// Truncates a file to so many bytes.
 void cut(const std::filesystem::path& file, std::uint64_t bytes) {
   std::error_code error;
   std::filesystem::resize_file(file, bytes, error);
@@ -77,7 +77,7 @@ void record_broken_off(const RunFolder& folder, const std::string& cause) {
     std::ofstream(folder.file("log.jsonl"), std::ios::app)
         << json_text({{"event", "run_broken_off"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
   } catch (const std::exception&) {
-    // What kept the run from going on keeps this from being written; the message and the exit code tell.
+    // The cause of the abort may prevent this write too; message and exit code remain.
   }
 }
 
@@ -106,7 +106,7 @@ Recorder::Names Recorder::write_state(const RecordedState& state) const {
     const bool ply = extension == std::string_view(".ply");
     if (write_where_other(folder_.file(name), ply ? ply_bytes(mesh) : vtp_text(mesh)))
       written.push_back(name);
-    sync_to_disk(folder_.file(name));  // checkpoints to come take it for granted
+    sync_to_disk(folder_.file(name));  // later checkpoints rely on it
   }
   return written;
 }

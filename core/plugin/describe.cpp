@@ -35,7 +35,7 @@ std::string type_text(const Parameter& p) {
   return type + (p.nullable ? " or null" : "");
 }
 
-/// Every parameter in order, those of a section after it.
+/// Every parameter in order; a section is followed by its parameters.
 void collect(const Schema& schema, const ConfigNode& defaults, int depth, const std::string& prefix,
              std::vector<Row>& rows) {
   for (const Parameter& p : schema.parameters) {
@@ -60,7 +60,7 @@ std::vector<Row> rows_of(const Schema& schema) {
 
 std::string unit_of(const Parameter& p) { return p.unit == "1" ? "" : p.unit; }
 
-/// Columns of code points, not bytes: units are written with ², ρ and the like.
+/// The number of code points: units contain ², ρ and the like.
 size_t width(const std::string& text) {
   size_t n = 0;
   for (const char c : text) n += (c & 0xC0) != 0x80;

@@ -18,7 +18,7 @@ Json scalar_schema(const std::string& type, const Parameter& p) {
   return json;
 }
 
-/// A plugin's name, or a map with it and its parameters.
+/// A plugin's name, or a map with its name and parameters.
 Json plugin_schema(const std::string& kind, const Registry& registry) {
   Json names = Json::array();
   Json alternatives = Json::array();

@@ -25,7 +25,7 @@ std::optional<Number> parse_all(const std::string& text) {
   return value;
 }
 
-/// What was written, for "must be …, not …".
+/// The written value, for "must be …, not …".
 std::string shown(const ConfigNode& node) {
   switch (node.kind) {
     case Kind::null:
@@ -47,7 +47,7 @@ std::string with_unit(double value, const Parameter& p) {
   return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
 }
 
-/// "must be …" if the number is out of range, else "".
+/// What the number must be if it is out of range, else "".
 std::string range_fault(double value, const Parameter& p) {
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
@@ -57,7 +57,7 @@ std::string range_fault(double value, const Parameter& p) {
   return "";
 }
 
-/// What a scalar must be and is not, or "".
+/// What a scalar must be if it is not, else "".
 std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
   const bool plain = node.kind == Kind::scalar && !node.quoted;
   if (type == "number" || type == "integer") {
@@ -105,7 +105,7 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   }
 }
 
-/// Whether the node may be handed to `p.read`; if not, says why.
+/// Whether the node is valid for `p.read`; if not, appends an error.
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
   if (p.nullable && node.kind == Kind::null) return true;
@@ -116,8 +116,8 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   return errors.size() == before;
 }
 
-/// A section that was written as a bare word, as the map that it stands for; set_path has made one of it
-/// already, with the word as its type, where it set another key.
+/// The map that a section's shorthand stands for. set_path has expanded a shorthand to a map with the word as
+/// `type` if it set another key of the section.
 ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
   if (p.shorthand_key.empty()) return node;
   ConfigNode map = node;
@@ -130,8 +130,7 @@ ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
   return map;
 }
 
-/// A file's path, or those of a list, as it holds from the current folder, which is what one on the command
-/// line is relative to.
+/// Path relative to the current folder, as paths on the command line are; for a list, each.
 ConfigNode from_here(const ConfigNode& node) {
   ConfigNode path = node;
   for (ConfigNode& item : path.items) item = from_here(item);
@@ -140,7 +139,7 @@ ConfigNode from_here(const ConfigNode& node) {
   return path;
 }
 
-/// The same as it holds from anywhere.
+/// The same as an absolute path.
 ConfigNode from_anywhere(ConfigNode path) {
   for (ConfigNode& item : path.items) item = from_anywhere(item);
   if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
