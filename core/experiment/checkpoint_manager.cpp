@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Saving takes no more than one part in so many of the time.
-constexpr double rareness = 100;
+/// The interval is at least this many times the time to save.
+constexpr double save_time_ratio = 100;
 
 std::string program() { return "drape " + std::string(version()) + " (" + commit() + ")"; }
 
@@ -84,7 +84,7 @@ void CheckpointManager::level_finished(const LevelResult& result) {
 }
 
 bool CheckpointManager::due(bool stopping) const {
-  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, rareness * cost_);
+  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, save_time_ratio * cost_);
 }
 
 void CheckpointManager::save(const NewtonState& under_way) {
@@ -103,18 +103,19 @@ void CheckpointManager::save() {
 }
 
 std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
-  std::vector<FileFingerprint> marks;
-  // Parameters that are paths are absolute there, but for the copies in the folder.
+  std::vector<FileFingerprint> fingerprints;
+  // Paths in the saved config are absolute, except those of copies in the folder.
   const std::string& path = saved.scalar;
-  if (path.starts_with('/') && fs::exists(path)) marks.push_back(fingerprint_of(path));
+  if (path.starts_with('/') && fs::exists(path)) fingerprints.push_back(fingerprint_of(path));
   for (const char* copy : {"rest/l0.ply", "reference.ply", "start.ply"})
-    if (path == copy) marks.push_back(fingerprint_of(folder / copy)), marks.back().path = copy;
+    if (path == copy) fingerprints.push_back(fingerprint_of(folder / copy)), fingerprints.back().path = copy;
   const auto add = [&](const ConfigNode& part) {
-    for (FileFingerprint& mark : fingerprints_of_files(part, folder)) marks.push_back(std::move(mark));
+    for (FileFingerprint& fingerprint : fingerprints_of_files(part, folder))
+      fingerprints.push_back(std::move(fingerprint));
   };
   for (const ConfigNode& item : saved.items) add(item);
   for (const auto& entry : saved.entries) add(entry.second);
-  return marks;
+  return fingerprints;
 }
 
 bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }

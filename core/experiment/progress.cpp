@@ -48,8 +48,8 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
   draw(row);
 }
 
-/// How much has been done: of an equilibrium the part of the way, by the residual's logarithm, to the
-/// tolerance; of a schedule increments as well, of which the beginning is one.
+/// Updates the finished fraction of the level: by the logarithm of the residual towards the tolerance, and
+/// under load stepping by increments, the initial equilibrium included.
 void Progress::take_note(const IterationRow& row) {
   const bool scheduled = conditions_ && row.time;
   const int increment = scheduled ? conditions_->change() : 0, last = scheduled ? conditions_->changes() : 0;

@@ -34,7 +34,7 @@ class RunObserver : public Observer {
     progress_.method_started(name);
     if (view_) view_->method_started(name);
   }
-  /// Shows what an earlier part of the run has done of the method.
+  /// Shows the results of the method before the run was interrupted.
   void catch_up(const MethodState& state) {
     for (const LevelResult& result : state.finished)
       if (view_) view_->level_started(result.level), view_->level_finished(result);
@@ -42,7 +42,7 @@ class RunObserver : public Observer {
     progress_.level_started(state.level);
     if (view_) view_->level_started(state.level);
   }
-  /// What the method under way has come to.
+  /// Finished levels of the current method.
   const std::vector<LevelResult>& finished() const { return finished_; }
   int level() const { return level_; }
 
@@ -83,7 +83,7 @@ class RunObserver : public Observer {
   const std::function<bool()>& stop_;
 };
 
-/// Of what belongs to no method: nothing is recorded.
+/// Observes a solve that belongs to no method; it is not recorded.
 class UnrecordedObserver : public Observer {
  public:
   UnrecordedObserver(Progress& progress, const std::function<bool()>& stop)
@@ -111,7 +111,7 @@ void require_methods(const Experiment& experiment, const std::vector<std::string
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
 }
 
-/// The resolved experiment as it is read from the results folder: mesh files are the copies that lie there.
+/// The resolved experiment with paths to the copies of mesh files in the results folder.
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
@@ -132,8 +132,7 @@ std::vector<std::string> methods_of(const Experiment& experiment, const RunOptio
   return names;
 }
 
-/// What the exception that is being handled says. A file that cannot be written is of the whole run: that is
-/// thrown on.
+/// The message of the exception in flight. A WriteError concerns the whole run and is rethrown.
 std::string cause_in_method() {
   try {
     throw;
@@ -146,7 +145,7 @@ std::string cause_in_method() {
   }
 }
 
-/// Does what belongs to a run that has begun.
+/// Performs an action of a run that has begun; errors abort the run.
 template <class Action>
 bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {
   std::string cause;
@@ -168,10 +167,10 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
                           : "run the experiment anew: there is no checkpoint of it"));
 }
 
-/// How long a run that has been told to stop still draws its report's pictures [s].
+/// Time that a stopped run still spends on its report's pictures [s].
 constexpr double seconds_for_pictures = 2;
 
-/// The results are there whatever becomes of their report.
+/// Writes the report. If that fails, the results remain.
 void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   const std::string name = folder.path().string();
   std::optional<Stopwatch> since_stop;
@@ -187,7 +186,7 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   }
 }
 
-/// Runs what is left: the method under way if `resumed`, those after it, what is measured of them all.
+/// Runs the remaining methods, beginning with the current one if `resumed`, then measures errors.
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
   CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);

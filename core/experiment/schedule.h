@@ -12,15 +12,15 @@ void set_first_keys(ConfigNode& source);
 /// that their parameters refuse.
 void check_schedule(const Experiment& experiment, ConfigErrors& errors);
 
-/// What a level model is made of under the conditions of a moment.
+/// The loads and models' parts at one pseudo-time.
 struct Moment {
   ExperimentParameters parameters;
   std::vector<NamedEnergy> energies;  ///< handles among them
   std::vector<std::shared_ptr<ContactModel>> contacts;
 };
 
-/// The keyed parameters of an experiment over pseudo-time, and the models of a scene under them. Refers to
-/// the scene, which owns it.
+/// The keyed parameters of an experiment over pseudo-time, and a scene's models under them. Refers to the
+/// scene, which owns it.
 class Schedule final : public Conditions {
  public:
   Schedule(Experiment experiment, Scene& scene);
@@ -38,13 +38,13 @@ class Schedule final : public Conditions {
 
  private:
   std::vector<double> wanted(int change) const;
-  /// With the numbers of all keys, one after another. What does not change is shared with now_.
+  /// For the concatenated values of all keys. Unchanged objects are shared with now_.
   Moment moment(const std::vector<double>& numbers, std::vector<std::string>& made_from) const;
   LevelModel model_under(const Moment& moment, int level) const;
-  /// Makes a part of what is left of the change if a cloth at x allows it. 1 if so; if not, how much of the
-  /// part it may allow.
+  /// Applies a fraction of the rest of the increment if a cloth at x admits it: 1 if so, otherwise the part
+  /// of the fraction that may be admissible.
   StepLimit make_part(double part, int level, const Positions& x);
-  /// Finer levels have no cloth to be kept apart yet; a method may evaluate their energies.
+  /// Updates energies on finer levels, which a method may evaluate; contact there has no state yet.
   void change_energies_above(int level, const Moment& next);
   void go_to(Moment moment, std::vector<std::string> made_from, std::vector<double> numbers);
   void bind_from(int level);

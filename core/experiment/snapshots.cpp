@@ -16,7 +16,7 @@ void SnapshotRecorder::iteration(const Cost& cost, const Positions& x) {
   const bool wanted = most_ > 1 && m_.seen % m_.spacing == 0;
   ++m_.seen;
   if (!wanted) return;
-  if (static_cast<int>(m_.kept.size()) == most_ - 1) {  // one place is the last state's
+  if (static_cast<int>(m_.kept.size()) == most_ - 1) {  // the last state takes one
     for (std::size_t k = 1; 2 * k < m_.kept.size(); ++k) m_.kept[k] = std::move(m_.kept[2 * k]);
     m_.kept.resize((m_.kept.size() + 1) / 2);
     m_.spacing *= 2;

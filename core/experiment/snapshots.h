@@ -10,7 +10,7 @@
 
 namespace drape {
 
-/// What a state has cost.
+/// The cost of reaching a state.
 struct Cost {
   double seconds = 0;
   int iterations = 0;
@@ -21,20 +21,20 @@ inline Cost operator+(const Cost& a, const Cost& b) {
   return {a.seconds + b.seconds, a.iterations + b.iterations, a.flops + b.flops};
 }
 
-/// A state on the way through a level.
+/// An intermediate state of a level.
 struct Snapshot {
-  Cost cost;    ///< since the level's start
+  Cost cost;    ///< since the beginning of the level
   Positions x;  ///< n×3 [m]
 };
 
-/// Keeps states of a level while it is solved, evenly over its iterations and not more than so many: when
-/// there are too many, every second one goes and the spacing doubles.
+/// Records states of a level, evenly spaced over its iterations. When there are too many, it drops every
+/// second one and doubles the spacing.
 class SnapshotRecorder {
  public:
-  /// At most `most` snapshots a level, its last state among them; 0 keeps nothing and costs nothing.
+  /// At most `most` snapshots a level, the last state included; 0 disables recording.
   explicit SnapshotRecorder(int most) : most_(most) {}
 
-  /// Of the level under way.
+  /// Snapshots of the current level.
   struct Memory {
     int spacing = 1, seen = 0;
     std::vector<Snapshot> kept;
@@ -44,9 +44,9 @@ class SnapshotRecorder {
 
   bool any() const { return most_ > 0; }
   void begin_level();
-  /// The state after an iteration; `cost` counts from the level's start.
+  /// Takes the state after an iteration; `cost` counts from the beginning of the level.
   void iteration(const Cost& cost, const Positions& x);
-  /// The level's snapshots, `last` at their end.
+  /// The level's snapshots, ending with `last`.
   std::vector<Snapshot> end_level(const Cost& cost, const Positions& last);
 
  private:
@@ -58,8 +58,8 @@ class SnapshotRecorder {
 /// checksum of the file.
 std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots);
 
-/// The positions of such a file, `vertices` rows each. Throws std::runtime_error when the file is not made of
-/// them, or has another checksum than this.
+/// The positions of such a file, `vertices` rows each. Throws std::runtime_error if the size or the checksum
+/// does not match.
 std::vector<Positions> read_snapshots(const std::filesystem::path& file, int vertices,
                                       std::optional<std::uint32_t> checksum = std::nullopt);
 
