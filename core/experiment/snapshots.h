@@ -54,8 +54,8 @@ class SnapshotRecorder {
   Memory m_;
 };
 
-/// float32, little-endian, snapshot after snapshot, row by row. Written as a whole, then renamed. The
-/// checksum of the file.
+/// Writes positions as little-endian float32, snapshot by snapshot, row by row. Returns the checksum of the
+/// file.
 std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots);
 
 /// The positions of such a file, `vertices` rows each. Throws std::runtime_error if the size or the checksum

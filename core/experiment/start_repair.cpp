@@ -17,12 +17,12 @@ using Eigen::Vector3d;
 constexpr double tiny_gap = 1e-6;  // [m]
 /// Trial distances, relative to the cloth's diagonal, in a geometric series.
 constexpr double shortest_part = 1e-3, growth = 1.5;
-/// How often the translation to the first place that is free is halved, not to go further than needed.
+/// Bisections of the first free translation, to move no further than necessary.
 constexpr int halvings = 5;
 
-/// What a start is like at one place.
+/// Intersections and gaps of the translated initial state.
 struct Clearance {
-  std::vector<Touch> touches;  ///< of the first level that has any; nothing else is known then
+  std::vector<Touch> touches;  ///< of the first level with any; the rest is then unknown
   int level = 0;               ///< that level
   int contacts = 0;            ///< pairs within range, on all levels
   double smallest_gap = std::numeric_limits<double>::infinity();
@@ -30,7 +30,7 @@ struct Clearance {
 
 bool same_pair(const Touch& a, const Touch& b) { return a.first == b.first && a.second == b.second; }
 
-/// One vertex of every piece of the cloth.
+/// One vertex of every connected component of the cloth.
 std::vector<int> pieces_of(const Level& level) {
   std::vector<int> first, open;
   std::vector<char> seen(level.vertex_count(), 0);
@@ -50,8 +50,8 @@ std::vector<int> pieces_of(const Level& level) {
   return first;
 }
 
-/// The part of all directions from p in which the mesh shows its back, less those in which it shows its
-/// front: 1 inside a closed mesh that faces outwards, 0 outside (van Oosterom and Strackee 1983).
+/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
+/// (solid angles: van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double angle = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
@@ -91,7 +91,7 @@ class StartProbe {
     return clearance;
   }
 
-  /// Whether a piece of the cloth, which touches nothing, is within an obstacle: contact would keep it there.
+  /// Whether a component of the cloth lies inside an obstacle without intersecting it.
   bool enclosed(const Vector3d& translation) const {
     return std::any_of(pieces_.begin(), pieces_.end(), [&](int v) {
       const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
@@ -122,7 +122,7 @@ class TranslationSearch {
         const double distance = std::min(part, 1.0) * probe_.diagonal();
         if (is_better(distance * direction)) {
           shorten(direction, before, distance);
-          // What is still within range then is the cloth itself, or there may be a better place.
+          // Without contacts this is the best; otherwise another direction may be better.
           if (best_contacts_ == 0) return;
         }
         before = distance;
@@ -159,7 +159,7 @@ class TranslationSearch {
   }
 
   void intersect_persistent(const Clearance& other) {
-    if (other.level != persistent_.level) return;  // triangles of another level
+    if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
     std::erase_if(persistent_.touches, [&](const Touch& touch) {
       return std::none_of(other.touches.begin(), other.touches.end(),
                           [&](const Touch& now) { return same_pair(touch, now); });

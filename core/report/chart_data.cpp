@@ -12,10 +12,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_points = 500;  // a series; more cannot be seen and only make the page large
+constexpr std::size_t most_points = 500;  // per series; more are not visible
 
-/// Energies are compared with others of the same function only: the plain energy of a level, or a
-/// level's proxy, which the finest level does not have.
+/// Energies are comparable only within the same objective: a level's plain energy, or its proxy (the finest
+/// level has none).
 bool is_proxy(const RunData& run, const IterationSeries& series, const StepRow& row) {
   return row.proxy_energy && series.level != run.finest_level();
 }
@@ -24,8 +24,8 @@ OptionalNumber objective(const RunData& run, const IterationSeries& series, cons
   return is_proxy(run, series, row) ? row.proxy_energy : row.energy;
 }
 
-/// Root mean square length of the Newton direction over the vertices [m]. A static step has no h of its own;
-/// its decrement was made with the first one.
+/// Root mean square length of the Newton direction over the vertices [m]. A static step has no h; its
+/// decrement was computed with the first one.
 OptionalNumber newton_step(const RunData& run, const IterationSeries& series, const StepRow& row) {
   OptionalNumber h = row.step_size;
   for (const MethodRecord& method : run.methods) {
@@ -71,7 +71,7 @@ Json series_json(const RunData& run) {
   return all;
 }
 
-/// Bars: one label a level of each method, one row of values a name.
+/// Bars: one label per level and method, one row of values per name.
 Json bars_json(const RunData& run, NamedNumbers LevelRecord::*member) {
   Json labels = Json::array();
   std::vector<std::string> names;

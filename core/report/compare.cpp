@@ -17,13 +17,13 @@ namespace drape {
 
 namespace {
 
-constexpr double time_noise = 0.10;      // times of one machine that differ by less are the same
-constexpr double least_seconds = 0.05;   // and so are those that differ by less than this
-constexpr double relative_noise = 0.01;  // of every other quantity
+constexpr double time_noise = 0.10;      // smaller relative differences of times count as equal
+constexpr double least_seconds = 0.05;   // smaller differences of times count as equal [s]
+constexpr double relative_noise = 0.01;  // the same for all other quantities
 
 struct Key {
   const char* name;
-  OptionalNumber LevelRecord::*of;  ///< of a level; null for those of pairs of levels and of whole methods
+  OptionalNumber LevelRecord::*of;  ///< null for quantities of pairs of levels and of whole methods
 };
 constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
                               {"iterations", &LevelRecord::newton_iterations},
@@ -52,7 +52,7 @@ bool higher_is_better(const std::string& key) {
   return key == "smallest_gap";
 }
 
-/// Figures by place, then key, in order of writing; and how each method ended.
+/// Values by level and key, in file order, and whether each method converged.
 struct Sheet {
   std::vector<std::tuple<std::string, std::string, double>> entries;
   std::vector<std::pair<std::string, bool>> converged;
@@ -107,7 +107,7 @@ std::string verdict(const Change& c) {
   return good ? "better" : "worse";
 }
 
-/// Energies may be negative, and counts nought: what a ratio adds is a part of the quantity's size.
+/// Energies may be negative and counts zero: a ratio is relative to the absolute value.
 bool holds(const Change& c, double ratio) {
   if (is_time(c.key) && c.after - c.before < least_seconds) return true;
   if (higher_is_better(c.key)) return c.after * ratio >= c.before;

@@ -75,7 +75,7 @@ std::vector<const ConsistencyRecord*> pointers_to(
   return pointers;
 }
 
-/// The cells of one row, its best figure strong.
+/// The cells of one row, the best one in bold.
 void add_compared(Row& row, const std::vector<Source>& sources, const PairMeasure& measure, int coarse,
                   int fine) {
   const auto records = records_of(sources, coarse, fine);
@@ -86,8 +86,8 @@ void add_compared(Row& row, const std::vector<Source>& sources, const PairMeasur
   }
 }
 
-/// What the scene's start scores in the place of the coarse states: one figure where the methods agree on it
-/// as far as it is shown, else the lowest and the highest.
+/// The score of the scene's initial state in place of the coarse states: one number if it is equal for all
+/// methods as displayed, else the range.
 std::string start_cell(const std::vector<Source>& sources, const PairMeasure& measure, int coarse, int fine) {
   std::vector<double> values;
   for (const auto& record : records_of(sources, coarse, fine))
@@ -143,7 +143,7 @@ OptionalNumber best_of(const PairMeasure& measure, const std::vector<const Consi
     if (!best || measure.beats(*value, *(best->*measure.value))) best = record;
   }
   if (known < 2) return {};
-  const OptionalNumber& start = best->of_start.*measure.value;  // not known of runs of earlier versions
+  const OptionalNumber& start = best->of_start.*measure.value;  // unknown for runs of earlier versions
   if (start && !measure.beats(*(best->*measure.value), *start)) return {};
   return best->*measure.value;
 }

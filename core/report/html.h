@@ -12,9 +12,9 @@ namespace drape::html {
 /// Text made safe inside elements and quoted attributes.
 std::string escape(std::string_view text);
 
-/// Three significant digits ("403", "0.0213", "7.21e4"), or a dash.
+/// Three significant digits ("403", "0.0213", "7.21e4"), or a dash if absent.
 std::string number_text(const OptionalNumber& value);
-/// With so many digits after the point, or a dash.
+/// With so many decimals, or a dash.
 std::string fixed(const OptionalNumber& value, int decimals);
 /// A whole number with thin spaces between thousands, or a dash.
 std::string count(const OptionalNumber& value);

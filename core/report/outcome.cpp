@@ -13,15 +13,15 @@ namespace {
 using html::escape;
 using html::number_text;
 
-/// "0.001" rather than a measured figure's "1.00e-3".
+/// "0.001", where a measured number would be "1.00e-3".
 std::string shortest(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
 }
 
-/// The method whose widest pair of levels differs least, where several have one and the flat start would not
-/// do as well.
+/// The method whose coarsest and finest levels differ least, if several have them and the flat initial state
+/// would not score as well.
 std::string most_consistent(const RunData& run) {
   const auto pairs = run.pairs();
   if (pairs.empty()) return "";
@@ -45,10 +45,10 @@ std::string counted(double number, const std::string& thing) {
   return std::to_string(std::llround(number)) + " " + thing + (number == 1 ? "" : "s");
 }
 
-/// What was audit at in a run: states of levels, and of iterations where every step was to be verified.
+/// Checked states of a run: those of levels, and of iterations if every step is checked.
 struct Audit {
   int levels = 0, iterations = 0;
-  std::string found;  ///< where there were intersections
+  std::string found;  ///< intersecting states
   OptionalNumber smallest_gap;
 
   void gap(const OptionalNumber& gap) {
@@ -119,7 +119,7 @@ std::string troubles(const RunData& run) {
   const auto list = [](const std::string& title, const std::string& rows) {
     return rows.empty() ? "" : "<p>" + title + "</p>\n<ul>\n" + rows + "</ul>\n";
   };
-  return list("What did not converge:", items) + list("To be known of what converged:", remarks);
+  return list("What did not converge:", items) + list("Remarks on what converged:", remarks);
 }
 
 OptionalNumber final_energy(const RunData& run, const MethodRecord& method) {

@@ -15,8 +15,7 @@ struct PairMeasure {
   OptionalNumber PairValues::*value;
   Better better;
 
-  /// An energy may lie below the end's, where the end is no equilibrium of its level: then the nearer to
-  /// nought.
+  /// An energy difference may be negative if the final state is no equilibrium: closer to zero is better.
   bool beats(double a, double b) const {
     return better == Better::higher ? a > b : std::abs(a) < std::abs(b);
   }
@@ -33,9 +32,8 @@ inline constexpr PairMeasure pair_measures[] = {
     {"energy_above_end", "energy above the end", "J", &PairValues::energy_above_end, Better::lower}};
 inline constexpr int published_measures = 4;
 
-/// The best of some methods' figures of a measure of one pair, where two or more are known and the scene's
-/// start, in the place of the best one's coarse state, would not score as well: of a measure that the flat
-/// cloth would win no method is the best.
+/// The best value of a measure among methods for one pair of levels. Absent unless at least two values are
+/// known and the best one beats that of the scene's initial state: a flat cloth must not win.
 OptionalNumber best_of(const PairMeasure& measure, const std::vector<const ConsistencyRecord*>& records);
 
 }  // namespace drape

@@ -131,7 +131,7 @@ std::string machine_line(const RunData& run) {
   return text;
 }
 
-/// A word of caution beside the paper's columns.
+/// Caveats beside the paper's columns.
 constexpr const char* of_libigl =
     "Its d<sub>K</sub><sup>fit</sup> may be of libigl's Gaussian curvature, which is not quite the fitted "
     "quadric's.";
@@ -152,7 +152,7 @@ std::string published_section(const RunData& run) {
 }
 
 std::string reference_sentence(const RunData& run) {
-  if (run.errors.empty()) return "No states were kept in this run (<code>snapshots: 0</code>).";
+  if (run.errors.empty()) return "No states were recorded in this run (<code>snapshots: 0</code>).";
   if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
   std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
   if (run.reference_is_lowest) text += ", the lowest in energy of all that have converged";

@@ -51,14 +51,14 @@ void read_sweep(const fs::path& folder, RunCollection& collection) {
     run.folder = folder / text_at(entry, "folder");
     if (const auto seed = entry.find("seed"); seed != entry.end() && seed->is_number())
       run.seed = seed->get<double>();
-    // What is running or failed may have written something; only complete runs have results.
+    // Running and failed runs may have written files; only complete ones have results.
     const bool has_results = run.status == "converged" || run.status == "not_converged";
     if (has_results && fs::is_regular_file(run.folder / "results.json")) run.data = read_run(run.folder);
     collection.runs.push_back(std::move(run));
   }
 }
 
-/// The configuration without what tells repeats apart; takes the seed out.
+/// The configuration without its seed, which is returned in `seed`.
 std::string config_but_seed(const RunData& run, OptionalNumber& seed) {
   ConfigErrors errors;
   ConfigNode config = parse_yaml(run.configuration, "config.yaml", errors);

@@ -9,22 +9,22 @@
 
 namespace drape {
 
-/// One of several runs: a variation with one seed.
+/// One of several runs: a variation with a seed.
 struct RunRecord {
   std::string sweep;  ///< its name; empty for a run by itself
   std::string variation;
   OptionalNumber seed;
-  std::string status;  ///< as sweep.json has it: "converged", "ended", "failed", …
-  std::string error;   ///< of a failed one
-  int exit_code = 0;   ///< of its process
-  std::string expected = "converged", expected_message;  ///< how it is to end, and a part of what it says
-  std::filesystem::path folder;                          ///< as it is found from here
-  std::optional<RunData> data;                           ///< of a run that has written results
+  std::string status;  ///< as sweep.json has it: "converged", "not_converged", "failed", …
+  std::string error;   ///< message of a failed run
+  int exit_code = 0;   ///< exit code of its process
+  std::string expected = "converged", expected_message;  ///< expected outcome, and a part of the message
+  std::filesystem::path folder;                          ///< relative to the current folder
+  std::optional<RunData> data;                           ///< empty without results
 
-  bool refused() const;  ///< before anything was computed
+  bool refused() const;  ///< refused before any computation
 };
 
-/// Runs that are looked at together: those of a sweep, or some folders.
+/// Runs that are reported together: those of a sweep, or of several folders.
 struct RunCollection {
   std::string name;
   bool complete = true;
@@ -35,12 +35,12 @@ struct RunCollection {
   std::vector<const RunRecord*> of(const std::string& variation) const;
 };
 
-/// Whether the folder is a sweep's.
+/// Whether it is a sweep's folder.
 bool is_sweep(const std::filesystem::path& folder);
 
-/// Reads sweeps and runs together. Runs that are of one experiment but for the seed are one variation, named
-/// by the experiment; where others have that name too, by the folder. Throws std::runtime_error with one line
-/// for a folder that is neither a run nor a sweep.
+/// Reads runs and sweeps. Runs whose configs differ only by the seed form a variation, which is named after
+/// the experiment or, if that is ambiguous, after the folder. Throws std::runtime_error with one line for a
+/// folder that is neither a run nor a sweep.
 RunCollection read_runs(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace drape

@@ -111,7 +111,7 @@ std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
 }
 
-/// The level of a row; the coarsest where the cell is empty.
+/// The level of a row; the coarsest if the cell is empty.
 int level_of(const Csv& csv, std::size_t row, const std::filesystem::path& path) {
   const double level = csv.number(row, "level").value_or(0);
   if (const std::optional<int> whole = whole_number(level)) return *whole;
@@ -119,7 +119,7 @@ int level_of(const Csv& csv, std::size_t row, const std::filesystem::path& path)
                            " must be a whole number, not " + excerpt(csv.text(row, "level")) + "; " + remedy);
 }
 
-/// The rows of one level of one method, which are made if they are not there yet.
+/// The rows of one level of one method; added if new.
 template <class Series>
 Series& series_of(std::vector<Series>& all, const std::string& method, int level) {
   const auto found = std::find_if(all.begin(), all.end(),
@@ -281,7 +281,7 @@ RunData read_run(const std::filesystem::path& folder) {
       run.changes.insert(run.changes.end(), changes.begin(), changes.end());
     }
   }
-  // The progressive method leads, whatever the order in the file; the others keep theirs.
+  // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });
   run.iterations = read_steps(folder / "steps.csv");

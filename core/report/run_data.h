@@ -13,10 +13,10 @@
 
 namespace drape {
 
-/// A figure of a run, absent when the run did not get that far or did not measure it.
+/// A number of a run, absent if the run did not reach or measure it.
 using OptionalNumber = std::optional<double>;
 
-/// Figures by name, in the order they were written.
+/// Numbers by name, in file order.
 using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
 
 /// One level of one method, as results.json has it (SI units).
@@ -24,7 +24,7 @@ struct LevelRecord {
   int level = 0;
   std::string status, message;
   OptionalNumber vertices, triangles, steps, newton_iterations, seconds, flops;
-  bool afresh = false;                       ///< begun from the scene's start: what came before is not in it
+  bool afresh = false;  ///< begun from the scene's initial state: earlier levels do not contribute
   OptionalNumber energy, energy_on_finest;   ///< [J]
   OptionalNumber decrement, force_residual;  ///< [m/s], [1]
   OptionalNumber largest_stretch, intersections, smallest_gap;
@@ -33,7 +33,7 @@ struct LevelRecord {
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
 
-/// What one state scores against a finer level's.
+/// Measures of a state against a finer level's.
 struct PairValues {
   OptionalNumber d_H_fit, d_H_ddg, d_K_fit, d_K_ddg;  ///< [1], [1], [1/m²], [1/m²]
   OptionalNumber distance_rms;                        ///< in diagonals of the rest shape
@@ -41,10 +41,10 @@ struct PairValues {
   OptionalNumber energy_above_end;                    ///< [J]
 };
 
-/// Differences of one coarse state, carried up, from one finer state.
+/// Measures of a coarse state, prolonged, against a finer one.
 struct ConsistencyRecord : PairValues {
   int coarse = 0, fine = 0;
-  PairValues of_start;  ///< the same of the scene's start in the coarse state's place
+  PairValues of_start;  ///< the same for the scene's initial state in place of the coarse one
   std::string fields;   ///< relative to the run's folder; may be empty
 };
 
@@ -55,7 +55,7 @@ struct MethodRecord {
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
 
-  /// What the last state took: the sum over the levels that it builds on, of those that are known.
+  /// Cost of the last state: the sum of the known values over the levels that it builds on.
   OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
   const LevelRecord* level(int index) const;
   const ConsistencyRecord* pair(int coarse, int fine) const;
@@ -74,19 +74,19 @@ struct IterationSeries {
   std::vector<StepRow> rows;
 };
 
-/// A change of conditions, where it ended.
+/// One load increment, at its end.
 struct ConditionRow {
-  OptionalNumber time, steps, energy;  ///< pseudo-time; the others as of a level
+  OptionalNumber time, steps, energy;  ///< pseudo-time; the others as in LevelRecord
 };
 
-/// All changes of one level of one method, in order.
+/// All increments of one level of one method, in order.
 struct ConditionSeries {
   std::string method;
   int level = 0;
   std::vector<ConditionRow> rows;
 };
 
-/// One row of errors.csv: what a state cost, and its error against each target in each measure.
+/// One row of errors.csv: a state's cost, and its error against each target in each measure.
 struct ErrorRow {
   std::array<OptionalNumber, error_costs.size()> cost;
   std::array<std::array<OptionalNumber, error_measures.size()>, error_targets.size()> error;
@@ -103,18 +103,18 @@ struct RunData {
   std::filesystem::path folder;
   std::string experiment, description, version, cpu, table1_scene, configuration;
   bool complete = false;
-  std::string broken_off;  ///< why it was; empty if it was not
+  std::string broken_off;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
   std::vector<std::string> obstacles;  ///< meshes, relative to the folder
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
-  std::vector<ConditionSeries> changes;     ///< likewise; none without a schedule
-  std::string reference;                    ///< the method, or file, that errors are measured against
-  bool reference_is_lowest = false;         ///< that method's was chosen as the lowest in energy
-  OptionalNumber reference_tolerance;       ///< of the force residual, to which it was solved further
+  std::vector<ConditionSeries> changes;     ///< likewise; empty without a schedule
+  std::string reference;                    ///< method or file of the state that errors are measured against
+  bool reference_is_lowest = false;         ///< it was chosen for its lowest energy
+  OptionalNumber reference_tolerance;       ///< force tolerance to which it was solved
 
-  /// Whether anything was kept apart, so that gaps and intersections mean something.
+  /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;
   int coarsest_level() const;              ///< over all methods; -1 without levels
   int finest_level() const;                ///< over all methods; -1 without levels
@@ -123,7 +123,7 @@ struct RunData {
   std::vector<std::pair<int, int>> pairs() const;
 };
 
-/// Reads results.json (needed), steps.csv and config.yaml (if there). Absent or null values stay absent.
+/// Reads results.json (required), steps.csv and config.yaml (optional). Null values are absent.
 /// Throws std::runtime_error with one line if results.json is missing or is not JSON.
 RunData read_run(const std::filesystem::path& folder);
 

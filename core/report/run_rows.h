@@ -18,7 +18,7 @@ struct Repeat {
 /// One method under one variation, with its repeats over seeds.
 struct RunRow {
   std::string variation, method;
-  std::vector<Repeat> repeats;  ///< all that have results
+  std::vector<Repeat> repeats;  ///< those with results
   int converged = 0;
 
   std::string title(bool several_variations) const;
@@ -27,33 +27,33 @@ struct RunRow {
 /// Rows by variation, then method, in order of appearance.
 std::vector<RunRow> rows_of(const RunCollection& collection);
 
-/// A figure of a row, as the tables and comparisons name it.
+/// A quantity of a row, by the name that tables and comparisons use.
 struct RowQuantity {
   const char* name;   ///< "seconds"
   const char* title;  ///< HTML
   OptionalNumber (*of)(const RunData& run, const MethodRecord& method);
 };
 
-/// What a method's final state cost and is worth, and its preview: the last state of its coarsest level.
+/// Cost and quality of a method's final state and of its preview, the last state of its coarsest level.
 const std::vector<RowQuantity>& row_quantities();
 
-/// Of the repeats that converged.
+/// Median and range over the repeats that converged.
 std::optional<Spread> spread_of(const RunRow& row, const RowQuantity& quantity);
 
-/// The states on the way to a method's last one, in one measure: those of the levels that it builds on.
+/// Error over cost in one measure, for the states of the levels that a method's last state builds on.
 std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t cost,
                                    std::size_t target, std::size_t measure);
 
-/// A run whose consistency measures are the medians over the runs of a variation.
+/// A run with the median consistency measures of a variation's runs.
 RunData median_consistency(const RunCollection& collection, const std::string& variation);
 
-/// HTML: medians and ranges a row, with a verdict beside the first variation's, or the first row's.
+/// HTML: medians and ranges per row, with a verdict relative to the first variation or row.
 std::string rows_table(const RunCollection& collection);
-/// HTML: what failed or is missing, with its error; empty without any.
+/// HTML: failed and missing runs with their errors; empty without any.
 std::string failures_table(const RunCollection& collection);
-/// In words: how many runs of what, and which row did best in what.
+/// In words: the numbers of runs and the best rows.
 std::string collection_summary(const RunCollection& collection);
-/// What the page draws.
+/// The data of the page's charts, as JSON.
 std::string rows_chart_data(const RunCollection& collection);
 
 }  // namespace drape

@@ -18,11 +18,11 @@ using Row = std::vector<Cell>;
 using Json = nlohmann::ordered_json;
 
 constexpr int curve_points = 40;
-constexpr double noticeable = 0.05;  // differences of medians below this part go unsaid
+constexpr double noticeable = 0.05;  // smaller relative differences of medians are not mentioned
 
 Cell words(const std::string& content) { return {content, false}; }
 
-/// Rounded for the eye; in full for the table's files.
+/// Rounded for display; in full precision for exported tables.
 std::string shown(const std::optional<Spread>& spread) {
   if (!spread) return number_text({});
   const std::string low = number_text(spread->low), high = number_text(spread->high);
@@ -38,7 +38,7 @@ const RowQuantity& quantity_named(const std::string& name) {
                        [&](const RowQuantity& f) { return f.name == name; });
 }
 
-/// "1.4× faster" and the like; nothing where the two are about the same or one is not known.
+/// "1.4× faster" and the like; empty if both are about equal or one is unknown.
 std::string ratio_words(const RunRow& row, const RunRow& base, const char* name, const char* less,
                         const char* more) {
   const auto mine = spread_of(row, quantity_named(name)), other = spread_of(base, quantity_named(name));

@@ -16,7 +16,7 @@ namespace {
 
 using html::escape;
 
-/// A path as a link writes it: whatever means something there as %XX.
+/// A path as a URL, reserved characters as %XX.
 std::string as_link(const std::filesystem::path& path) {
   static const char digits[] = "0123456789ABCDEF";
   std::string link;

@@ -21,7 +21,7 @@ std::string status_badge(const std::string& status) {
   return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
 }
 
-/// What contact has done to a state; nothing in a run without.
+/// Contact quantities of a state; empty without contact.
 void add_contact_head(Row& head, const RunData& run) {
   if (!run.has_contact()) return;
   for (const char* title : {"contacts", "smallest gap [m]", "intersections"}) head.push_back({title});
@@ -34,7 +34,7 @@ void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
   row.push_back({html::count(r.intersections), true, r.intersections.value_or(0) > 0});
 }
 
-/// The sum over levels of those that are known.
+/// The sum of the known values over levels.
 OptionalNumber sum_of_levels(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
   OptionalNumber sum;
   for (const LevelRecord& level : method.levels) {

@@ -53,13 +53,13 @@ std::string verdict_of(const RunData& run, bool intersection_free) {
 
 }  // namespace
 
-TEST_CASE("a run's verdict on intersections counts what was looked at") {
+TEST_CASE("a run's verdict on intersections counts the checked states") {
   RunData run = contact_run();
   CHECK(verdict_of(run, true) ==
-        "No intersection at any recorded state (4 levels looked at, smallest gap on the way 1.50e-5 m).");
+        "No intersection at any recorded state (4 levels checked, smallest gap on the way 1.50e-5 m).");
   run.iterations[0].rows[1].intersections = 0;
   CHECK(verdict_of(run, true) ==
-        "No intersection at any recorded state (4 levels and 1 iteration looked at, smallest gap on the way "
+        "No intersection at any recorded state (4 levels and 1 iteration checked, smallest gap on the way "
         "1.50e-5 m).");
 }
 
