@@ -30,9 +30,9 @@ void ConfigArguments::add_to(CLI::App& command) {
   command.add_option("--levels", levels, "number of levels, in place of the experiment's")
       ->check(positive_integer);
   command.add_flag("--allow-start-repair", allow_start_repair,
-                   "move a start that touches something up or to a side until it does not");
+                   "translate an intersecting start up or sideways until it is free");
   command.add_flag("--allow-memory", allow_memory,
-                   "go on where a run may take more memory than this machine has");
+                   "allow a run that may need more memory than this machine has");
 }
 
 Overrides ConfigArguments::overrides() const {

@@ -2,15 +2,15 @@
 
 namespace drape {
 
-// Every code that `drape` ends with. `drape --help` prints the list below, and docs/exit-codes.md says more.
+// Exit codes of `drape`. `drape --help` prints the list below; docs/exit-codes.md has details.
 
 constexpr int exit_done = 0;
 constexpr int exit_not_converged = 1, exit_bound_broken = 1;
 constexpr int exit_bad_input = 2;
 constexpr int exit_broken_off = 3;
-/// Of a run that its sweep ended, in the sweep's list; as `timeout` has it.
+/// Of a run that exceeded its sweep's time limit, as in `timeout`.
 constexpr int exit_too_slow = 124;
-/// And the signal's number, as a shell has it.
+/// Plus the signal's number, as in a shell.
 constexpr int exit_by_signal = 128;
 
 struct ExitCode {

@@ -95,7 +95,7 @@ std::optional<Verdict> intersection_verdict(const RunData& run) {
     return Verdict{false, "Intersections: " + audit.found + ". log.jsonl names the first ones."};
   std::string text = "No intersection at any recorded state (" + counted(audit.levels, "level");
   if (audit.iterations > 0) text += " and " + counted(audit.iterations, "iteration");
-  text += " audit at";
+  text += " checked";
   if (audit.smallest_gap) text += ", smallest gap on the way " + number_text(audit.smallest_gap) + " m";
   return Verdict{true, text + ")."};
 }

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files that a pattern names, sorted. One without a wildcard names its file, there or not.
+/// The files that match a pattern, sorted. A name without wildcard is returned whether it exists or not.
 std::vector<fs::path> files_of(const fs::path& pattern) {
   glob_t found{};
   const int flags = pattern.string().find_first_of("*?[") == std::string::npos ? GLOB_NOCHECK : 0;
@@ -33,7 +33,7 @@ void read_one(const fs::path& file, const std::string& key, const Location& wher
     all.push_back({std::move(root), "", where});
 }
 
-/// Experiments of one name would share their folders.
+/// Refuses equal names of experiments, whose folders would coincide.
 void label(std::vector<ExperimentSource>& all, ConfigErrors& errors) {
   std::map<std::string, Location> places;
   for (ExperimentSource& one : all) {

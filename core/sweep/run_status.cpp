@@ -23,7 +23,7 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The last few lines of what a run said.
+/// The last few lines of a run's output.
 std::string last_lines(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -33,7 +33,7 @@ std::string last_lines(const std::filesystem::path& file) {
   return from == std::string::npos || from == 0 ? text : text.substr(from + 1);
 }
 
-/// Marks the run as begun, and removes what an earlier start of it has left.
+/// Marks the run as running and removes the files of an earlier start.
 RunStatus begin(const RunFiles& files, int threads) {
   const int starts = read_status(files).starts;
   RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
@@ -46,7 +46,7 @@ RunStatus begin(const RunFiles& files, int threads) {
 std::vector<std::string> command(const RunFiles& files, int threads, bool report) {
   std::vector<std::string> all = {own_program(),   "run",     files.config(), "--out",
                                   files.folder,    "--quiet", "--threads",    std::to_string(threads),
-                                  "--allow-memory"};  // the sweep has seen to it
+                                  "--allow-memory"};  // the sweep has checked it
   if (!report) all.emplace_back("--no-report");
   return all;
 }

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// "0-3,7": the way that sbatch takes indices.
+/// "0-3,7", as sbatch expects indices.
 std::string ranges(const std::vector<std::size_t>& sorted) {
   std::string text;
   for (std::size_t k = 0; k < sorted.size();) {
@@ -58,7 +58,7 @@ std::string submit_script(const fs::path& script, std::vector<std::string> words
         "sbatch: not found; install Slurm's client (slurm-client), or use --engine local");
   if (said.exit.code != 0)
     throw std::runtime_error("sbatch refused " + script.string() + ": " + one_line(said.err));
-  return one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" where there are several
+  return one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
 }
 
 /// Whether any of the jobs is queued, running or ending.
@@ -67,7 +67,7 @@ bool in_queue(const SlurmJobs& jobs) {
   if (!jobs.collector.empty()) ids += "," + jobs.collector;
   const Said said = run_program({"squeue", "--noheader", "--format=%i", "--jobs=" + ids});
   if (said.exit.code == 0) return !said.out.empty();
-  if (said.err.find("Invalid job id") != std::string::npos) return false;  // ended, and forgotten since
+  if (said.err.find("Invalid job id") != std::string::npos) return false;  // finished, and no longer known
   throw std::runtime_error("cannot ask Slurm for the jobs " + ids + ": " +
                            (said.exit.code == 127 ? "squeue is not installed here" : one_line(said.err)));
 }
@@ -123,7 +123,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
     write_file(folder.jobs(), Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
   };
   jobs.array = submit_script(slurm / "job.sh", options.sbatch);
-  remember();  // before anything else can fail, so that they can be cancelled
+  remember();  // before anything else can fail: they must stay cancellable
   std::vector<std::string> after = options.sbatch;
   after.push_back("--dependency=afterany:" + jobs.array);
   jobs.collector = submit_script(slurm / "collect.sh", after);
@@ -133,7 +133,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
 namespace {
 
-/// As `in_queue`, through the minutes in which Slurm's controller does not answer.
+/// As `in_queue`, but tolerates minutes without an answer of Slurm's controller.
 bool still_in_queue(const SlurmJobs& jobs, int& silent) {
   try {
     const bool queued = in_queue(jobs);

@@ -19,7 +19,7 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Takes the methods that are not chosen out of a resolved experiment, and the reference if it is of one of
+/// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
 /// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
   const auto kept = [&](const std::string& name) {
@@ -164,7 +164,7 @@ class Reader {
     names.push_back(variation);
   }
 
-  /// Each fault once, with the variations that have it, in the order of the file.
+  /// Every error once, with the variations that have it, in file order.
   void list_faults(std::size_t variations) {
     for (ConfigError& fault : faults_) {
       const auto& names = faulty_[fault.text()];

@@ -103,13 +103,13 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     make_folder(files.folder.parent_path());
     RunStatus status = read_status(files);
     if (text_of_file(files.config()) != run.config) {
-      if (status.state == RunState::failed) {  // at what was another experiment
+      if (status.state == RunState::failed) {  // with a different config
         status.state = RunState::pending;
         write_status(files, status);
       }
       write_file(files.config(), run.config);
     }
-    json["runs"].back().update(status.json());  // others read sweep.json from the moment it is written
+    json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
   }
   write_file(path_ / "sweep.json", json.dump(1) + "\n");
   settle();
@@ -163,7 +163,7 @@ fs::path lock_in(const fs::path& folder) {
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
-  // A moment's patience for the runs of a sweep that has just been killed.
+  // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock_.acquire(1))
     throw std::runtime_error(folder.string() + ": another `drape sweep` is at work here (" + lock_.holder() +
                              "); wait for it, or name another folder with --out");

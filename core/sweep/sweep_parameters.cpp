@@ -7,38 +7,39 @@ namespace drape {
 void Expectation::declare(Declaration<Expectation>& d) {
   d.add("outcome", &Expectation::outcome)
       .choices({"converged", "converged_to_rounding", "infeasible", "stalled", "out_of_steps", "refused"})
-      .description("of every method's worst level; refused: before anything was computed");
+      .description("expected outcome of every method's worst level; refused: before any computation");
   d.add("message", &Expectation::message)
-      .description("a part of what it says then; required where it is not to converge");
+      .description("expected part of the message; required unless the outcome is converged");
 }
 
 void VariationParameters::declare(Declaration<VariationParameters>& d) {
-  d.add("name", &VariationParameters::name).required().description("names its runs, and their folder");
+  d.add("name", &VariationParameters::name)
+      .required()
+      .description("name of the variation and of its runs' folder");
   d.add_node("set", &VariationParameters::set)
-      .description(
-          "a map: a path of keys in the experiment (methods.pcs.hessian, energies.0), then its value");
+      .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
   d.add("levels", &VariationParameters::levels)
       .at_least(1)
       .at_most(10)
-      .description("in place of the experiment's");
+      .description("number of levels, in place of the experiment's");
   d.add("methods", &VariationParameters::methods)
-      .description("which methods to run; those of the sweep if not given");
+      .description("methods to run; by default those of the sweep");
   d.add_section("expect", &VariationParameters::expect)
-      .description("how its runs are to end; `drape table` and the exit code say whether they did");
+      .description("expected outcome of its runs, checked by `drape table` and the exit code");
 }
 
 void SweepParameters::declare(Declaration<SweepParameters>& d) {
-  d.add("name", &SweepParameters::name).required().description("names the sweep's folder");
+  d.add("name", &SweepParameters::name).required().description("name of the sweep and of its folder");
   d.add("description", &SweepParameters::description).description("one sentence");
   d.add("base", &SweepParameters::base)
       .path()
-      .description("the experiment that is varied, relative to this file; required without experiments");
+      .description("experiment to vary, relative to this file; required without `experiments`");
   d.add("experiments", &SweepParameters::experiments)
       .description(
           "several that are varied alike, in place of base; * in a file's name stands for anything, in the "
           "order of the alphabet");
   d.add_node("set", &SweepParameters::set)
-      .description("a map: a path of keys in the experiment, then its value, for every variation");
+      .description("map from paths of keys in the experiment to values, for every variation");
   d.add("seeds", &SweepParameters::seeds)
       .at_least(0)
       .at_most(bounds::largest_int)
@@ -47,15 +48,14 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
   d.add("repeats", &SweepParameters::repeats)
       .at_least(1)
       .at_most(10000)
-      .description("short for the seeds 1, 2, … up to this");
-  d.add("methods", &SweepParameters::methods)
-      .description("which of the experiment's methods to run; all if not given");
-  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("of each run");
+      .description("shorthand for seeds 1, 2, … up to this");
+  d.add("methods", &SweepParameters::methods).description("methods of the experiment to run; all by default");
+  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("threads of each run");
   d.add("time_limit", &SweepParameters::time_limit)
       .unit("s")
       .above(0)
       .at_most(1e9)
-      .description("a run that takes longer is ended, and has failed; none if not given");
+      .description("a run that takes longer is stopped and counts as failed; no limit by default");
   d.add_node("ablation", &SweepParameters::ablation)
       .description(
           "a list of variations, or {grid: {path: [values], …}}: every combination; the experiments as they "

@@ -26,7 +26,7 @@ void refuse_repeated_keys(const ConfigNode& map, const std::string& name, Config
   }
 }
 
-/// Under which key each path of the grid goes into names: its last word, where that says which.
+/// The name of each path of the grid: its last key, if that is unambiguous.
 std::vector<std::string> short_keys(const ConfigNode& grid) {
   const auto last = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
   std::map<std::string, int> times;
@@ -70,7 +70,7 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
       v.settings.insert(v.settings.begin(), {path, value, grid.key_locations[k]});
       const std::string shown = value.kind == NodeKind::scalar
                                     ? value.scalar
-                                    : std::to_string(at + 1);  // a map's place in the list
+                                    : std::to_string(at + 1);  // a map's index in the list
       v.name = keys[k] + "=" + shown + (v.name.empty() ? "" : "," + v.name);
     }
     all.push_back(v);

@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_frame_bytes = 4'000'000;  // of the whole page, before they are compressed
+constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
 
 constexpr const char* section_open =
     "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
@@ -27,7 +27,7 @@ constexpr const char* section_open =
     "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
     "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
 
-/// States on the way within a level: float32 positions, one snapshot after the other.
+/// The snapshots of a level: float32 positions, one after the other.
 struct Snapshots {
   std::string bytes;
   Json iterations, seconds;
@@ -54,8 +54,8 @@ Snapshots recorded_snapshots(const RunData& run, const Json& level, Eigen::Index
   return snapshots;
 }
 
-/// At most `most` of them: the first, and others evenly; the last is the level's state, which is shown
-/// anyway.
+/// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
+/// state, which is always shown.
 std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
   std::vector<std::size_t> chosen;
   if (count < 2) return chosen;
@@ -132,7 +132,7 @@ class ReportViewMaker {
         state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
   }
 
-  /// None, and a note, where they cannot be read.
+  /// The recorded snapshots; empty, with a note, if they cannot be read.
   Snapshots snapshots_of(const Json& level, Eigen::Index n) {
     try {
       return recorded_snapshots(run_, level, n);
@@ -145,8 +145,8 @@ class ReportViewMaker {
   Json method_entry(std::size_t m) {
     const MethodRecord& method = run_.methods[m];
     Json levels = Json::array();
-    // What a coarse level leaves of its share, finer ones may use.
-    std::size_t left = most_frame_bytes / run_.methods.size();
+    // Finer levels may use the rest of a coarse level's share.
+    std::size_t left = most_snapshot_bytes / run_.methods.size();
     for (std::size_t k = 0; k < method.levels.size(); ++k) {
       const LevelRecord& level = method.levels[k];
       const auto state = states_.find({m, level.level});

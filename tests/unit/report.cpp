@@ -481,7 +481,7 @@ TEST_CASE("colour maps are symmetric around their middle and clamp at their ends
 
 TEST_CASE("errors are read, drawn and told of; a run without them says so") {
   SampleRun run;
-  CHECK(contains(run.page(), "No states were kept in this run"));
+  CHECK(contains(run.page(), "No states were recorded in this run"));
   write_file(run.folder / "errors.csv",
              "method,level,iteration,seconds,iterations,flops,vertices,own_rms,own_hausdorff,own_d_H_fit,"
              "own_energy_gap,reference_rms,reference_hausdorff,reference_d_H_fit,reference_energy_gap\n"

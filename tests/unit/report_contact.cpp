@@ -102,7 +102,7 @@ TEST_CASE("what did not converge is told with its message") {
 
   level.status = "converged_to_rounding";
   CHECK(troubles(run) ==
-        "<p>To be known of what converged:</p>\n<ul>\n<li><b>a&lt;b</b>, level 0: held by cloth triangle 3 "
+        "<p>Remarks on what converged:</p>\n<ul>\n<li><b>a&lt;b</b>, level 0: held by cloth triangle 3 "
         "&amp; "
         "ball</li>\n</ul>\n");
 }
