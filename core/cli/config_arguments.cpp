@@ -64,7 +64,7 @@ void Loaded::repair(ConfigErrors& errors) {
   if (way.isZero(0)) return;
   scene = build_scene(*experiment, errors);
   if (errors.empty())
-    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m so that it touches nothing\n", way.x(), way.y(),
+    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", way.x(), way.y(),
                  way.z());
 }
 

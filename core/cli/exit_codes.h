@@ -19,16 +19,17 @@ struct ExitCode {
 };
 
 constexpr ExitCode exit_codes[] = {
-    {exit_done, "done; of a run: every level of every method converged, or ended as its experiment asks"},
+    {exit_done,
+     "success; of a run: every level of every method converged, or ended as its experiment requests"},
     {exit_not_converged,
-     "it ran to its end, but a method failed or did not converge, a row of a table does not pass, or a "
+     "completed, but a method failed or did not converge, a row of a table does not pass, or a "
      "--bound is broken"},
     {exit_bad_input, "refused: nothing was run and nothing was written"},
     {exit_broken_off,
-     "broken off after it had begun, as where the disk is full or the folder was deleted; once that is put "
-     "right, `drape run --resume` goes on with a run"},
-    {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; everything up to then is saved"},
-    {exit_by_signal + 15, "stopped by SIGTERM; everything up to then is saved"},
+     "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "
+     "a run"},
+    {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; all results so far are saved"},
+    {exit_by_signal + 15, "stopped by SIGTERM; all results so far are saved"},
 };
 
 }  // namespace drape

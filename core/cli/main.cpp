@@ -284,7 +284,7 @@ int main(int argc, char** argv) {
     return end(error.what(), exit_broken_off);
   } catch (const nlohmann::json::exception& error) {
     return end(std::string("a results file is not as drape writes it (") + error.what() +
-                   "); run the experiment anew",
+                   "); run the experiment again",
                exit_bad_input);
   } catch (const std::exception& error) {
     return end(reason_of(error), exit_bad_input);

@@ -69,15 +69,14 @@ int RunCommand::run(const Registry& registry) const {
     refuse("takes the experiment from the run's own config.yaml; leave out " + arguments_.config +
            ", and change parameters with --set KEY=VALUE");
   if (arguments_.allow_start_repair)
-    refuse("begins with a state that touches nothing; leave out --allow-start-repair");
+    refuse("starts from a state without intersections; leave out --allow-start-repair");
   const bool changed =
       !arguments_.sets.empty() || arguments_.levels > 0 || level_ || !options_.methods.empty();
   if (!changed && !options_.out.empty())
     refuse(
-        "goes on in the run's own folder; leave out --out, or say with --set, --level or --method what "
-        "is to be another run");
-  if (!changed && options_.overwrite)
-    refuse("goes on with the results that are there; leave out --overwrite");
+        "resumes in the run's own folder; leave out --out, or start another run with --set, --level or "
+        "--method");
+  if (!changed && options_.overwrite) refuse("keeps the existing results; leave out --overwrite");
   if (!changed) return resume(registry);
   if (options_.out.empty())
     refuse("with --set, --levels, --level or --method is another run; name its folder with --out");
@@ -107,8 +106,8 @@ int RunCommand::report_complete_run(const std::filesystem::path& folder, const R
   if (!errors.empty()) return report_errors(errors);
   const std::vector<std::string> again = write_rest(RunFolder::of_run(folder), *scene);
   if (!again.empty())
-    std::cerr << "warning: damaged or gone since, and written again: " << joined(again) << "\n";
-  std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
+    std::cerr << "warning: damaged or missing files were written again: " << joined(again) << "\n";
+  std::cout << folder.string() << ": the run is complete; there is nothing to resume\n";
   return all_methods_succeeded(folder) ? exit_done : exit_not_converged;
 }
 
@@ -138,7 +137,7 @@ int RunCommand::warm_start(const Registry& registry) const {
   const std::filesystem::path folder = resumed_, config = folder / "config.yaml";
   RunOptions options = options_;
   if (options.methods.size() > 1)
-    throw std::runtime_error("--resume with --method: name one method, whose state is to flow on");
+    throw std::runtime_error("--resume with --method: name one method, whose state to start from");
   const SavedState state = saved_state(folder, options.methods.empty() ? "" : options.methods[0], level_);
   ConfigErrors errors;
   const auto before = read_experiment(config, {}, registry, errors);

@@ -39,7 +39,7 @@ template <class Action>
 int begun(const SweepFolder& folder, const Action& action) {
   const auto end = [&](const std::string& cause) {
     std::cerr << "error: " << printable(cause) << "; the sweep in " << folder.path().string()
-              << " is broken off; the same command goes on with what is missing\n";
+              << " is broken off; the same command runs what is missing\n";
     return exit_broken_off;
   };
   try {
@@ -131,7 +131,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder) const
     const auto json = folder.refresh();
     std::cout << printable_lines(list_of_runs(json));
     if (stop_signal()) {
-      std::cerr << "stopped on request; the same command goes on with what is missing\n";
+      std::cerr << "stopped on request; the same command runs what is missing\n";
       return exit_by_signal + stop_signal();
     }
     return exit_code_of(folder);

@@ -184,7 +184,7 @@ Checkpoint decode_body(std::string_view bytes) {
   } catch (const std::runtime_error& fault) {
     throw std::runtime_error(std::string("is damaged: ") + fault.what());
   }
-  if (!reader.at_end()) throw std::runtime_error("is damaged: it goes on after its end");
+  if (!reader.at_end()) throw std::runtime_error("is damaged: it has data after its end");
   return checkpoint;
 }
 
@@ -215,8 +215,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& war
   if (faults.empty())
     throw std::runtime_error(folder.string() +
                              ": holds no checkpoint of a run; give the results folder of one that was "
-                             "interrupted, or run the experiment anew");
-  throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment anew, as in drape run " +
+                             "interrupted, or run the experiment again");
+  throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment again, as in drape run " +
                            (folder / "config.yaml").string() + " --out ANOTHER");
 }
 

@@ -36,7 +36,7 @@ class Check {
   static void require(bool fits, const std::string& what) {
     if (!fits)
       throw std::runtime_error("the checkpoint does not fit its experiment: " + what +
-                               "; run the experiment anew");
+                               "; run the experiment again");
   }
   bool is_level(int level) const { return level >= 0 && level < scene_.hierarchy.level_count(); }
 

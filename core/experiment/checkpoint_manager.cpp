@@ -47,7 +47,7 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
   nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
   const bool valid = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
                      (!results.contains("complete") || results["complete"].is_boolean());
-  if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment anew");
+  if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
   return results;
 }
 
@@ -129,7 +129,7 @@ bool all_methods_succeeded(const fs::path& folder) {
 void refuse_damaged_results(const fs::path& folder) {
   std::vector<std::string> damaged;
   const auto results = results_of(folder);
-  const JsonFile file(folder / "results.json", "run the experiment anew");
+  const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, method] : results["methods"].items()) {
     if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
     for (const auto& level : method["levels"]) {
@@ -141,9 +141,9 @@ void refuse_damaged_results(const fs::path& folder) {
     }
   }
   if (!damaged.empty())
-    throw std::runtime_error(
-        folder.string() + ": the run is complete, but damaged or gone since: " + joined(damaged) +
-        "; run the experiment anew, as in drape run " + (folder / "config.yaml").string() + " --out ANOTHER");
+    throw std::runtime_error(folder.string() + ": the run is complete, but files are damaged or missing: " +
+                             joined(damaged) + "; run the experiment again, as in drape run " +
+                             (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
 Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
@@ -157,11 +157,11 @@ Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
   for (const FileFingerprint& was : checkpoint.files) {
     const fs::path path = was.path.starts_with('/') ? fs::path(was.path) : folder / was.path;
     if (!fs::exists(path))
-      throw std::runtime_error(path.string() + ": is gone, and the run reads it; put it back where it was");
+      throw std::runtime_error(path.string() + ": is missing, but the run reads it; put it back");
     if (const FileFingerprint is = fingerprint_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
-      throw std::runtime_error(path.string() +
-                               ": is not what it was when the run began; put that file back, or run the "
-                               "experiment anew");
+      throw std::runtime_error(
+          path.string() +
+          ": is not what it was when the run began; put that file back, or run the experiment again");
   }
   if (checkpoint.program != program())
     warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +

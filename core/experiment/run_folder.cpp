@@ -143,7 +143,7 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
   // A pipe in their place would block the resumed run.
   for (const char* name : {"steps.csv", "log.jsonl"})
     if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
-      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment anew");
+      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment again");
   return folder;
 }
 
@@ -152,7 +152,7 @@ void RunFolder::lock() {
   lock_ = std::make_unique<FileLock>(file(lock_name));
   if (!lock_->acquire(0))
     throw std::runtime_error(path_.string() + ": " + lock_->holder() +
-                             " is at this run; wait for it, or stop it");
+                             " uses this folder; wait for it, or stop it");
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {

@@ -164,7 +164,7 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   throw RunBrokenOff(cause + "; the run is broken off. Once that is put right, " +
                      (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
                           ? "go on with drape run --resume " + folder.path().string()
-                          : "run the experiment anew: there is no checkpoint of it"));
+                          : "run the experiment again: there is no checkpoint of it"));
 }
 
 /// Time that a stopped run still spends on its report's pictures [s].
@@ -280,7 +280,7 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
   return with_folder(folder, options, [&] {
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);
     if (!recorder.restored().empty())
-      std::fprintf(stderr, "warning: damaged or gone since, and written again: %s\n",
+      std::fprintf(stderr, "warning: damaged or missing files were written again: %s\n",
                    joined(recorder.restored()).c_str());
     return run(experiment, scene, options, folder, recorder, checkpoint, true);
   });

@@ -134,9 +134,8 @@ void refuse_intersecting_start(const Experiment& e, const LevelModel& model, con
       errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
                                                     " touches: " + to_string(touches[k])});
     if (touches.size() > most_said)
-      errors.push_back(
-          {e.location_of("start"), "… and " + std::to_string(touches.size() - most_said) +
-                                       " more pairs; move the start or the obstacle so that they are apart"});
+      errors.push_back({e.location_of("start"), "… and " + std::to_string(touches.size() - most_said) +
+                                                    " more pairs; move the start and the obstacle apart"});
   }
 }
 

@@ -175,7 +175,7 @@ class TranslationSearch {
 
 std::string pinned_text(const Clearance& start) {
   return "the start of level " + std::to_string(start.level) + " touches: " + to_string(start.touches[0]) +
-         "; a cloth with pins is not moved, for they say where it is: move the pins or the obstacle";
+         "; a cloth with pins is not moved: move the pins or the obstacle";
 }
 
 std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
@@ -184,9 +184,8 @@ std::string hopeless_text(const Clearance& start, const TranslationSearch& searc
   if (!search.persistent().empty())
     return ways + " does not part " + to_string(search.persistent()[0]) + level +
            "; change the start's shape or the obstacle";
-  return ways +
-         " finds no place where it touches nothing; where it is, these do: " + to_string(start.touches[0]) +
-         level;
+  return ways + " finds no position without intersections; at the start these intersect: " +
+         to_string(start.touches[0]) + level;
 }
 
 void move(Experiment& experiment, const Vector3d& translation) {

@@ -90,7 +90,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
   const int vertex_count = reader.count(word, "vertices");
   const int face_count = reader.count(reader.next_word("the number of faces"), "faces");
   if (reader.has_words_left()) reader.integer(reader.next_word("the number of edges"));
-  if (reader.has_words_left()) reader.fail("the line goes on after the numbers of vertices, faces and edges");
+  if (reader.has_words_left()) reader.fail("the line has more than the numbers of vertices, faces and edges");
   reader.set_note("the header declares " + std::to_string(vertex_count) + " vertices, " +
                   std::to_string(face_count) + " faces");
 
@@ -111,7 +111,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     check_further_numbers(reader, size + 1, 4);  // a colour
     builder.add_polygon(polygon);
   }
-  if (reader.next_line()) reader.fail("the file goes on after its last face");
+  if (reader.next_line()) reader.fail("the file has data after its last face");
   return builder.mesh();
 }
 

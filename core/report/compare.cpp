@@ -182,12 +182,11 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
       throw std::runtime_error("--bound " + bound.key + ": no match has this quantity on both sides");
   }
   if (bounds.empty()) return;
-  for (const std::string& name : lost_)
-    broken_.push_back(name + ": is in the first alone, so that no bound holds");
+  for (const std::string& name : lost_) broken_.push_back(name + ": is in the first alone; no bound holds");
   for (const auto& [name, was] : a.converged)
     for (const auto& [other, is] : b.converged)
       if (name == other && was && !is)
-        broken_.push_back(name + ": converged before and does not now, so that no bound holds");
+        broken_.push_back(name + ": converged before and does not now; no bound holds");
 }
 
 std::string Comparison::text() const {

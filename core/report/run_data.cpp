@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* remedy = "run the experiment anew";
+constexpr const char* remedy = "run the experiment again";
 
 const Json& at(const Json& json, const char* key) {
   static const Json absent;

@@ -165,7 +165,7 @@ fs::path lock_in(const fs::path& folder) {
 FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
   // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock_.acquire(1))
-    throw std::runtime_error(folder.string() + ": another `drape sweep` is at work here (" + lock_.holder() +
+    throw std::runtime_error(folder.string() + ": another `drape sweep` uses this folder (" + lock_.holder() +
                              "); wait for it, or name another folder with --out");
 }
 

@@ -36,8 +36,8 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .description("experiment to vary, relative to this file; required without `experiments`");
   d.add("experiments", &SweepParameters::experiments)
       .description(
-          "several that are varied alike, in place of base; * in a file's name stands for anything, in the "
-          "order of the alphabet");
+          "several experiments to vary alike, in place of `base`; * in a file name matches anything, in "
+          "alphabetical order");
   d.add_node("set", &SweepParameters::set)
       .description("map from paths of keys in the experiment to values, for every variation");
   d.add("seeds", &SweepParameters::seeds)
@@ -58,9 +58,8 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .description("a run that takes longer is stopped and counts as failed; no limit by default");
   d.add_node("ablation", &SweepParameters::ablation)
       .description(
-          "a list of variations, or {grid: {path: [values], …}}: every combination; the experiments as they "
-          "are if not "
-          "given");
+          "list of variations, or {grid: {path: [values], …}} for every combination; by default the "
+          "unchanged experiments");
 }
 
 std::string describe_sweep() {

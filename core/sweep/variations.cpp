@@ -84,8 +84,8 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
   Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
   if (!has_converged(p.expect.outcome) && p.expect.message.empty())
     errors.push_back({node.find("expect")->where,
-                      "\"expect\" of what is not to converge needs a \"message\": a part of what it "
-                      "says then"});
+                      "\"expect\" of an outcome other than converged needs a \"message\": a part of the "
+                      "expected message then"});
   if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
   for (Setting& setting : settings_of(p.set, errors)) {
     if (p.levels && setting.path == "levels")

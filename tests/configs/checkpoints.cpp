@@ -329,7 +329,7 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
   check_equal(folder / "out", folder / "whole");
   const Ended again = drape_with("run --resume out", folder.path);
   CHECK(again.exit_code == 1);  // the run's own
-  CHECK(again.out == "out: the run is complete; there is nothing to go on with\n");
+  CHECK(again.out == "out: the run is complete; there is nothing to resume\n");
   CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
 }
 
@@ -366,7 +366,7 @@ TEST_CASE("What a run cannot go on with is refused, and said") {
 
   FileLock other(folder / "out/checkpoint/lock");
   REQUIRE(other.acquire(0));
-  CHECK_THAT(refused_by("run --resume out", folder), Contains("is at this run; wait for it, or stop it"));
+  CHECK_THAT(refused_by("run --resume out", folder), Contains("uses this folder; wait for it, or stop it"));
 }
 
 TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a warning") {
@@ -416,7 +416,7 @@ TEST_CASE("What is damaged or gone of an interrupted run's files is written agai
   const Ended ended = drape_with("run --resume out --quiet --no-report", folder.path);
   CHECK(ended.exit_code == 1);  // out of steps
   CHECK(ended.err ==
-        "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
+        "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
         "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
         "levels/newton_l0.ply, levels/pcs.pvd\n");
   for (const auto& [name, bytes] : before) {
@@ -447,7 +447,7 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --quiet --no-report --method pcs --out ",
-                    said = ": the run is complete; there is nothing to go on with\n";
+                    said = ": the run is complete; there is nothing to resume\n";
   REQUIRE(drape_with(run + "good", folder.path).exit_code == 0);
   REQUIRE(drape_with(run + "poor --set newton.max_steps=2", folder.path).exit_code == 1);
   const Ended good = drape_with("run --resume good", folder.path);
@@ -462,7 +462,7 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
   fs::remove_all(folder / "good/rest");
   const Ended restored = drape_with("run --resume good", folder.path);
   CHECK(restored.exit_code == 0);
-  CHECK(restored.err == "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply\n");
+  CHECK(restored.err == "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply\n");
   CHECK((text_of(folder / "good/rest/l1.ply") == rest));
 
   std::string mesh = text_of(folder / "good/levels/pcs_l0.ply");
@@ -470,8 +470,9 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
   folder.write("good/levels/pcs_l0.ply", mesh);
   fs::remove(folder / "good/levels/pcs_l1.ply");
   CHECK(refused_by("run --resume good", folder) ==
-        "error: good: the run is complete, but damaged or gone since: levels/pcs_l0.ply, levels/pcs_l1.ply; "
-        "run the experiment anew, as in drape run good/config.yaml --out ANOTHER\n");
+        "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
+        "levels/pcs_l1.ply; "
+        "run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
 }
 
 TEST_CASE("A checkpoint whose values do not fit its experiment is refused before anything is written") {

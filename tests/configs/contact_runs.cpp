@@ -54,7 +54,7 @@ TEST_CASE("a start that touches an obstacle is refused, with what touches, and w
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
             "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
-            "error: e.yaml:4:8: … and 3 more pairs; move the start or the obstacle so that they are apart\n");
+            "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart\n");
   const std::string table =
       "{type: ipc, obstacles: [{name: table, shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, "
       "0.02]}]}";

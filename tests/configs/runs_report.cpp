@@ -219,7 +219,7 @@ TEST_CASE("a bound does not hold where a method has stopped converging, or has g
   CHECK(stalled.compare().exit_code == 0);
   const Ended ended = stalled.compare(" --bound seconds=2");
   CHECK(ended.exit_code == 1);
-  CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now, so that no bound holds\n"));
+  CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now; no bound holds\n"));
   const Edited gone([](Json& all) { all["methods"].erase("pcs"); });
   CHECK_THAT(gone.compare().out, Contains("only in the first: pcs\n"));
   CHECK(gone.compare(" --bound seconds=2").exit_code == 1);

@@ -126,12 +126,12 @@ TEST_CASE("an expectation says why") {
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {outcome: refused}}\n"
                "  - {name: b, expect: {outcome: refuse}}\n");
-  CHECK(
-      drape_with("sweep s.yaml", folder.path).err ==
-      "error: s.yaml:4:23: \"expect\" of what is not to converge needs a \"message\": a part of what it says "
-      "then\n"
-      "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
-      "\"stalled\", \"out_of_steps\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
+  CHECK(drape_with("sweep s.yaml", folder.path).err ==
+        "error: s.yaml:4:23: \"expect\" of an outcome other than converged needs a \"message\": a part of "
+        "the expected message "
+        "then\n"
+        "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
+        "\"stalled\", \"out_of_steps\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }
 
 TEST_CASE("a sweep over several experiments names each run by its experiment") {

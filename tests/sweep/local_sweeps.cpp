@@ -157,15 +157,15 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   const Ended second = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(second.exit_code == 2);
   CHECK_THAT(second.err,
-             Catch::Matchers::Matches("error: out: another `drape sweep` is at work here \\(process "
+             Catch::Matchers::Matches("error: out: another `drape sweep` uses this folder \\(process "
                                       "[0-9]+ on .+\\); wait for it, or name another folder with "
                                       "--out\n"));
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 running save what they have\n"));
-  CHECK_THAT(ended.err, Catch::Matchers::EndsWith(
-                            "stopped on request; the same command goes on with what is missing\n"));
+  CHECK_THAT(ended.err,
+             Catch::Matchers::EndsWith("stopped on request; the same command runs what is missing\n"));
   const Json stopped = runs_of(folder / "out");
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");

@@ -225,6 +225,6 @@ TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") 
   folder.write("checkpoint/previous.bin", "something else");
   const std::string error = error_in(folder.path);
   CHECK_THAT(error, Contains("state.bin: is cut short; ") && Contains("previous.bin: is no checkpoint"));
-  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment anew, as in drape run " +
+  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment again, as in drape run " +
                              (folder / "config.yaml").string() + " --out ANOTHER"));
 }
