@@ -173,7 +173,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const
       std::cerr << "no longer waiting; the jobs go on\n";
       return exit_by_signal + stop_signal();
     }
-    const auto json = folder.settle();
+    const auto json = folder.finalize();
     std::cout << printable_lines(list_of_runs(json));
     return exit_code_of(folder);
   });

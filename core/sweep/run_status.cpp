@@ -86,7 +86,7 @@ void write_status(const RunFiles& files, const RunStatus& status) {
   write_file(files.status(), status.json().dump(1) + "\n");
 }
 
-RunStatus settled(const RunFiles& files, RunStatus status) {
+RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   if (status.state != RunState::running) return status;
   status.state = RunState::cancelled;
   const std::filesystem::path path = files.folder / "results.json";
@@ -123,7 +123,7 @@ bool RunProcess::ended() {
     }
     return false;
   }
-  status_ = settled(files_, status_);
+  status_ = resolve_interrupted(files_, status_);
   status_.seconds = seconds;
   status_.exit_code = exit->code;
   const bool stopped =

@@ -45,7 +45,7 @@ void write_status(const RunFiles& files, const RunStatus& status);
 
 /// The status of a run that is marked as running but is not: from its results if they are complete, otherwise
 /// cancelled.
-RunStatus settled(const RunFiles& files, RunStatus status);
+RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
 
 struct RunProcessOptions {
   int threads = 1;

@@ -17,7 +17,7 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
   FileLock lock(files.lock());
   while (!lock.acquire(1))
     if (stop()) return exit_by_signal + SIGINT;
-  if (const RunStatus before = settled(files, read_status(files)); before.has_results()) {
+  if (const RunStatus before = resolve_interrupted(files, read_status(files)); before.has_results()) {
     write_status(files, before);
     return before.exit_code;
   }
@@ -30,7 +30,7 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
 }
 
 void collect_tasks(const SweepFolder& folder) {
-  folder.settle();
+  folder.finalize();
   std::error_code ignored;
   std::filesystem::remove(folder.jobs(), ignored);
 }

@@ -72,7 +72,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
       throw std::runtime_error(files.folder.string() +
                                ": is there already, and not from this sweep; move it away, or name another "
                                "folder with --out");
-    if (!settled(files, status).has_results()) continue;
+    if (!resolve_interrupted(files, status).has_results()) continue;
     if (text_of_file(files.config()) != run.config)
       throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
                                " are of another experiment than the sweep now says" + ways_out +
@@ -112,7 +112,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
   }
   write_file(path_ / "sweep.json", json.dump(1) + "\n");
-  settle();
+  finalize();
 }
 
 std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_failed) const {
@@ -139,12 +139,12 @@ Json SweepFolder::refresh() const {
   return json;
 }
 
-Json SweepFolder::settle() const {
+Json SweepFolder::finalize() const {
   const Json json = read();
   for (const Json& run : json["runs"]) {
     const RunFiles files = this->files(run["folder"]);
     const RunStatus status = read_status(files);
-    if (status.state == RunState::running) write_status(files, settled(files, status));
+    if (status.state == RunState::running) write_status(files, resolve_interrupted(files, status));
   }
   return refresh();
 }

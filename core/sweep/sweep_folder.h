@@ -26,7 +26,7 @@ class SweepFolder {
   /// Writes sweep.json again with every run's status, and returns it.
   nlohmann::ordered_json refresh() const;
   /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
-  nlohmann::ordered_json settle() const;
+  nlohmann::ordered_json finalize() const;
   /// sweep.json; null if there is none. Throws std::runtime_error if a run has no name.
   nlohmann::ordered_json read() const;
 

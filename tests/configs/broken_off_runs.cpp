@@ -38,7 +38,7 @@ std::vector<Json> events(const Scratch& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("What a method throws is its outcome, with level and cause, and the others run") {
+TEST_CASE("A method that throws has failed, with level and cause, and the others run") {
   const std::pair<std::string, std::string> causes[] = {
       {"error", "the test's method fails"},
       {"memory", "memory does not suffice; take fewer vertices or levels, or a smaller file"},
@@ -109,7 +109,7 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   }
 }
 
-TEST_CASE("A folder that is deleted meanwhile ends the run with its own code, and stays deleted") {
+TEST_CASE("A folder that is deleted during a run aborts it with its own code, and stays deleted") {
   for (const char* gone : {"out", "out/levels"}) {
     INFO(gone);
     const Scratch folder;
@@ -136,7 +136,7 @@ TEST_CASE("A folder that is deleted meanwhile ends the run with its own code, an
   }
 }
 
-TEST_CASE("A disk that is full ends the run with its own code; once there is room it goes on") {
+TEST_CASE("A full disk aborts the run with its own code; once there is room it can be resumed") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string arguments =
@@ -181,7 +181,7 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
   CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
 }
 
-TEST_CASE("Standard output that cannot be written to is no success") {
+TEST_CASE("A failed write to standard output is an error") {
   if (!fs::exists("/dev/full")) return;
   const Scratch folder;
   const Ended ended = Command("exec " + drape_command + " list > /dev/full", folder.path).wait();
@@ -189,7 +189,7 @@ TEST_CASE("Standard output that cannot be written to is no success") {
   CHECK(ended.err == "error: standard output cannot be written to\n");
 }
 
-TEST_CASE("Names that the file system does not take are refused before anything is written") {
+TEST_CASE("Names that the file system does not allow are refused before the first write") {
   const Scratch folder;
   const std::string longest(200, 'm'), too_long(201, 'm');
   const auto refused = [&](const std::string& line, const std::string& expected) {

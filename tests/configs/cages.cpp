@@ -30,7 +30,7 @@ double nearest_to_centre(const std::filesystem::path& ply) {
 
 }  // namespace
 
-TEST_CASE("a cloth goes from cage to cage without an intersection, and ends on the obstacle itself") {
+TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
   const Scratch folder;
   folder.write("e.yaml", experiment);
   const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);

@@ -148,20 +148,20 @@ int check_in_parts(const Experiment& experiment, const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("A run that is stopped at every step and goes on has the bits of one that is not") {
+TEST_CASE("A run that is stopped at every step and resumed equals an uninterrupted one, bit for bit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Overrides short_levels = {{"levels", "3"}, {"newton.max_steps", "8"}};
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", short_levels), folder.path) > 60);
 }
 
-TEST_CASE("So has one with self-contact, obstacles, friction and a strain limit") {
+TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit") {
   const Scratch folder;
   write_sheets(folder);
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", some_steps()), folder.path) > 60);
 }
 
-TEST_CASE("So has one whose iterations share a matrix, and one of several of them a step") {
+TEST_CASE("So does one whose iterations share a matrix, and one with several of them per step") {
   for (const char* iterations : {"1", "2"}) {
     const Scratch folder;
     write_sheets(folder);
@@ -171,7 +171,7 @@ TEST_CASE("So has one whose iterations share a matrix, and one of several of the
   }
 }
 
-TEST_CASE("So has one of the static form, with every projection made in full") {
+TEST_CASE("So does one of the static form, with full projection") {
   const Scratch folder;
   write_sheets(folder);
   const Overrides statics =
@@ -179,7 +179,7 @@ TEST_CASE("So has one of the static form, with every projection made in full") {
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
 }
 
-TEST_CASE("So has one whose conditions change, held vertices being pulled and obstacles moved") {
+TEST_CASE("So does one under load stepping, with moving Dirichlet vertices and obstacles") {
   // The ball rises into the sheets, which are held at two corners, one of which is moved, and become softer.
   const std::string schedule = R"(
 pins:
@@ -205,7 +205,7 @@ schedule:
   }
 }
 
-TEST_CASE("So has one whose cloth is taken along by an obstacle") {
+TEST_CASE("So does one whose cloth is advected by an obstacle") {
   const Scratch folder;
   folder.write("e.yaml", R"(name: lifted
 cloth: {shape: square, side: 0.4, columns: 8, rows: 8}
@@ -223,7 +223,7 @@ methods: {pcs: {}}
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
 }
 
-TEST_CASE("So has one with a level that is begun from the scene's start, conditions changing") {
+TEST_CASE("So does one with a level from the initial state under load stepping") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;
@@ -297,7 +297,7 @@ std::string refused_by(const std::string& arguments, const Scratch& folder) {
 
 }  // namespace
 
-TEST_CASE("Killed at twenty random moments, a run goes on every time and ends with the same bits") {
+TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
   const Scratch folder;
   write_sheets(folder);
   const Stopwatch watch;
@@ -333,7 +333,7 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
   CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
 }
 
-TEST_CASE("What a run cannot go on with is refused, and said") {
+TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   const Scratch folder;
   interrupt_sheets(folder);
   const std::string before = text_of(folder / "out/results.json");
@@ -369,7 +369,7 @@ TEST_CASE("What a run cannot go on with is refused, and said") {
   CHECK_THAT(refused_by("run --resume out", folder), Contains("uses this folder; wait for it, or stop it"));
 }
 
-TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a warning") {
+TEST_CASE("A damaged checkpoint is replaced by its predecessor, with a warning") {
   const Scratch folder;
   interrupt_sheets(folder);
   REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
@@ -380,7 +380,7 @@ TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a 
   check_equal(folder / "out", folder / "whole");
 }
 
-TEST_CASE("What is damaged or gone of an interrupted run's files is written again, to the same bits") {
+TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for bit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Experiment experiment =
@@ -426,7 +426,7 @@ TEST_CASE("What is damaged or gone of an interrupted run's files is written agai
   check_equal(folder / "out", folder / "whole");
 }
 
-TEST_CASE("Snapshots that are damaged leave their rows out of errors.csv, and cost nothing else") {
+TEST_CASE("Damaged snapshots are skipped in errors.csv, without other effects") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Experiment experiment = experiment_in(folder / "e.yaml");
@@ -443,7 +443,7 @@ TEST_CASE("Snapshots that are damaged leave their rows out of errors.csv, and co
   CHECK(errors.find("\npcs,1,") != std::string::npos);
 }
 
-TEST_CASE("A complete run has its own exit code when it is resumed, and its files are looked after") {
+TEST_CASE("Resuming a complete run returns its exit code and checks its files") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --quiet --no-report --method pcs --out ",
@@ -475,7 +475,7 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
         "run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
 }
 
-TEST_CASE("A checkpoint whose values do not fit its experiment is refused before anything is written") {
+TEST_CASE("A checkpoint whose values do not fit its experiment is refused before the first write") {
   const Scratch folder;
   interrupt_sheets(folder);
   const Experiment experiment = experiment_in(folder / "out/config.yaml");
@@ -544,7 +544,7 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   CHECK_THAT(refused_by("run --resume out", folder), Contains("box.obj"));
 }
 
-TEST_CASE("A saved state flows on under changed parameters, in a folder of its own") {
+TEST_CASE("A run warm-starts from a saved state under changed parameters, in another folder") {
   const Scratch folder;
   interrupt_sheets(folder);
   const std::string flow = "run --resume out --quiet --no-report --threads 1 --set newton.max_steps=4 ";

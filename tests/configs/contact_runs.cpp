@@ -48,7 +48,7 @@ const std::string quiet = " --quiet --no-report --threads 1 ";
 
 }  // namespace
 
-TEST_CASE("a start that touches an obstacle is refused, with what touches, and where") {
+TEST_CASE("a start that touches an obstacle is refused, with the pairs and the location") {
   const std::string text = contact_experiment(), place = "error: e.yaml:4:8: the start of level 0 touches: ";
   CHECK(said_of(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
@@ -62,7 +62,7 @@ TEST_CASE("a start that touches an obstacle is refused, with what touches, and w
              Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
 }
 
-TEST_CASE("a start is looked at on every level") {
+TEST_CASE("a start is checked on every level") {
   // Noise whose valleys only the finer level is fine enough for.
   const std::string said =
       said_of(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
@@ -133,7 +133,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   CHECK(far > 0);  // the first steps, in the air
 }
 
-TEST_CASE("intersections are counted at the end of each level unless every step is asked for") {
+TEST_CASE("intersections are counted at the end of each level, or after every step on request") {
   const Scratch folder;
   folder.write("e.yaml", contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;

@@ -77,7 +77,7 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
   CHECK(error[4].value() == Approx(lifted / std::abs(small.energy(x))).epsilon(1e-6));
 }
 
-TEST_CASE("measures that no metric of the experiment gives stay out") {
+TEST_CASE("measures without a metric in the experiment stay empty") {
   const Loaded small(Overrides{{"metrics", "[distance]"}});
   const Positions& x = small.scene->starts.back();
   const StateError error = small.error(x, x);
@@ -161,7 +161,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   }
 }
 
-TEST_CASE("every method's states are carried up by its own interpolation") {
+TEST_CASE("every method's own interpolation prolongs its states") {
   const Overrides changed = {{"levels", "3"},
                              {"methods.smooth", "{type: cascadic, prolongation: refiner}"},
                              {"methods.smooth_pcs", "{type: pcs, interpolation: {state: refiner}}"},

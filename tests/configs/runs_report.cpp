@@ -171,7 +171,7 @@ TEST_CASE("report of several folders takes a page's name, and groups runs by all
   CHECK(collection.runs[2].seed.value() == 3);
 }
 
-TEST_CASE("a sweep cut short is read as far as it went") {
+TEST_CASE("an incomplete sweep is read as far as it got") {
   const Scratch folder;
   folder.write(
       "sweep.json",
@@ -194,7 +194,7 @@ TEST_CASE("compare finds nothing between a run and itself") {
   }
 }
 
-TEST_CASE("compare says what changed, and exits with 1 where a bound is broken") {
+TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
   const Edited run([](Json& all) {
     Json& pcs = all["methods"]["pcs"];
     pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
@@ -214,7 +214,7 @@ TEST_CASE("compare says what changed, and exits with 1 where a bound is broken")
              Contains("broken: pcs, level 1: seconds went from ") && Contains("slower (bound broken)"));
 }
 
-TEST_CASE("a bound does not hold where a method has stopped converging, or has gone") {
+TEST_CASE("a bound is broken if a method no longer converges or exists") {
   const Edited stalled([](Json& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);
   const Ended ended = stalled.compare(" --bound seconds=2");
@@ -225,7 +225,7 @@ TEST_CASE("a bound does not hold where a method has stopped converging, or has g
   CHECK(gone.compare(" --bound seconds=2").exit_code == 1);
 }
 
-TEST_CASE("bounds on negative energies and on counts that were nought") {
+TEST_CASE("bounds on negative energies and on counts that were zero") {
   const Edited run([](Json& all) {
     Json& level = all["methods"]["pcs"]["levels"][1];
     level["energy_on_finest"] = level["energy_on_finest"].get<double>() + 0.1;
@@ -234,7 +234,7 @@ TEST_CASE("bounds on negative energies and on counts that were nought") {
   CHECK(run.compare(" --bound energy=2").exit_code == 0);
 }
 
-TEST_CASE("compare refuses bounds that say nothing") {
+TEST_CASE("compare refuses meaningless bounds") {
   CHECK(refused("compare . . --bound seconds") ==
         "error: --bound seconds: write it as KEY=RATIO, as in --bound seconds=1.1\n");
   CHECK(refused("compare . . --bound second=1") ==

@@ -129,7 +129,7 @@ TEST_CASE("a start is not moved into a closed mesh") {
   CHECK(way.head<2>().norm() > 0.1);
 }
 
-TEST_CASE("a start with pins is not moved") {
+TEST_CASE("a start with pins is not translated") {
   const std::string pinned =
       experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]") + "pins: [{point: [0, 0, 0]}]\n";
   const std::string said = refused(pinned);
@@ -140,7 +140,7 @@ TEST_CASE("a start with pins is not moved") {
   CHECK(moved(replaced(pinned, "0.06]", "0.12]")).isZero(0));
 }
 
-TEST_CASE("a start for which there is no place is refused, with what touches") {
+TEST_CASE("a start without a free position is refused, with the pairs") {
   const auto between = [](const std::string& top) {
     return "{type: shapes, shapes: [{name: top, shape: half_space, normal: [0, 0, -1], centre: [0, 0, " +
            top + "]}, {name: bottom, shape: half_space, centre: [0, 0, 0]}]}";

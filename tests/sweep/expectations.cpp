@@ -120,7 +120,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
   CHECK(!passes("stalled", "converged"));
 }
 
-TEST_CASE("an expectation says why") {
+TEST_CASE("an expectation needs a message") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml",

@@ -127,7 +127,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
 }
 
-TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
+TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected") {
   const std::string bytes = encode(full());
   REQUIRE(bytes.size() > 1000);
   for (std::size_t k = 0; k < bytes.size(); ++k) {
@@ -198,7 +198,7 @@ TEST_CASE("Whatever bytes a body has, it is refused or read as what would be wri
   CHECK(read > 1000);
 }
 
-TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
+TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") {
   const Scratch folder;
   CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
   std::string warning;

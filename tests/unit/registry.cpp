@@ -117,7 +117,7 @@ TEST_CASE("a node makes the object it names, with its parameters") {
   CHECK(alive == 0);
 }
 
-TEST_CASE("what a node gets wrong is told with its place") {
+TEST_CASE("faults of a node are reported with their location") {
   CHECK(fault("lopo") == "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
   CHECK(fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
   CHECK(fault("{corner_angle: 3}") ==

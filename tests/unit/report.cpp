@@ -211,7 +211,7 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(fs::file_size(run.folder / "report.html") < 25'000'000);
 }
 
-TEST_CASE("a report leaves out the pictures that it is told to leave, in the midst of one, and says so") {
+TEST_CASE("a report that is told to stop skips the remaining pictures, with a note") {
   const SampleRun run;
   write_file(run.folder / "results.json", run.results.dump());
   int asked = 0;
@@ -479,7 +479,7 @@ TEST_CASE("colour maps are symmetric around their middle and clamp at their ends
   CHECK(magnitude_quantile({}, 0.5) == 0);
 }
 
-TEST_CASE("errors are read, drawn and told of; a run without them says so") {
+TEST_CASE("errors are read, drawn and described; a run without them says so") {
   SampleRun run;
   CHECK(contains(run.page(), "No states were recorded in this run"));
   write_file(run.folder / "errors.csv",

@@ -88,7 +88,7 @@ TEST_CASE("a run without contact has no verdict and no columns for it") {
   CHECK(level_table(run).find("smallest gap") == std::string::npos);
 }
 
-TEST_CASE("what did not converge is told with its message") {
+TEST_CASE("levels that did not converge are listed with their messages") {
   RunData run = contact_run();
   CHECK(troubles(run).empty());
   LevelRecord& level = run.methods[1].levels[0];
@@ -129,7 +129,7 @@ TEST_CASE("Table 1 as text sets the paper's columns beside the run's") {
   CHECK(table1_text(run) == "sample: no pair of levels has been compared\n");
 }
 
-TEST_CASE("No method is the best on what the flat start would win") {
+TEST_CASE("No method is the best on a measure that the flat start would win") {
   RunData run = contact_run();
   const auto pair = [&](int m) -> ConsistencyRecord& { return run.methods[m].consistency[0]; };
   const auto is_best = [&](const std::string& figure) {

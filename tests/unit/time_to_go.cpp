@@ -38,7 +38,7 @@ TEST_CASE("The time to go does not jump, whatever the rate does") {
   CHECK(shown > 1000);
 }
 
-TEST_CASE("The time to go is unknown where nothing has been done for long") {
+TEST_CASE("The time to go is unknown after a long time without progress") {
   TimeToGo to_go;
   for (int k = 0; k <= 20; ++k) to_go.note(k, 0.01 * k);
   CHECK(to_go.seconds());
