@@ -7,7 +7,7 @@ namespace drape {
 constexpr int exit_done = 0;
 constexpr int exit_not_converged = 1, exit_bound_broken = 1;
 constexpr int exit_bad_input = 2;
-constexpr int exit_broken_off = 3;
+constexpr int exit_aborted = 3;
 /// Of a run that exceeded its sweep's time limit, as in `timeout`.
 constexpr int exit_too_slow = 124;
 /// Plus the signal's number, as in a shell.
@@ -25,7 +25,7 @@ constexpr ExitCode exit_codes[] = {
      "completed, but a method failed or did not converge, a row of a table does not pass, or a "
      "--bound is broken"},
     {exit_bad_input, "refused: nothing was run and nothing was written"},
-    {exit_broken_off,
+    {exit_aborted,
      "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "
      "a run"},
     {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; all results so far are saved"},

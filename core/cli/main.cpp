@@ -276,12 +276,12 @@ int main(int argc, char** argv) {
   };
   try {
     const int exit_code = main_checked(argc, argv);
-    if (!std::cout.flush()) return end("standard output cannot be written to", exit_broken_off);
+    if (!std::cout.flush()) return end("standard output cannot be written to", exit_aborted);
     return exit_code;
-  } catch (const RunBrokenOff& error) {
-    return end(error.what(), exit_broken_off);
+  } catch (const RunAborted& error) {
+    return end(error.what(), exit_aborted);
   } catch (const WriteError& error) {
-    return end(error.what(), exit_broken_off);
+    return end(error.what(), exit_aborted);
   } catch (const nlohmann::json::exception& error) {
     return end(std::string("a results file is not as drape writes it (") + error.what() +
                    "); run the experiment again",

@@ -39,8 +39,8 @@ template <class Action>
 int begun(const SweepFolder& folder, const Action& action) {
   const auto end = [&](const std::string& cause) {
     std::cerr << "error: " << printable(cause) << "; the sweep in " << folder.path().string()
-              << " is broken off; the same command runs what is missing\n";
-    return exit_broken_off;
+              << " is aborted; the same command runs what is missing\n";
+    return exit_aborted;
   };
   try {
     return action();

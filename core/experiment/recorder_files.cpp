@@ -66,15 +66,15 @@ void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
   }
 }
 
-void record_broken_off(const RunFolder& folder, const std::string& cause) {
+void record_abort(const RunFolder& folder, const std::string& cause) {
   try {
     auto results = nlohmann::ordered_json::parse(read_file(folder.file("results.json")));
-    results["broken_off"] = cause;
+    results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
-      if (method.at("status") == "running") method["status"] = "broken_off";
+      if (method.at("status") == "running") method["status"] = "aborted";
     folder.write_text("results.json", json_text(results, 1) + "\n");
     std::ofstream(folder.file("log.jsonl"), std::ios::app)
-        << json_text({{"event", "run_broken_off"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
+        << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
   } catch (const std::exception&) {
     // The cause of the abort may prevent this write too; message and exit code remain.
   }

@@ -30,6 +30,6 @@ std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene)
 void refuse_short_files(const RunFolder& folder, const RecorderState& state);
 
 /// Records in the folder that the run was aborted, and why, as far as it is still writable.
-void record_broken_off(const RunFolder& folder, const std::string& cause);
+void record_abort(const RunFolder& folder, const std::string& cause);
 
 }  // namespace drape

@@ -151,20 +151,20 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
   std::string cause;
   try {
     return action();
-  } catch (const RunBrokenOff&) {
+  } catch (const RunAborted&) {
     throw;
   } catch (const std::exception& error) {
     cause = reason_of(error);
   } catch (...) {
     cause = "an exception that is no std::exception";
   }
-  record_broken_off(folder, cause);
-  if (options.view) options.view->run_finished("the run was broken off: " + cause);
+  record_abort(folder, cause);
+  if (options.view) options.view->run_finished("the run was aborted: " + cause);
   std::error_code none;
-  throw RunBrokenOff(cause + "; the run is broken off. Once that is put right, " +
-                     (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
-                          ? "go on with drape run --resume " + folder.path().string()
-                          : "run the experiment again: there is no checkpoint of it"));
+  throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " +
+                   (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
+                        ? "resume it with drape run --resume " + folder.path().string()
+                        : "run the experiment again: there is no checkpoint of it"));
 }
 
 /// Time that a stopped run still spends on its report's pictures [s].
@@ -181,8 +181,8 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   try {
     write_report(folder.path(), leave);
   } catch (const std::exception& error) {
-    throw RunBrokenOff(reason_of(error) + "; the results in " + name +
-                       " are there without their report; write it with drape report " + name);
+    throw RunAborted(reason_of(error) + "; the results in " + name +
+                     " are there without their report; write it with drape report " + name);
   }
 }
 

@@ -27,7 +27,7 @@ struct RunOptions {
 };
 
 /// A run was aborted after it had begun, as on a full disk. Its folder records the cause if that is possible.
-class RunBrokenOff : public std::runtime_error {
+class RunAborted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
@@ -35,12 +35,12 @@ class RunBrokenOff : public std::runtime_error {
 /// Runs the methods one after another and records their results. Returns true if every level of every method
 /// succeeded without intersections. A method that throws counts as failed, and the others run. Throws
 /// std::runtime_error, before it writes, for a folder or a name that cannot be used and for an unknown
-/// method; RunBrokenOff after that.
+/// method; RunAborted after that.
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options);
 
 /// Resumes a run from its checkpoint in its folder `options.out`. The results are those of an uninterrupted
 /// run, bit for bit. The checkpoint determines methods and first level. Throws std::runtime_error, before it
-/// writes, if the checkpoint does not fit; RunBrokenOff after that.
+/// writes, if the checkpoint does not fit; RunAborted after that.
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
                        Checkpoint checkpoint);
 

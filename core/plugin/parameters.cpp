@@ -118,7 +118,7 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
 
 /// The map that a section's shorthand stands for. set_path has expanded a shorthand to a map with the word as
 /// `type` if it set another key of the section.
-ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
+ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
   if (p.shorthand_key.empty()) return node;
   ConfigNode map = node;
   for (auto& [key, value] : map.entries)
@@ -131,17 +131,17 @@ ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
 }
 
 /// Path relative to the current folder, as paths on the command line are; for a list, each.
-ConfigNode from_here(const ConfigNode& node) {
+ConfigNode relative_path(const ConfigNode& node) {
   ConfigNode path = node;
-  for (ConfigNode& item : path.items) item = from_here(item);
+  for (ConfigNode& item : path.items) item = relative_path(item);
   if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
     path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
   return path;
 }
 
 /// The same as an absolute path.
-ConfigNode from_anywhere(ConfigNode path) {
-  for (ConfigNode& item : path.items) item = from_anywhere(item);
+ConfigNode absolute_path(ConfigNode path) {
+  for (ConfigNode& item : path.items) item = absolute_path(item);
   if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
   return path;
 }
@@ -217,7 +217,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
       parameters[index].read(
-          object, parameters[index].path ? from_here(node) : spelt_out(node, parameters[index]), errors);
+          object, parameters[index].path ? relative_path(node) : expand_shorthand(node, parameters[index]),
+          errors);
     }
   }
   for (const Parameter& p : parameters)
@@ -229,7 +230,7 @@ ConfigNode Schema::write(const void* object) const {
   ConfigNode map;
   map.kind = Kind::map;
   for (const Parameter& p : parameters)
-    map.add(p.name, p.path ? from_anywhere(p.write(object)) : p.write(object));
+    map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
   return map;
 }
 

@@ -177,11 +177,10 @@ std::string outcome_sentence(const RunData& run) {
     to_rounding = to_rounding || m.status == to_string(Outcome::converged_to_rounding);
   }
   const int total = static_cast<int>(run.methods.size());
-  std::string text =
-      run.complete ? ""
-      : run.broken_off.empty()
-          ? "The run is not complete; these are the figures it had written. "
-          : "The run was broken off (" + escape(run.broken_off) + "); these are the figures it had written. ";
+  std::string text = run.complete          ? ""
+                     : run.aborted.empty() ? "The run is not complete; these are the figures it had written. "
+                                           : "The run was aborted (" + escape(run.aborted) +
+                                                 "); these are the figures it had written. ";
   text += std::to_string(converged) + " of " + std::to_string(total) + (total == 1 ? " method" : " methods") +
           " converged";
   if (run.force_tolerance)

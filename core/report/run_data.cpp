@@ -262,7 +262,7 @@ RunData read_run(const std::filesystem::path& folder) {
   if (const Json& obstacles = at(json, "obstacles"); obstacles.is_array())
     for (const Json& name : obstacles) run.obstacles.push_back(text(name));
   run.complete = at(json, "complete").is_boolean() && at(json, "complete").get<bool>();
-  run.broken_off = text(at(json, "broken_off"));
+  run.aborted = text(at(json, "aborted"));
   const Json& machine = at(json, "machine");
   run.cpu = text(at(machine, "cpu"));
   run.cores = number(at(machine, "cores"));

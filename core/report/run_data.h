@@ -103,7 +103,7 @@ struct RunData {
   std::filesystem::path folder;
   std::string experiment, description, version, cpu, table1_scene, configuration;
   bool complete = false;
-  std::string broken_off;  ///< why the run was aborted; empty if it was not
+  std::string aborted;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
   std::vector<std::string> obstacles;  ///< meshes, relative to the folder
   std::vector<MethodRecord> methods;

@@ -71,11 +71,11 @@ std::int64_t Process::resident_bytes() const {
   return in ? resident * sysconf(_SC_PAGESIZE) : 0;
 }
 
-Said run_program(const std::vector<std::string>& words) {
+ProgramOutput run_program(const std::vector<std::string>& words) {
   std::string folder = (std::filesystem::temp_directory_path() / "drape_XXXXXX").string();
   if (!mkdtemp(folder.data())) throw std::runtime_error(folder + ": cannot make a temporary folder");
   const std::filesystem::path out = folder + "/out", err = folder + "/err";
-  Said said;
+  ProgramOutput said;
   said.exit = Process(words, out, err).wait();
   said.out = text_of_file(out);
   said.err = text_of_file(err);

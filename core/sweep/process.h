@@ -36,13 +36,13 @@ class Process {
 };
 
 /// The exit status and output of a program.
-struct Said {
+struct ProgramOutput {
   Exit exit;
   std::string out, err;
 };
 
 /// Runs a program to its end; 127 if it does not exist.
-Said run_program(const std::vector<std::string>& words);
+ProgramOutput run_program(const std::vector<std::string>& words);
 
 /// The executable file of this process.
 std::filesystem::path own_program();

@@ -52,7 +52,7 @@ std::string directives(const std::vector<std::string>& options) {
 std::string submit_script(const fs::path& script, std::vector<std::string> words) {
   words.insert(words.begin(), {"sbatch", "--parsable"});
   words.push_back(script.string());
-  const Said said = run_program(words);
+  const ProgramOutput said = run_program(words);
   if (said.exit.code == 127)
     throw std::runtime_error(
         "sbatch: not found; install Slurm's client (slurm-client), or use --engine local");
@@ -65,7 +65,7 @@ std::string submit_script(const fs::path& script, std::vector<std::string> words
 bool in_queue(const SlurmJobs& jobs) {
   std::string ids = jobs.array;
   if (!jobs.collector.empty()) ids += "," + jobs.collector;
-  const Said said = run_program({"squeue", "--noheader", "--format=%i", "--jobs=" + ids});
+  const ProgramOutput said = run_program({"squeue", "--noheader", "--format=%i", "--jobs=" + ids});
   if (said.exit.code == 0) return !said.out.empty();
   if (said.err.find("Invalid job id") != std::string::npos) return false;  // finished, and no longer known
   throw std::runtime_error("cannot ask Slurm for the jobs " + ids + ": " +
@@ -176,7 +176,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
                              ": has no jobs in Slurm's queue; there is nothing to cancel");
   std::vector<std::string> words = {"scancel", jobs->array};
   if (!jobs->collector.empty()) words.push_back(jobs->collector);
-  const Said said = run_program(words);
+  const ProgramOutput said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
   if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
 }

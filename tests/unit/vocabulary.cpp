@@ -79,6 +79,8 @@ constexpr Renamed identifiers[] = {
     {"RunSet", "RunCollection"},
     {"SetRun", "RunRecord"},
     {"Looked", "Audit"},
+    {"RunBrokenOff", "RunAborted"},
+    {"broken_off", "aborted"},
     {"or_word", "shorthand"},
     {"word_key", "shorthand_key"},
 };

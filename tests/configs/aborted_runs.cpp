@@ -115,9 +115,9 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     const Scratch folder;
     write_experiment(folder, "{type: failing, level: 1, command: rm -r " + std::string(gone) + "}");
     const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path, with_failing);
-    CHECK(ended.exit_code == drape::exit_broken_off);
+    CHECK(ended.exit_code == drape::exit_aborted);
     CHECK_THAT(ended.err, StartsWith("error: cannot write out/levels/odd_l1.ply: No such file or directory"));
-    CHECK_THAT(ended.err, Contains("; the run is broken off. "));
+    CHECK_THAT(ended.err, Contains("; the run is aborted. "));
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
     if (gone == std::string("out")) {
       CHECK_FALSE(fs::exists(folder / "out"));
@@ -125,14 +125,14 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     }
     const Json all = results_in(folder);
     CHECK(all["complete"] == false);
-    CHECK_THAT(all["broken_off"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
-    CHECK(all["methods"]["odd"]["status"] == "broken_off");
-    CHECK(events(folder, "run_broken_off").size() == 1);
+    CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
+    CHECK(all["methods"]["odd"]["status"] == "aborted");
+    CHECK(events(folder, "run_aborted").size() == 1);
     CHECK(drape_with("report out", folder.path).exit_code == drape::exit_done);
-    CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was broken off (cannot write "));
+    CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was aborted (cannot write "));
     const Ended on = drape_with("run --resume out --quiet --no-report", folder.path,
                                 with_failing);  // which fails at the same
-    CHECK(on.exit_code == drape::exit_broken_off);
+    CHECK(on.exit_code == drape::exit_aborted);
   }
 }
 
@@ -153,13 +153,13 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
         .wait();
   };
   const Ended ended = limited(largest + 2048, arguments + "out");
-  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK(ended.exit_code == drape::exit_aborted);
   CHECK_THAT(ended.err, StartsWith("error: cannot write out/") && Contains("File too large") &&
-                            Contains("go on with drape run --resume out"));
+                            Contains("resume it with drape run --resume out"));
   const Json all = results_in(folder);
   CHECK(all["complete"] == false);
-  CHECK_THAT(all["broken_off"].get<std::string>(), Contains("File too large"));
-  CHECK(all["methods"]["pcs"]["status"] == "broken_off");
+  CHECK_THAT(all["aborted"].get<std::string>(), Contains("File too large"));
+  CHECK(all["methods"]["pcs"]["status"] == "aborted");
   CHECK(all["methods"].size() == 1);  // the others could not be written either
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
     CHECK(entry.path().extension() != ".part");
@@ -167,17 +167,17 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   const Ended on = drape_with("run --resume out --quiet --no-report --threads 1", folder.path);
   CHECK(on.err == "");
   CHECK(on.exit_code == drape::exit_not_converged);
-  CHECK_FALSE(results_in(folder).contains("broken_off"));
+  CHECK_FALSE(results_in(folder).contains("aborted"));
   for (const char* mesh : {"levels/pcs_l1.ply", "levels/newton_l1.ply"})
     CHECK((text_of(folder / "out" / mesh) == text_of(folder / "whole" / mesh)));
 
   // Before the first method, and where the rows of steps.csv no longer fit.
-  CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_broken_off);
+  CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_aborted);
   const Ended rows =
       limited(16 * 512,
               " run e.yaml --quiet --no-report --method newton --levels 1 --set snapshots=0 "
               "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
-  CHECK(rows.exit_code == drape::exit_broken_off);
+  CHECK(rows.exit_code == drape::exit_aborted);
   CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
 }
 
@@ -185,7 +185,7 @@ TEST_CASE("A failed write to standard output is an error") {
   if (!fs::exists("/dev/full")) return;
   const Scratch folder;
   const Ended ended = Command("exec " + drape_command + " list > /dev/full", folder.path).wait();
-  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK(ended.exit_code == drape::exit_aborted);
   CHECK(ended.err == "error: standard output cannot be written to\n");
 }
 
