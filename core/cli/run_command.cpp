@@ -124,7 +124,7 @@ int RunCommand::resume(const Registry& registry) const {
   if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene && checkpoint.own_start)
-    warm_start(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
+    warm_start_scene(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
   if (!errors.empty()) return report_errors(errors);
   RunOptions options = options_;
   options.out = folder;
@@ -146,7 +146,7 @@ int RunCommand::warm_start(const Registry& registry) const {
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
-  if (scene) warm_start(*experiment, *scene, state.level, state.x, errors);
+  if (scene) warm_start_scene(*experiment, *scene, state.level, state.x, errors);
   if (!errors.empty()) return report_errors(errors);
   options.methods = {state.method};
   options.first_level = state.level;

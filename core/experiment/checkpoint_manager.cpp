@@ -213,8 +213,8 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
                                             "; choose a coarser one with --level"});
 }
 
-void warm_start(const Experiment& experiment, Scene& scene, int level, const Positions& x,
-                ConfigErrors& errors) {
+void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                      ConfigErrors& errors) {
   const LevelModel& model = *scene.models[level];
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
   scene.starts[level] = x;

@@ -69,7 +69,7 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
 
 /// Replaces the scene's initial states by x on that level and by the same surface, refined at midpoints, on
 /// finer ones. Dirichlet vertices move from there to their targets. Appends the intersections of x.
-void warm_start(const Experiment& experiment, Scene& scene, int level, const Positions& x,
-                ConfigErrors& errors);
+void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                      ConfigErrors& errors);
 
 }  // namespace drape

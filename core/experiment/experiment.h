@@ -187,7 +187,7 @@ struct Scene {
 enum class IntersectingStart { refused, allowed };
 
 /// Builds the scene; null, with every fault of the mesh, of pins and of the initial state appended, if that
-/// is not possible. An intersecting start is `allowed` for repair_start alone.
+/// is not possible. An intersecting start is `allowed` for repair_start and warm starts alone.
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
                                    IntersectingStart intersecting = IntersectingStart::refused);
 

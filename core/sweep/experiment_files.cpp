@@ -35,10 +35,10 @@ void read_one(const fs::path& file, const std::string& key, const Location& wher
 
 /// Refuses equal names of experiments, whose folders would coincide.
 void label(std::vector<ExperimentSource>& all, ConfigErrors& errors) {
-  std::map<std::string, Location> places;
+  std::map<std::string, Location> locations;
   for (ExperimentSource& one : all) {
     if (const ConfigNode* name = one.root.find("name")) one.label = name->scalar;
-    const auto [first, is_first] = places.emplace(one.label, one.root.where);
+    const auto [first, is_first] = locations.emplace(one.label, one.root.where);
     if (!is_first)
       errors.push_back({one.where, "experiments " + first->second.file + " and " + one.root.where.file +
                                        " have the same name, \"" + one.label +

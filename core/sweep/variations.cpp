@@ -17,9 +17,9 @@ using NodeKind = ConfigNode::Kind;
 constexpr std::size_t most_variations = 10000;
 
 void refuse_repeated_keys(const ConfigNode& map, const std::string& name, ConfigErrors& errors) {
-  std::map<std::string, Location> places;
+  std::map<std::string, Location> locations;
   for (std::size_t k = 0; k < map.entries.size(); ++k) {
-    const auto [first, is_first] = places.emplace(map.entries[k].first, map.key_locations[k]);
+    const auto [first, is_first] = locations.emplace(map.entries[k].first, map.key_locations[k]);
     if (!is_first)
       errors.push_back({map.key_locations[k], "repeated key \"" + first->first + "\" in " + name +
                                                   "; it is first set at " + first->second.text()});

@@ -36,7 +36,7 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
          a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-/// What every pattern must be: sound, flat, counter-clockwise, in one piece with this many holes.
+/// What every pattern must be: valid, flat, counter-clockwise, in one piece with this many holes.
 void require_pattern(const TriangleMesh& mesh, double area, int holes, double angle) {
   REQUIRE(mesh.vertices.rows() > 0);
   CHECK(check_mesh(mesh).empty());
