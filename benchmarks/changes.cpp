@@ -48,7 +48,7 @@ std::string schedule() {
         to += ", " + ConfigNode::of(changes[k].to).scalar;
       }
     keys += (keys.empty() ? "" : ", ") + ("{parameter: " + std::string(first.set)) +
-            ", interpolation: step, times: [" + at + "], to: [" + to + "]}";
+            ", interpolation: step, times: [" + at + "], values: [" + to + "]}";
   }
   return "{steps: " + std::to_string(std::size(changes)) + ", equilibrate: true, keys: [" + keys + "]}";
 }

@@ -182,7 +182,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
     for (const ConfigNode& value : p.keys[k].values.items) {
       ConfigNode config = e.resolved;
       ConfigErrors own;
-      const Location where = e.source.find("schedule")->find("keys")->items[k].find("to")->where;
+      const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
       if (set_path(config, p.keys[k].parameter, value, where, own)) {
         ExperimentParameters read;
         schema.read(&read, config, own);

@@ -16,7 +16,7 @@ FALLING = {"cloth": {"shape": "square", "side": 0.3, "columns": 6, "rows": 6},
                                       {"shape": "box", "size": [0.4, 0.4, 0.1], "translate": [0, 0, -0.2]}]}]}
 HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "random", "vertices": 40},
         "pins": [{"region": "ball", "point": [0, 0, 0], "radius": 0.03},
-                 {"region": "nearest", "point": [0.3, 0, 0], "move": [0, 0, -0.02]}],
+                 {"region": "nearest", "point": [0.3, 0, 0], "translate": [0, 0, -0.02]}],
         "energies": ["stvk", "quadratic_bending", {"type": "gravity", "acceleration": [0, 5, -8]}],
         "contact": [{"type": "ipc"},
                     {"type": "shapes", "friction": 0.3,
@@ -25,7 +25,7 @@ HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "ra
                                 {"shape": "capsule", "radius": 0.02, "height": 0.2, "centre": [0, 0.3, -0.1]}]}]}
 DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
            "start": {"translate": [0, 0, 0.06]},
-           "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "move": [0, 0, 0.06]}],
+           "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "translate": [0, 0, 0.06]}],
            "energies": ["neo_hookean", "hinge", "gravity"],
            "contact": [{"type": "shapes",
                         "shapes": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
@@ -34,7 +34,7 @@ DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
 PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
                     "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
                               {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
-          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "move": [0, 0, 0.05], "stiffness": 1e3}],
+          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "translate": [0, 0, 0.05], "stiffness": 1e3}],
           "energies": ["neo_hookean", "hinge", {"type": "pressure", "pressure": 5}, "gravity"],
           "contact": [{"type": "ipc", "obstacles": [{"shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}]}
 SCENES = [FALLING, HUNG, DRAGGED, PULLED]
