@@ -334,6 +334,20 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }
 
+TEST_CASE("keys of earlier versions are refused with the new ones") {
+  CHECK(said_of_set("frames=3") == "error: --set frames: \"frames\" is now called \"snapshots\"\n");
+  CHECK(said_of_set("verify=every_step") ==
+        "error: --set verify: \"verify\" is now called \"check_intersections\"\n");
+  CHECK(said_of_set("pins.0.move=[0, 0, 0]") ==
+        "error: --set pins.0.move: \"move\" in pins is now called \"translate\"\n");
+  CHECK(said_of(small_experiment() +
+                "schedule: {keys: [{set: material.density, at: [0, 1], to: [1, 2], between: jump}]}\n") ==
+        "error: e.yaml:15:20: \"set\" in keys is now called \"parameter\"\n"
+        "error: e.yaml:15:43: \"at\" in keys is now called \"times\"\n"
+        "error: e.yaml:15:55: \"to\" in keys is now called \"values\"\n"
+        "error: e.yaml:15:67: \"between\" in keys is now called \"interpolation\"\n");
+}
+
 TEST_CASE("a --set or --method that does not fit") {
   CHECK(said_of_set("levelz=3") == "error: --set levelz: unknown key \"levelz\"; did you mean \"levels\"?\n");
   CHECK(said_of_set("levels=x") == "error: --set levels: \"levels\" must be an integer, not \"x\"\n");

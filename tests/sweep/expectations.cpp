@@ -74,6 +74,8 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
         "error: there is no column \"runs\"; did you mean \"run\"?\n");
+  CHECK(drape_with("table out --columns cuts", folder.path).err ==
+        "error: column \"cuts\" is now called \"shortened_steps\"\n");
 }
 
 TEST_CASE("an intersection, or an energy that is no number, fails whatever the outcome") {
