@@ -116,10 +116,10 @@ std::vector<HeldVertex> dirichlet_vertices(const ExperimentParameters& p, const 
                       p.pins[k].has_transform() ? p.pins[k].target(level.rest.vertices.row(v))
                                                 : Eigen::Vector3d(start.row(v)),
                       static_cast<int>(k)};
-  std::vector<HeldVertex> held;
+  std::vector<HeldVertex> dirichlet;
   for (const HeldVertex& h : by_vertex)
-    if (h.vertex >= 0) held.push_back(h);
-  return held;
+    if (h.vertex >= 0) dirichlet.push_back(h);
+  return dirichlet;
 }
 
 std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest) {

@@ -85,8 +85,8 @@ void fields(A& a, Snapshot& f) {
 }
 
 template <class A>
-void fields(A& a, SnapshotRecorder::Memory& m) {
-  a(m.spacing, m.seen, m.kept);
+void fields(A& a, SnapshotRecorder::State& m) {
+  a(m.spacing, m.seen, m.snapshots);
 }
 
 template <class A>

@@ -146,7 +146,7 @@ class Check {
     for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
     require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))
-      for (const Snapshot& snapshot : s.snapshots.kept)
+      for (const Snapshot& snapshot : s.snapshots.snapshots)
         positions(snapshot.x, c_.state.level, "the snapshots");
     for (const LevelSnapshots& level : s.measured) {
       positions(level.last, level.level, "the snapshots");

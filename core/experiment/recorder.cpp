@@ -96,7 +96,7 @@ RecorderState Recorder::state() const {
                   intersection_free_,
                   method_intersection_free_,
                   states_,
-                  snapshots_.memory(),
+                  snapshots_.state(),
                   errors_.levels(),
                   spent_,
                   last_,

@@ -24,7 +24,7 @@ struct RecorderState {
   std::string method;
   bool intersection_free = true, method_intersection_free = true;
   std::vector<RecordedState> states;  ///< all levels so far, in order
-  SnapshotRecorder::Memory snapshots;
+  SnapshotRecorder::State snapshots;
   std::vector<LevelSnapshots> measured;
   Cost spent, last;
   double overhead = 0;

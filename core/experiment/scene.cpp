@@ -185,15 +185,15 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
     const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
-    std::vector<HeldVertex> held =
+    std::vector<HeldVertex> dirichlet =
         dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
-    for (const HeldVertex& h : held) start.row(h.vertex) = h.place.transpose();
+    for (const HeldVertex& h : dirichlet) start.row(h.vertex) = h.place.transpose();
     if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
-          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));
+          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(dirichlet), e.contacts));
     } catch (const std::exception& error) {
       errors.push_back({e.location_of("energies"), reason_of(error)});
       return nullptr;

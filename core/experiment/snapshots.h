@@ -35,12 +35,12 @@ class SnapshotRecorder {
   explicit SnapshotRecorder(int most) : most_(most) {}
 
   /// Snapshots of the current level.
-  struct Memory {
+  struct State {
     int spacing = 1, seen = 0;
-    std::vector<Snapshot> kept;
+    std::vector<Snapshot> snapshots;
   };
-  const Memory& memory() const { return m_; }
-  void restore(Memory memory) { m_ = std::move(memory); }
+  const State& state() const { return m_; }
+  void restore(State state) { m_ = std::move(state); }
 
   bool any() const { return most_ > 0; }
   void begin_level();
@@ -51,7 +51,7 @@ class SnapshotRecorder {
 
  private:
   int most_;
-  Memory m_;
+  State m_;
 };
 
 /// Writes positions as little-endian float32, snapshot by snapshot, row by row. Returns the checksum of the
