@@ -47,10 +47,10 @@ std::string schedule() {
         at += ", " + std::to_string(k + 1);
         to += ", " + ConfigNode::of(changes[k].to).scalar;
       }
-    keys += (keys.empty() ? "" : ", ") + ("{set: " + std::string(first.set)) + ", between: jump, at: [" + at +
-            "], to: [" + to + "]}";
+    keys += (keys.empty() ? "" : ", ") + ("{parameter: " + std::string(first.set)) +
+            ", interpolation: step, times: [" + at + "], values: [" + to + "]}";
   }
-  return "{steps: " + std::to_string(std::size(changes)) + ", settle: true, keys: [" + keys + "]}";
+  return "{steps: " + std::to_string(std::size(changes)) + ", equilibrate: true, keys: [" + keys + "]}";
 }
 
 /// Keeps what level 0 came to, and ends the method with it.

@@ -30,9 +30,9 @@ void ConfigArguments::add_to(CLI::App& command) {
   command.add_option("--levels", levels, "number of levels, in place of the experiment's")
       ->check(positive_integer);
   command.add_flag("--allow-start-repair", allow_start_repair,
-                   "move a start that touches something up or to a side until it does not");
+                   "translate an intersecting start up or sideways until it is free");
   command.add_flag("--allow-memory", allow_memory,
-                   "go on where a run may take more memory than this machine has");
+                   "allow a run that may need more memory than this machine has");
 }
 
 Overrides ConfigArguments::overrides() const {
@@ -52,8 +52,9 @@ Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
   experiment = read_experiment(arguments.config, arguments.overrides(), registry, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments.large_memory(), errors);
   if (errors.empty())
-    scene = build_scene(*experiment, errors,
-                        arguments.allow_start_repair ? TouchingStart::kept : TouchingStart::refused);
+    scene =
+        build_scene(*experiment, errors,
+                    arguments.allow_start_repair ? IntersectingStart::allowed : IntersectingStart::refused);
   if (scene && arguments.allow_start_repair) repair(errors);
   if (!errors.empty()) exit_code = report_errors(errors);
 }
@@ -63,7 +64,7 @@ void Loaded::repair(ConfigErrors& errors) {
   if (way.isZero(0)) return;
   scene = build_scene(*experiment, errors);
   if (errors.empty())
-    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m so that it touches nothing\n", way.x(), way.y(),
+    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", way.x(), way.y(),
                  way.z());
 }
 

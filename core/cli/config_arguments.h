@@ -11,13 +11,13 @@
 
 namespace drape {
 
-/// What an option that counts things must be, or "".
+/// Validates a positive integer option: an error text, or "".
 std::string positive_integer(const std::string& text);
 
-/// Prints them and gives the exit code.
+/// Prints the errors and returns the exit code.
 int report_errors(const ConfigErrors& errors);
 
-/// An experiment file and what the command line changes of it.
+/// An experiment file and its overrides on the command line.
 struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
@@ -31,7 +31,7 @@ struct ConfigArguments {
   LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }
 };
 
-/// An experiment and the scene built from it; errors are printed and leave both empty.
+/// An experiment and its scene; both empty, with errors printed, if they are not valid.
 struct Loaded {
   std::optional<Experiment> experiment;
   std::unique_ptr<Scene> scene;

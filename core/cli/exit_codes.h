@@ -2,33 +2,34 @@
 
 namespace drape {
 
-// Every code that `drape` ends with. `drape --help` prints the list below, and docs/exit-codes.md says more.
+// Exit codes of `drape`. `drape --help` prints the list below; docs/exit-codes.md has details.
 
 constexpr int exit_done = 0;
 constexpr int exit_not_converged = 1, exit_bound_broken = 1;
 constexpr int exit_bad_input = 2;
-constexpr int exit_broken_off = 3;
-/// Of a run that its sweep ended, in the sweep's list; as `timeout` has it.
+constexpr int exit_aborted = 3;
+/// Of a run that exceeded its sweep's time limit, as in `timeout`.
 constexpr int exit_too_slow = 124;
-/// And the signal's number, as a shell has it.
+/// Plus the signal's number, as in a shell.
 constexpr int exit_by_signal = 128;
 
 struct ExitCode {
   int code;
-  const char* meaning;
+  const char* description;
 };
 
 constexpr ExitCode exit_codes[] = {
-    {exit_done, "done; of a run: every level of every method converged, or ended as its experiment asks"},
+    {exit_done,
+     "success; of a run: every level of every method converged, or ended as its experiment requests"},
     {exit_not_converged,
-     "it ran to its end, but a method failed or did not converge, a row of a table does not pass, or a "
+     "completed, but a method failed or did not converge, a row of a table does not pass, or a "
      "--bound is broken"},
     {exit_bad_input, "refused: nothing was run and nothing was written"},
-    {exit_broken_off,
-     "broken off after it had begun, as where the disk is full or the folder was deleted; once that is put "
-     "right, `drape run --resume` goes on with a run"},
-    {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; everything up to then is saved"},
-    {exit_by_signal + 15, "stopped by SIGTERM; everything up to then is saved"},
+    {exit_aborted,
+     "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "
+     "a run"},
+    {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; all results so far are saved"},
+    {exit_by_signal + 15, "stopped by SIGTERM; all results so far are saved"},
 };
 
 }  // namespace drape

@@ -17,10 +17,10 @@
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
 #include "core/plugin/loader.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/compare.h"
 #include "core/report/report.h"
-#include "core/report/run_set.h"
+#include "core/report/run_collection.h"
 #include "core/report/run_table.h"
 #include "core/report/runs_report.h"
 #include "core/report/tables.h"
@@ -36,7 +36,7 @@ constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metr
 int check(const ConfigArguments& arguments, const Registry& registry) {
   Loaded loaded(arguments, registry);
   if (loaded.exit_code) return loaded.exit_code;
-  std::cout << arguments.config << ": sound.";
+  std::cout << arguments.config << ": valid.";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
   std::cout << "\nMemory to solve them, at most about:";
@@ -84,7 +84,7 @@ int describe_plugin(const std::string& name, const Registry& registry) {
   return exit_bad_input;
 }
 
-/// Writes the parameters of every plugin that has one into FOLDER/KIND/NAME/README.md.
+/// Writes every plugin's parameters into FOLDER/KIND/NAME/README.md, if that exists.
 int reference_into(const std::filesystem::path& folder, const Registry& registry) {
   int pages = 0;
   for (const auto& entry : registry.entries()) {
@@ -145,12 +145,12 @@ void require_command(const CLI::App& app, const std::string& word) {
       (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
 }
 
-/// What stands below every help.
+/// The footer of every help page.
 std::string exit_codes_help() {
   std::string text = "Exit codes:\n";
   for (const ExitCode& code : exit_codes) {
     const std::string number = std::to_string(code.code);
-    text += "  " + number + std::string(6 - number.size(), ' ') + code.meaning + "\n";
+    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
   }
   return text;
 }
@@ -175,7 +175,7 @@ int main_checked(int argc, char** argv) {
   const SweepCommand sweep(app);
 
   std::string kind, plugin, out, run_folder, schema_kind = "experiment";
-  CLI::App* list_command = app.add_subcommand("list", "list what experiments can choose by name");
+  CLI::App* list_command = app.add_subcommand("list", "list plugins");
   list_command->add_option("kind", kind, "only this kind");
   CLI::App* describe_command =
       app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
@@ -183,25 +183,24 @@ int main_checked(int argc, char** argv) {
   std::vector<std::string> report_folders, compared, bounds, columns;
   TableFormat format = TableFormat::markdown;
   CLI::App* report_command =
-      app.add_subcommand("report", "write the report of a run again, or one of several runs or of a sweep");
+      app.add_subcommand("report", "write the report of a run, of several runs or of a sweep");
   report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
   report_command->add_option("--out", out, "page of several runs (default: report.html in a sweep's folder)");
   CLI::App* compare_command = app.add_subcommand(
-      "compare", "say what got faster, slower, better or worse from one run or sweep to another");
-  compare_command->add_option("runs", compared, "the one before and the one after")->required()->expected(2);
+      "compare", "compare two runs or sweeps: what became faster, slower, better or worse");
+  compare_command->add_option("runs", compared, "the former and the new one")->required()->expected(2);
   compare_command
       ->add_option("--bound", bounds,
-                   "exit with 1 when a figure is more than so many times what it was; may be repeated")
+                   "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
       ->type_name("KEY=RATIO")
       ->allow_extra_args(false);
   CLI::App* table_command = app.add_subcommand(
-      "table",
-      "print one table of runs and sweeps, a row a method of each; exits with 1 where one does not pass");
+      "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass");
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
   table_command->add_option("--format", format, "md, csv or json")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
           {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}}));
-  table_command->add_option("--columns", columns, "only these, in this order, as in run,outcome,energy")
+  table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
       ->delimiter(',')
       ->allow_extra_args(false);
   CLI::App* table1_command =
@@ -269,7 +268,7 @@ int main_checked(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A file that may not grow any more is an error to be told, and not the end of the process.
+  // Exceeding a file size limit is reported as an error instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
   const auto end = [](const std::string& message, int exit_code) {
     std::cerr << "error: " << printable(message) << "\n";
@@ -277,15 +276,15 @@ int main(int argc, char** argv) {
   };
   try {
     const int exit_code = main_checked(argc, argv);
-    if (!std::cout.flush()) return end("standard output cannot be written to", exit_broken_off);
+    if (!std::cout.flush()) return end("standard output cannot be written to", exit_aborted);
     return exit_code;
-  } catch (const RunBrokenOff& error) {
-    return end(error.what(), exit_broken_off);
+  } catch (const RunAborted& error) {
+    return end(error.what(), exit_aborted);
   } catch (const WriteError& error) {
-    return end(error.what(), exit_broken_off);
+    return end(error.what(), exit_aborted);
   } catch (const nlohmann::json::exception& error) {
     return end(std::string("a results file is not as drape writes it (") + error.what() +
-                   "); run the experiment anew",
+                   "); run the experiment again",
                exit_bad_input);
   } catch (const std::exception& error) {
     return end(reason_of(error), exit_bad_input);

@@ -11,7 +11,7 @@
 #include "core/experiment/run_folder.h"
 #include "core/mesh/message_text.h"
 #include "core/numerics/parallel.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/view/live_view.h"
 
 namespace drape {
@@ -23,33 +23,34 @@ RunCommand::RunCommand(CLI::App& app) {
   command_->add_option_function<std::string>(
       "--out", [this](const std::string& folder) { options_.out = folder; },
       "results folder (default: results/NAME)");
-  command_->add_option("--method", options_.methods, "only these of the experiment's methods")
+  command_->add_option("--method", options_.methods, "run only these methods")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command_->add_option("--threads", threads_, "threads (default: one a core)")->check(positive_integer);
+  command_->add_option("--threads", threads_, "threads (default: one per core)")->check(positive_integer);
   command_->add_flag("--overwrite", options_.overwrite,
                      "replace the results of an earlier run in the folder");
   command_->add_option(
       "--resume", resumed_,
-      "results folder of an interrupted run: go on with it; or, with --set, --levels, --level "
-      "or --method, and --out: flow on from a state of it in another folder");
-  command_->add_option("--level", level_, "of the state to flow on from (default: the last one of the run)");
+      "results folder of an interrupted run to resume; with --set, --levels, --level or --method, and "
+      "--out: warm-start from its state in another folder");
+  command_->add_option("--level", level_,
+                       "level of the state to warm-start from (default: the run's last one)");
   command_
       ->add_option("--checkpoint", options_.checkpoint,
-                   "seconds between saved states, about (default 5; 0: one at every step)")
+                   "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
       ->check(CLI::NonNegativeNumber);
   command_->add_flag("--quiet", options_.quiet, "no progress on standard error");
   CLI::Option* show =
       command_->add_flag("--view", view_, "serve a live view of the run on 127.0.0.1; prints its address");
-  command_->add_option("--port", port_, "port of the live view (default: one that is free)")
+  command_->add_option("--port", port_, "port of the live view (default: any free one)")
       ->check([](const std::string& text) -> std::string {
         const std::optional<int> number = parse_integer(text);
         return number && *number >= 0 && *number <= 65535 ? "" : "must be a port, 0 to 65535, not " + text;
       })
       ->needs(show);
-  command_->add_flag("--view-keep", keep_view_, "go on serving the view after the run, until Ctrl-C")
+  command_->add_flag("--view-keep", keep_view_, "keep serving the view after the run, until Ctrl-C")
       ->needs(show);
-  command_->add_flag("!--no-report", options_.report, "leave out report.html and its pictures");
+  command_->add_flag("!--no-report", options_.report, "write no report.html and pictures");
 }
 
 void RunCommand::check() const {
@@ -68,15 +69,14 @@ int RunCommand::run(const Registry& registry) const {
     refuse("takes the experiment from the run's own config.yaml; leave out " + arguments_.config +
            ", and change parameters with --set KEY=VALUE");
   if (arguments_.allow_start_repair)
-    refuse("begins with a state that touches nothing; leave out --allow-start-repair");
+    refuse("starts from a state without intersections; leave out --allow-start-repair");
   const bool changed =
       !arguments_.sets.empty() || arguments_.levels > 0 || level_ || !options_.methods.empty();
   if (!changed && !options_.out.empty())
     refuse(
-        "goes on in the run's own folder; leave out --out, or say with --set, --level or --method what "
-        "is to be another run");
-  if (!changed && options_.overwrite)
-    refuse("goes on with the results that are there; leave out --overwrite");
+        "resumes in the run's own folder; leave out --out, or start another run with --set, --level or "
+        "--method");
+  if (!changed && options_.overwrite) refuse("keeps the existing results; leave out --overwrite");
   if (!changed) return resume(registry);
   if (options_.out.empty())
     refuse("with --set, --levels, --level or --method is another run; name its folder with --out");
@@ -85,7 +85,7 @@ int RunCommand::run(const Registry& registry) const {
     refuse(
         "with --set, --levels, --level or --method leaves the run that it begins from as it is; name "
         "another folder with --out");
-  return flow_on(registry);
+  return warm_start(registry);
 }
 
 int RunCommand::run_config(const Registry& registry) const {
@@ -97,24 +97,24 @@ int RunCommand::run_config(const Registry& registry) const {
   return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt);
 }
 
-/// Of a complete run: its own exit code, once its files are whole.
-int RunCommand::look_after(const std::filesystem::path& folder, const Registry& registry) const {
+/// For a complete run: checks its files and returns its exit code.
+int RunCommand::report_complete_run(const std::filesystem::path& folder, const Registry& registry) const {
   refuse_damaged_results(folder);
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
-  const auto scene = experiment ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  const auto scene = experiment ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (!errors.empty()) return report_errors(errors);
   const std::vector<std::string> again = write_rest(RunFolder::of_run(folder), *scene);
   if (!again.empty())
-    std::cerr << "warning: damaged or gone since, and written again: " << joined(again) << "\n";
-  std::cout << folder.string() << ": the run is complete; there is nothing to go on with\n";
-  return methods_ended_as_asked(folder) ? exit_done : exit_not_converged;
+    std::cerr << "warning: damaged or missing files were written again: " << joined(again) << "\n";
+  std::cout << folder.string() << ": the run is complete; there is nothing to resume\n";
+  return all_methods_succeeded(folder) ? exit_done : exit_not_converged;
 }
 
-/// Goes on with an interrupted run, in its folder.
+/// Resumes an interrupted run in its folder.
 int RunCommand::resume(const Registry& registry) const {
   const std::filesystem::path folder = resumed_;
-  if (is_complete(folder)) return look_after(folder, registry);
+  if (is_complete(folder)) return report_complete_run(folder, registry);
   std::string warning;
   Checkpoint checkpoint = checkpoint_to_resume(folder, warning);
   std::istringstream warnings(warning);
@@ -122,9 +122,9 @@ int RunCommand::resume(const Registry& registry) const {
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (scene && checkpoint.own_start)
-    begin_from(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
+    warm_start_scene(*experiment, *scene, checkpoint.first_level, *checkpoint.own_start, errors);
   if (!errors.empty()) return report_errors(errors);
   RunOptions options = options_;
   options.out = folder;
@@ -132,12 +132,12 @@ int RunCommand::resume(const Registry& registry) const {
   return run(*experiment, *scene, std::move(options), std::move(checkpoint));
 }
 
-/// Flows on from a state of a run, under an experiment that may be changed, in a folder of its own.
-int RunCommand::flow_on(const Registry& registry) const {
+/// Warm-starts a possibly changed experiment from a state of a run, in another folder.
+int RunCommand::warm_start(const Registry& registry) const {
   const std::filesystem::path folder = resumed_, config = folder / "config.yaml";
   RunOptions options = options_;
   if (options.methods.size() > 1)
-    throw std::runtime_error("--resume with --method: name one method, whose state is to flow on");
+    throw std::runtime_error("--resume with --method: name one method, whose state to start from");
   const SavedState state = saved_state(folder, options.methods.empty() ? "" : options.methods[0], level_);
   ConfigErrors errors;
   const auto before = read_experiment(config, {}, registry, errors);
@@ -145,20 +145,20 @@ int RunCommand::flow_on(const Registry& registry) const {
   const auto experiment = read_experiment(config, arguments_.overrides(), registry, errors);
   if (experiment) refuse_other_cloth(*before, *experiment, state.level, errors);
   if (errors.empty()) refuse_too_large(*experiment, arguments_.large_memory(), errors);
-  const auto scene = errors.empty() ? build_scene(*experiment, errors, TouchingStart::kept) : nullptr;
-  if (scene) begin_from(*experiment, *scene, state.level, state.x, errors);
+  const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
+  if (scene) warm_start_scene(*experiment, *scene, state.level, state.x, errors);
   if (!errors.empty()) return report_errors(errors);
   options.methods = {state.method};
   options.first_level = state.level;
-  options.begun_from =
+  options.warm_started_from =
       folder.string() + ", method " + state.method + ", level " + std::to_string(state.level);
   return run(*experiment, *scene, std::move(options), std::nullopt);
 }
 
-/// Runs an experiment, or goes on with one where the checkpoint says.
+/// Runs an experiment, or resumes it from a checkpoint.
 int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions options,
                     std::optional<Checkpoint> checkpoint) const {
-  stop_on_signals();  // what has been loaded until now is nothing to be saved
+  stop_on_signals();  // nothing to save before this point
   options.stop = [] { return stop_signal() != 0; };
   std::optional<LiveView> view;
   if (view_) {
@@ -173,7 +173,7 @@ int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions
   else
     std::cout << "results: " << (options.out / "results.json").string() << "\n";
   const bool stopped = stop_signal() != 0 || (view && view->stop_requested());
-  const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop is a Ctrl-C
+  const int as_signal = stop_signal() ? stop_signal() : SIGINT;  // the view's Stop counts as Ctrl-C
   if (keep_view_ && !stop_signal()) {
     std::cout << "the view stays at " << view->url() << " until Ctrl-C" << std::endl;
     while (!stop_signal()) std::this_thread::sleep_for(std::chrono::milliseconds(50));

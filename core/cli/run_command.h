@@ -5,28 +5,28 @@
 #include <string>
 
 #include "core/cli/config_arguments.h"
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/runner.h"
-#include "core/experiment/session.h"
 
 namespace drape {
 
-/// `drape run`: an experiment, or with --resume what is left of one, or another one from a state of it.
+/// `drape run`: runs an experiment; with --resume, resumes a run or warm-starts another one from its state.
 class RunCommand {
  public:
   explicit RunCommand(CLI::App& app);
   RunCommand(const RunCommand&) = delete;  // options write into it
 
   bool chosen() const { return command_->parsed(); }
-  /// After parsing: throws CLI::RequiredError where neither an experiment nor a run to resume is named.
+  /// After parsing: throws CLI::RequiredError if neither an experiment nor a run to resume is named.
   void check() const;
   /// Returns the exit code.
   int run(const Registry& registry) const;
 
  private:
   int run_config(const Registry& registry) const;
-  int look_after(const std::filesystem::path& folder, const Registry& registry) const;
+  int report_complete_run(const std::filesystem::path& folder, const Registry& registry) const;
   int resume(const Registry& registry) const;
-  int flow_on(const Registry& registry) const;
+  int warm_start(const Registry& registry) const;
   int run(const Experiment& experiment, const Scene& scene, RunOptions options,
           std::optional<Checkpoint> checkpoint) const;
 
@@ -34,7 +34,7 @@ class RunCommand {
   ConfigArguments arguments_;
   RunOptions options_;
   std::string resumed_;       // the results folder of --resume
-  std::optional<int> level_;  // of the state to flow on from
+  std::optional<int> level_;  // of the state to warm-start from
   bool view_ = false, keep_view_ = false;
   int threads_ = 0, port_ = 0;
 };

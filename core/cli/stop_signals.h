@@ -2,9 +2,9 @@
 
 namespace drape {
 
-/// From now on SIGINT and SIGTERM ask to stop; a second one ends the process at once.
+/// Makes SIGINT and SIGTERM request a stop; a second one ends the process at once.
 void stop_on_signals();
-/// The signal that asked to stop, 0 before there is one.
+/// The signal that requested the stop, 0 before.
 int stop_signal();
 
 }  // namespace drape

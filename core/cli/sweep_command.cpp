@@ -18,12 +18,12 @@ namespace drape {
 
 namespace {
 
-/// Whether every run ended as it is expected to.
+/// Whether every run ended as expected.
 int exit_code_of(const SweepFolder& folder) {
   return all_pass(table_rows(read_runs({folder.path()}))) ? exit_done : exit_not_converged;
 }
 
-/// What would be run, without a trace of it on disk.
+/// Lists the runs without writing anything.
 void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   std::printf("sweep %s: %zu runs in %s, each with %d thread%s\n", sweep.parameters.name.c_str(),
               sweep.runs.size(), folder.path().c_str(), threads, threads == 1 ? "" : "s");
@@ -34,16 +34,16 @@ void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
                 run.vertices, memory.bytes(run) / 1e9, run.settings.dump().c_str());
 }
 
-/// What goes wrong once a sweep's runs have begun, or may have, is no refusal any more.
-template <class Work>
-int begun(const SweepFolder& folder, const Work& work) {
+/// Performs an action of a sweep that has begun: errors no longer count as refused input.
+template <class Action>
+int begun(const SweepFolder& folder, const Action& action) {
   const auto end = [&](const std::string& cause) {
     std::cerr << "error: " << printable(cause) << "; the sweep in " << folder.path().string()
-              << " is broken off; the same command goes on with what is missing\n";
-    return exit_broken_off;
+              << " is aborted; the same command runs what is missing\n";
+    return exit_aborted;
   };
   try {
-    return work();
+    return action();
   } catch (const std::exception& error) {
     return end(reason_of(error));
   }
@@ -52,34 +52,36 @@ int begun(const SweepFolder& folder, const Work& work) {
 }  // namespace
 
 SweepCommand::SweepCommand(CLI::App& app)
-    : sweep_(app.add_subcommand("sweep", "run every variation of an experiment, and go on where it was cut")),
-      job_(app.add_subcommand("sweep-job", "what a sweep's jobs on a cluster run")->group("")) {
+    : sweep_(
+          app.add_subcommand("sweep", "run every variation of an experiment; resumes an interrupted sweep")),
+      job_(app.add_subcommand("sweep-job", "executed by a sweep's jobs on a cluster")->group("")) {
   sweep_->add_option("config", config_, "sweep file (YAML)")->required();
   sweep_->add_option("--out", out_, "the sweep's folder (default: results/NAME)");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
       ->check(CLI::IsMember({"local", "slurm"}));
-  sweep_->add_option("--workers", workers_, "runs at a time (default: as many as there are cores)")
+  sweep_->add_option("--workers", workers_, "concurrent runs (default: number of cores)")
       ->check(positive_integer);
   sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
       ->check(positive_integer);
-  sweep_->add_option("--memory-limit", memory_limit_, "GB: of all runs together; with slurm, of each")
+  sweep_
+      ->add_option("--memory-limit", memory_limit_, "memory of all runs together in GB; with slurm, of each")
       ->check(CLI::Range(1e-3, 1e9));
   sweep_->add_flag("--allow-memory", allow_memory_,
-                   "go on where a run may take more memory than this machine has");
-  sweep_->add_option("--most-levels", most_levels_, "of every run; an experiment that has fewer keeps them")
+                   "allow runs that may need more memory than this machine has");
+  sweep_->add_option("--most-levels", most_levels_, "largest number of levels of every run")
       ->check(positive_integer);
-  sweep_->add_flag("--dry-run", dry_run_, "check everything and list the runs, without running any");
-  sweep_->add_flag("--retry-failed", retry_failed_, "run those again that failed");
+  sweep_->add_flag("--dry-run", dry_run_, "validate and list the runs without running any");
+  sweep_->add_flag("--retry-failed", retry_failed_, "rerun failed runs");
   sweep_->add_flag("--report", report_, "write every run's report.html and its pictures");
   sweep_->add_flag("--wait", wait_, "with slurm: wait for the jobs and list the runs");
-  sweep_->add_flag("--cancel", cancel_, "with slurm: take the sweep's jobs off the queue");
+  sweep_->add_flag("--cancel", cancel_, "with slurm: cancel the sweep's jobs");
   sweep_
       ->add_option("--sbatch", sbatch_,
                    "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
       ->allow_extra_args(false);
 
   job_->add_option("folder", out_, "the sweep's folder")->required();
-  job_->add_option("--task", task_, "index of the run; without it, the runs' statuses are collected");
+  job_->add_option("--task", task_, "index of the run; without it, collect the runs' statuses");
   job_->add_option("--threads", threads_, "threads of the run")->check(positive_integer);
   job_->add_flag("--report", report_, "write the run's report");
 }
@@ -108,7 +110,7 @@ int SweepCommand::run(const Registry& registry) const {
     show_plan(*sweep, folder, threads);
     return exit_done;
   }
-  stop_on_signals();  // until here there is nothing to be stopped in good order
+  stop_on_signals();  // nothing to save before this point
   return engine_ == "slurm" ? run_slurm(*sweep, folder) : run_local(*sweep, folder);
 }
 
@@ -129,7 +131,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder) const
     const auto json = folder.refresh();
     std::cout << printable_lines(list_of_runs(json));
     if (stop_signal()) {
-      std::cerr << "stopped on request; the same command goes on with what is missing\n";
+      std::cerr << "stopped on request; the same command runs what is missing\n";
       return exit_by_signal + stop_signal();
     }
     return exit_code_of(folder);
@@ -171,7 +173,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const
       std::cerr << "no longer waiting; the jobs go on\n";
       return exit_by_signal + stop_signal();
     }
-    const auto json = folder.settle();
+    const auto json = folder.finalize();
     std::cout << printable_lines(list_of_runs(json));
     return exit_code_of(folder);
   });

@@ -9,7 +9,7 @@
 
 namespace drape {
 
-/// `drape sweep`, and `drape sweep-job`, which is what its jobs on a cluster run.
+/// `drape sweep`, and `drape sweep-job`, which its jobs on a cluster execute.
 class SweepCommand {
  public:
   explicit SweepCommand(CLI::App& app);

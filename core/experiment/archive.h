@@ -18,12 +18,12 @@ namespace drape {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
 
-/// Whether a value is its bytes.
+/// Whether a value can be copied as bytes.
 template <class T>
 inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// Values as bytes, one after another. A struct is what `fields(archive, value)`, found by its type, passes
-/// on, the same for writing and for reading.
+/// Serialises values to bytes. For a struct, an overload of `fields(archive, value)` passes its members on,
+/// the same for writing and reading.
 class ArchiveWriter {
  public:
   std::string bytes;
@@ -42,7 +42,7 @@ class ArchiveWriter {
     if constexpr (is_plain<T>)
       raw(&value, sizeof value);
     else
-      fields(*this, const_cast<T&>(value));  // which reads it alone
+      fields(*this, const_cast<T&>(value));  // which only reads it
   }
   void put(const std::string& text) {
     count(text.size());
@@ -82,9 +82,9 @@ class ArchiveWriter {
   }
 };
 
-/// Reads what ArchiveWriter wrote, from bytes that may be anything: memory grows only as fast as bytes are
-/// read, and every value is one of its type. An enum T needs a function `bool is_value(T)`, found by its
-/// type. Throws std::runtime_error where the bytes end too early or hold what no writer writes.
+/// Reads what ArchiveWriter wrote, from untrusted bytes: memory grows only as fast as bytes are read, and
+/// every value is valid for its type. An enum T needs an overload of `bool is_value(T)`. Throws
+/// std::runtime_error for truncated or invalid bytes.
 class ArchiveReader {
  public:
   explicit ArchiveReader(std::string_view bytes) : bytes_(bytes) {}
@@ -104,7 +104,7 @@ class ArchiveReader {
   void require(std::size_t size) const {
     if (size > bytes_.size()) throw std::runtime_error("it ends too early");
   }
-  /// Of things that take at least so many bytes each.
+  /// A number of items of at least `smallest` bytes each.
   std::size_t count(std::size_t smallest) {
     std::uint64_t n = 0;
     raw(&n, sizeof n);
@@ -126,7 +126,7 @@ class ArchiveReader {
       fields(*this, value);
     }
   }
-  /// A bool that is neither 0 nor 1 in memory is undefined behaviour as soon as it is looked at.
+  /// A bool whose byte is neither 0 nor 1 is undefined behaviour.
   void get(bool& value) {
     std::uint8_t byte = 0;
     raw(&byte, sizeof byte);

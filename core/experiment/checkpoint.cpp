@@ -5,10 +5,10 @@
 
 namespace drape {
 
-/// An outcome that has no word is none.
+/// An outcome is valid if it has a name.
 bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
 
-// What a checkpoint's structs consist of. Whoever adds a field counts `format` up.
+// Fields of a checkpoint's structs. Increment `format` with every change.
 
 template <class A>
 void fields(A& a, LoadSteppingState& s) {
@@ -76,23 +76,23 @@ void fields(A& a, MethodState& s) {
 }
 
 template <class A>
-void fields(A& a, Work& w) {
+void fields(A& a, Cost& w) {
   a(w.seconds, w.iterations, w.flops);
 }
 
 template <class A>
-void fields(A& a, Frame& f) {
-  a(f.work, f.x);
+void fields(A& a, Snapshot& f) {
+  a(f.cost, f.x);
 }
 
 template <class A>
-void fields(A& a, Frames::Memory& m) {
-  a(m.spacing, m.seen, m.kept);
+void fields(A& a, SnapshotRecorder::State& m) {
+  a(m.spacing, m.seen, m.snapshots);
 }
 
 template <class A>
-void fields(A& a, LevelFrames& f) {
-  a(f.method, f.file, f.level, f.work, f.iterations, f.energies, f.last, f.converged, f.checksum);
+void fields(A& a, LevelSnapshots& f) {
+  a(f.method, f.file, f.level, f.cost, f.iterations, f.energies, f.last, f.converged, f.checksum);
 }
 
 template <class A>
@@ -102,12 +102,12 @@ void fields(A& a, RecordedState& s) {
 
 template <class A>
 void fields(A& a, RecorderState& s) {
-  a(s.results, s.method, s.sound, s.sound_of_method, s.states, s.frames, s.measured, s.spent, s.last,
-    s.overhead, s.steps_bytes, s.log_bytes);
+  a(s.results, s.method, s.intersection_free, s.method_intersection_free, s.states, s.snapshots, s.measured,
+    s.spent, s.last, s.overhead, s.steps_bytes, s.log_bytes);
 }
 
 template <class A>
-void fields(A& a, FileMark& m) {
+void fields(A& a, FileFingerprint& m) {
   a(m.path, m.bytes, m.checksum);
 }
 
@@ -185,7 +185,7 @@ Checkpoint decode_body(std::string_view bytes) {
   } catch (const std::runtime_error& fault) {
     throw std::runtime_error(std::string("is damaged: ") + fault.what());
   }
-  if (!reader.at_end()) throw std::runtime_error("is damaged: it goes on after its end");
+  if (!reader.at_end()) throw std::runtime_error("is damaged: it has data after its end");
   return checkpoint;
 }
 
@@ -216,8 +216,8 @@ Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& war
   if (faults.empty())
     throw std::runtime_error(folder.string() +
                              ": holds no checkpoint of a run; give the results folder of one that was "
-                             "interrupted, or run the experiment anew");
-  throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment anew, as in drape run " +
+                             "interrupted, or run the experiment again");
+  throw std::runtime_error(faults + "; no checkpoint is whole: run the experiment again, as in drape run " +
                            (folder / "config.yaml").string() + " --out ANOTHER");
 }
 

@@ -11,51 +11,50 @@
 
 namespace drape {
 
-/// What was in a file when a run read it.
-struct FileMark {
+/// Size and checksum of a file when a run read it.
+struct FileFingerprint {
   std::string path;
   std::uint64_t bytes = 0;
   std::uint32_t checksum = 0;
 };
 
-/// The whole state of a run: all that it takes to go on and to end with the same bits.
+/// The complete state of a run: resuming from it gives the same results, bit for bit.
 struct Checkpoint {
-  std::string program;               ///< drape's version and commit
-  std::string config;                ///< what config.yaml holds
-  std::vector<FileMark> files;       ///< that the config names
-  std::vector<std::string> methods;  ///< of the run, in order
-  int method = 0;                    ///< the one under way, an index of `methods`
-  bool all_converged = true;         ///< in the methods before it
+  std::string program;                 ///< drape's version and commit
+  std::string config;                  ///< contents of config.yaml
+  std::vector<FileFingerprint> files;  ///< files that the config names
+  std::vector<std::string> methods;    ///< in the run's order
+  int method = 0;                      ///< index of the current method
+  bool all_converged = true;           ///< all methods before it
   MethodState state;
-  int first_level = 0;                 ///< where every method begins
-  std::optional<Positions> own_start;  ///< on that level, where it is not the scene's
+  int first_level = 0;                 ///< first level of every method
+  std::optional<Positions> own_start;  ///< initial state of a warm start, on that level
   RecorderState recorder;
 };
 
-/// As bytes, with a checksum; nothing of it depends on what the file is called.
+/// The checkpoint as bytes, with a checksum.
 std::string encode(const Checkpoint& checkpoint);
-/// Throws std::runtime_error that says what is wrong with the bytes.
+/// The inverse of `encode`. Throws std::runtime_error for invalid bytes.
 Checkpoint decode(std::string_view bytes);
-/// What `decode` does once the checksum fits: the bytes after the header, from whoever wrote them. Every
-/// value is one of its type afterwards; whether it makes sense for an experiment is another question
-/// (require_fitting).
+/// `decode` without header and checksum, for untrusted bytes. Every value is valid for its type;
+/// require_fitting checks it against an experiment.
 Checkpoint decode_body(std::string_view bytes);
-/// How many bytes `encode` puts before those.
+/// Size of the header [bytes].
 extern const std::size_t checkpoint_header_size;
 
-/// Throws std::runtime_error unless every index and size in it is one of the experiment's scene, and every
-/// position is finite.
+/// Throws std::runtime_error unless every index and size fits the experiment's scene and every position is
+/// finite.
 void require_fitting(const Checkpoint& checkpoint, const Experiment& experiment, const Scene& scene);
 
-/// Saves the state of the run in `folder`, on the disk before it returns. The last one saved is kept as well,
-/// and at any moment one of the two is whole. Throws WriteError.
+/// Saves the checkpoint in the run's `folder` and flushes it to the disk. The previous checkpoint stays: one
+/// of the two is complete at any moment. Throws WriteError.
 void save_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// The newest whole checkpoint of the run in `folder`; `warning` says why an older one, if it is that. Throws
-/// std::runtime_error where there is none.
+/// The newest complete checkpoint of the run in `folder`; `warning` explains a fall-back to the previous one.
+/// Throws std::runtime_error if there is none.
 Checkpoint load_checkpoint(const std::filesystem::path& folder, std::string& warning);
 
-/// Of a run that has ended.
+/// Removes the checkpoints of a complete run.
 void remove_checkpoints(const std::filesystem::path& folder);
 
 }  // namespace drape

@@ -1,5 +1,5 @@
-// Whether the values of a checkpoint make sense for the experiment that goes on from it. The checksum finds
-// what happens to files; this finds what a file says that another program wrote, or another version of drape.
+// Whether a checkpoint's values fit the experiment. The checksum detects damage; these checks detect files
+// that another program or another version of drape wrote.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Each greater than the one before it.
+/// Strictly ascending.
 template <class Values, class Key>
 bool ascends(const Values& values, const Key& key) {
   return std::adjacent_find(values.begin(), values.end(),
@@ -36,7 +36,7 @@ class Check {
   static void require(bool fits, const std::string& what) {
     if (!fits)
       throw std::runtime_error("the checkpoint does not fit its experiment: " + what +
-                               "; run the experiment anew");
+                               "; run the experiment again");
   }
   bool is_level(int level) const { return level >= 0 && level < scene_.hierarchy.level_count(); }
 
@@ -145,14 +145,15 @@ class Check {
                                  entries[s.method]["levels"].size() == c_.state.finished.size()),
             "results.json as it was, of the method under way");
     for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
-    require(s.frames.spacing > 0 && s.frames.seen >= 0, "the frames");
+    require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))
-      for (const Frame& frame : s.frames.kept) positions(frame.x, c_.state.level, "the frames");
-    for (const LevelFrames& level : s.measured) {
-      positions(level.last, level.level, "the frames");
-      require(level.work.size() == level.iterations.size() && level.work.size() == level.energies.size() &&
-                  !level.work.empty(),
-              "the frames");
+      for (const Snapshot& snapshot : s.snapshots.snapshots)
+        positions(snapshot.x, c_.state.level, "the snapshots");
+    for (const LevelSnapshots& level : s.measured) {
+      positions(level.last, level.level, "the snapshots");
+      require(level.cost.size() == level.iterations.size() && level.cost.size() == level.energies.size() &&
+                  !level.cost.empty(),
+              "the snapshots");
     }
   }
 

@@ -10,8 +10,7 @@ namespace drape {
 
 namespace {
 
-/// The value of a metric that a measure is, or, of an overlap, what it lacks of the whole; the energy gap
-/// needs none.
+/// The metric value behind each measure; an overlap counts as 1 − overlap. The energy gap needs no metric.
 constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit", "silhouette_overlap"};
 static_assert(metric_values.size() + 1 == error_measures.size());
 
@@ -55,25 +54,25 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
 }
 
 nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelResult& result,
-                                       const std::vector<Frame>& frames, const Work& before,
-                                       const Work& spent) {
-  LevelFrames level;
+                                       const std::vector<Snapshot>& snapshots, const Cost& before,
+                                       const Cost& spent) {
+  LevelSnapshots level;
   level.method = method;
   level.level = result.level;
-  level.file = "frames/" + method + "_l" + std::to_string(result.level) + ".bin";
+  level.file = "snapshots/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
   level.converged = has_converged(result.outcome);
   const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
   nlohmann::ordered_json entry = {{"file", level.file}};
-  for (const Frame& frame : frames) {
-    level.work.push_back(before + frame.work);
-    level.iterations.push_back(frame.work.iterations);
-    level.energies.push_back(energy_on_finest(scene_, weights, result.level, frame.x));
-    entry["iterations"].push_back(frame.work.iterations);
-    entry["seconds"].push_back(spent.seconds + frame.work.seconds);
+  for (const Snapshot& snapshot : snapshots) {
+    level.cost.push_back(before + snapshot.cost);
+    level.iterations.push_back(snapshot.cost.iterations);
+    level.energies.push_back(energy_on_finest(scene_, weights, result.level, snapshot.x));
+    entry["iterations"].push_back(snapshot.cost.iterations);
+    entry["seconds"].push_back(spent.seconds + snapshot.cost.seconds);
   }
-  make_folder(folder_.file("frames"));
-  level.checksum = write_frames(folder_.file(level.file), frames);
+  make_folder(folder_.file("snapshots"));
+  level.checksum = write_snapshots(folder_.file(level.file), snapshots);
   sync_to_disk(folder_.file(level.file));
   levels_.push_back(std::move(level));
   return entry;
@@ -88,9 +87,9 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
   text += "\n";
   std::optional<ErrorTarget> standard;
   if (reference) standard = {*reference, scene_.models.back()->value(*reference)};
-  for (const LevelFrames& level : levels_) {
+  for (const LevelSnapshots& level : levels_) {
     std::optional<ErrorTarget> own;
-    for (const LevelFrames& other : levels_)
+    for (const LevelSnapshots& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
         own = {other.last, other.energies.back()};
     const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
@@ -98,12 +97,12 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
     std::vector<Positions> states;
     try {
-      states = read_frames(folder_.file(level.file), vertices, level.checksum);
+      states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
     } catch (const std::exception& error) {
-      fault(error.what());  // they are nowhere else
+      fault(error.what());  // there is no copy of them
       continue;
     }
-    if (states.size() != level.work.size()) continue;
+    if (states.size() != level.cost.size()) continue;
     states.back() = level.last;
     for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
       const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
@@ -111,9 +110,9 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
         return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
       };
       const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
-      const Work& work = level.work[k];
+      const Cost& cost = level.cost[k];
       text += level.method + "," + std::to_string(level.level) + "," + std::to_string(level.iterations[k]) +
-              "," + number(work.seconds) + "," + std::to_string(work.iterations) + "," + number(work.flops) +
+              "," + number(cost.seconds) + "," + std::to_string(cost.iterations) + "," + number(cost.flops) +
               "," + std::to_string(vertices) + cells(to_own) + cells(to_standard) + "\n";
     }
   }

@@ -19,218 +19,241 @@ void LoopParameters::declare(Declaration<LoopParameters>& d) {
       .unit("m")
       .at_least(-bounds::largest_length)
       .at_most(bounds::largest_length)
-      .meaning("x0, y0, x1, y1, … around the outline")
+      .description("x0, y0, x1, y1, … around the outline")
       .required();
 }
 
 void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("shape", &ClothParameters::shape)
       .choices({"square", "rectangle", "disc", "polygon", "file"})
-      .meaning("pattern, flat in z = 0 with a corner (a disc: its centre) at the origin, or a mesh file");
+      .description(
+          "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, or a mesh file");
   d.add("side", &ClothParameters::side)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("side of a square");
+      .description("side of a square");
   d.add("size", &ClothParameters::size)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("width and height of a rectangle");
+      .description("width and height of a rectangle");
   d.add("radius", &ClothParameters::radius)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
-      .meaning("radius of a disc");
-  d.add_sections("loops", &ClothParameters::loops).meaning("a polygon's outline, then its holes");
+      .description("radius of a disc");
+  d.add_sections("loops", &ClothParameters::loops).description("outline of a polygon, then its holes");
   d.add("file", &ClothParameters::file)
       .path()
-      .meaning("OBJ, OFF or PLY with the rest shape, relative to this file");
+      .description("mesh of the rest shape (OBJ, OFF or PLY), relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
-      .meaning("of a square or rectangle; discs and polygons are Delaunay meshes");
+      .description("triangulation of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
       .at_least(3)
       .at_most(bounds::most_vertices)
-      .meaning("about how many vertices the coarsest level has");
+      .description("approximate number of vertices of the coarsest level");
   d.add("columns", &ClothParameters::columns)
       .at_least(0)
       .at_most(bounds::most_vertices)
-      .meaning("vertices along the width of a grid; 0 takes it from `vertices`");
+      .description("number of vertices along the width of a grid; 0 derives it from `vertices`");
   d.add("rows", &ClothParameters::rows)
       .at_least(0)
       .at_most(bounds::most_vertices)
-      .meaning("vertices along the height of a grid; 0 takes it from `vertices`");
+      .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
   d.add("seed", &ClothParameters::seed)
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning("of a random triangulation");
+      .description("seed of a random triangulation");
 }
 
 void StartParameters::declare(Declaration<StartParameters>& d) {
   d.add("file", &StartParameters::file)
       .path()
-      .meaning(
-          "a mesh with the coarsest level's triangles, in place of the rest shape; split at midpoints on "
-          "finer levels");
+      .description(
+          "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels "
+          "split "
+          "it at edge midpoints");
   d.add("scale", &StartParameters::scale)
       .at_least(-bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .meaning("factors on the rest shape's x, y, z");
+      .description("scale factors along x, y, z, applied first");
   d.add("rotate", &StartParameters::rotate)
-      .unit("°")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("then turned about x, y, z, in this order");
+      .description("rotation about x, then y, then z, applied after `scale`");
   d.add("translate", &StartParameters::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("then moved");
+      .description("translation, applied last");
   d.add("perturbation", &StartParameters::perturbation)
       .unit("m")
       .at_least(0)
       .at_most(bounds::largest_length)
-      .meaning("amplitude of smooth noise normal to the pattern, the same on every level; pins stay exact");
+      .description(
+          "amplitude of smooth noise normal to the pattern, equal on every level; pinned vertices have none");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("wavelength of the noise");
-  d.add("seed", &StartParameters::seed).at_least(0).at_most(bounds::largest_int).meaning("of the noise");
+      .description("wavelength of the noise");
+  d.add("seed", &StartParameters::seed)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description("seed of the noise");
 }
 
 namespace {
 
 /// The parameters that pins and handles share.
-template <class Place>
-void declare_place(Declaration<Place>& d) {
-  const auto member = [](auto PlaceParameters::*m) {
-    return static_cast<std::decay_t<decltype(std::declval<Place>().*m)> Place::*>(m);
+template <class Condition>
+void declare_selection(Declaration<Condition>& d) {
+  const auto member = [](auto VertexSelection::*m) {
+    return static_cast<std::decay_t<decltype(std::declval<Condition>().*m)> Condition::*>(m);
   };
-  d.add("region", member(&PlaceParameters::region))
+  d.add("region", member(&VertexSelection::region))
       .choices({"nearest", "ball", "box", "border", "vertices"})
-      .meaning(
-          "which vertices: the one of the coarsest level nearest to `point`, those within `radius` of it, "
-          "those in a box, the border, or by index on the coarsest level");
-  d.add("point", member(&PlaceParameters::point))
+      .description(
+          "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
+          "within "
+          "`radius` of `point`, all in a box, the boundary, or coarsest-level indices");
+  d.add("point", member(&VertexSelection::point))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("of nearest and ball, in the rest shape");
-  d.add("radius", member(&PlaceParameters::radius))
+      .description("point of `nearest`, centre of `ball`, in the rest shape");
+  d.add("radius", member(&VertexSelection::radius))
       .unit("m")
       .at_least(0)
       .at_most(bounds::largest_coordinate)
-      .meaning("of a ball");
-  d.add("lower", member(&PlaceParameters::lower))
+      .description("radius of `ball`");
+  d.add("lower", member(&VertexSelection::lower))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("corner of a box, in the rest shape");
-  d.add("upper", member(&PlaceParameters::upper))
+      .description("lower corner of `box`, in the rest shape");
+  d.add("upper", member(&VertexSelection::upper))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("opposite corner of a box");
-  d.add("vertices", member(&PlaceParameters::vertices))
+      .description("upper corner of `box`, in the rest shape");
+  d.add("vertices", member(&VertexSelection::vertices))
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning("indices, from 0");
-  d.add("move", member(&PlaceParameters::move))
+      .description("indices on the coarsest level, from 0");
+  d.add("translate", member(&VertexSelection::translate))
+      .formerly("move")
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("to the rest place, after `turn`, moved by this; without both, to where the start puts them");
-  d.add("turn", member(&PlaceParameters::turn))
-      .unit("°")
+      .description(
+          "translation from the rest position to the target, applied after `rotate`; without both, the "
+          "target "
+          "is the start position");
+  d.add("rotate", member(&VertexSelection::rotate))
+      .formerly("turn")
+      .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("to the rest place turned about x, y, z, in this order, through `about`");
-  d.add("about", member(&PlaceParameters::about))
+      .description("rotation of the rest position about x, then y, then z through `centre`");
+  d.add("centre", member(&VertexSelection::centre))
+      .formerly("about")
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("centre of `turn`, in the rest shape");
+      .description("centre of `rotate`, in the rest shape");
 }
 
 }  // namespace
 
-void PinParameters::declare(Declaration<PinParameters>& d) { declare_place(d); }
+void PinParameters::declare(Declaration<PinParameters>& d) { declare_selection(d); }
 
 void HandleParameters::declare(Declaration<HandleParameters>& d) {
-  declare_place(d);
+  declare_selection(d);
   d.add("stiffness", &HandleParameters::stiffness)
       .unit("1/s²")
       .at_least(0)
       .at_most(bounds::largest_modulus)
-      .meaning("κ_B of the pull κ_B/2 m ‖x − x̃‖²; by default the number of the membrane modulus")
+      .description(
+          "κ_B of the penalty κ_B/2 m ‖x − x̃‖²; by default the numerical value of the membrane modulus")
       .source("supplement, section 4");
 }
 
 void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
   d.add("method", &ReferenceParameters::method)
-      .meaning(
-          "method whose finest state it is; `lowest` takes, of all methods' finest states that have "
-          "converged, "
-          "the one of lowest energy");
+      .description(
+          "method whose finest state is the reference; `lowest` chooses the converged finest state of lowest "
+          "energy");
   d.add("force_tolerance", &ReferenceParameters::force_tolerance)
       .at_least(0)
       .at_most(1e12)
-      .meaning("to which that state is solved further, once all methods have ended; 0 leaves it as it is");
+      .description("force tolerance to which the reference is solved after all methods; 0 takes it as it is");
   d.add("file", &ReferenceParameters::file)
       .path()
-      .meaning(
-          "in place of a method: a mesh on the finest level, or the folder of a run that had a reference");
+      .description(
+          "in place of `method`: a mesh of the finest level, or the folder of a run with a reference");
 }
 
 void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
-  d.add("name", &ExperimentParameters::name).required().meaning("names the results folder and the report");
-  d.add("description", &ExperimentParameters::description).meaning("one sentence for the report");
+  d.add("name", &ExperimentParameters::name)
+      .required()
+      .description("names the results folder and the report");
+  d.add("description", &ExperimentParameters::description).description("one sentence for the report");
   d.add("table1_scene", &ExperimentParameters::table1_scene)
-      .meaning("block of the supplement's Table 1 that the report sets beside the result");
-  d.add_section("cloth", &ExperimentParameters::cloth).meaning("the coarsest level");
+      .description("block of the supplement's Table 1 that the report compares with");
+  d.add_section("cloth", &ExperimentParameters::cloth).description("the coarsest level");
   d.add("levels", &ExperimentParameters::levels)
       .at_least(1)
       .at_most(10)
-      .meaning("each 1→4 finer than the last");
-  d.add_section("material", &ExperimentParameters::material).meaning("of the cloth");
-  d.add_section("start", &ExperimentParameters::start).meaning("where the cloth starts");
+      .description("number of levels; each splits every triangle of the last into four");
+  d.add_section("material", &ExperimentParameters::material).description("material of the cloth");
+  d.add_section("start", &ExperimentParameters::start)
+      .description("initial state: the rest shape or a file, transformed");
   d.add_sections("pins", &ExperimentParameters::pins)
-      .meaning("vertices held in place (hard positions); what they hold they bring there");
+      .description("Dirichlet boundary conditions: vertices at prescribed positions (hard positions)");
   d.add_sections("handles", &ExperimentParameters::handles)
-      .meaning("vertices pulled to places (soft positions)");
+      .description("penalty boundary conditions: vertices on springs to their targets (soft positions)");
   d.add_section("schedule", &ExperimentParameters::schedule)
-      .meaning(
-          "conditions that change while a level is solved that begins at the scene's start; later levels "
-          "have "
-          "the last ones");
-  d.add_node("energies", &ExperimentParameters::energies).plugin("energy").required().meaning("summed");
-  d.add_node("refiner", &ExperimentParameters::refiner).plugin("refiner").meaning("loop if not given");
+      .description(
+          "load stepping on a level that begins from the initial state; later levels are solved under the "
+          "final loads");
+  d.add_node("energies", &ExperimentParameters::energies)
+      .plugin("energy")
+      .required()
+      .description("energies; their sum is minimised");
+  d.add_node("refiner", &ExperimentParameters::refiner)
+      .plugin("refiner")
+      .description("refinement scheme; loop by default");
   d.add_node("contact", &ExperimentParameters::contact)
       .plugin("contact")
       .or_list()
-      .meaning("one or a list of them; none if not given");
+      .description("contact model or a list of them; none by default");
   d.add_section("newton", &ExperimentParameters::newton)
-      .meaning("of every method, where it says nothing else");
+      .description("Newton parameters of every method; a method's own take precedence");
   d.add_node("methods", &ExperimentParameters::methods)
       .required()
-      .meaning("a map: the method's name, then its solver; without `type`, the name is the solver's");
+      .description("map from method names to solvers; `type` defaults to the name");
   d.add_node("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
-      .meaning("all that there are if not given");
+      .description("metrics to evaluate; all by default");
   d.add_section("reference", &ExperimentParameters::reference)
-      .or_word("method")
-      .meaning(
-          "what errors are measured against, beside each method's own finest state; a method's name, "
-          "or `lowest`, is enough");
-  d.add("frames", &ExperimentParameters::frames)
+      .shorthand("method")
+      .description(
+          "state that errors are measured against, beside each method's own finest one; the name of a method "
+          "or `lowest` is a shorthand");
+  d.add("snapshots", &ExperimentParameters::snapshots)
+      .formerly("frames")
       .at_least(0)
       .at_most(1000)
-      .meaning("states a level that are kept on the way and whose errors are measured; 0 for none");
-  d.add_choice("verify", &ExperimentParameters::verify,
-               {{"every_level", Verify::every_level}, {"every_step", Verify::every_step}})
-      .meaning("when intersections are counted, by exact predicates where the shapes are meshes");
+      .description("number of intermediate states per level to record and to measure errors of");
+  d.add_choice(
+       "check_intersections", &ExperimentParameters::check_intersections,
+       {{"every_level", IntersectionCheck::every_level}, {"every_step", IntersectionCheck::every_step}})
+      .formerly("verify")
+      .description("when to count intersections, by exact predicates between meshes");
 }
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
@@ -265,7 +288,7 @@ void fill_in(ConfigNode& over, const ConfigNode& base) {
     bool there = false;
     for (auto& [own_key, own_value] : over.entries)
       if (own_key == key) fill_in(own_value, value), there = true;
-    if (!there) over.entries.emplace_back(key, value), over.key_places.push_back(base.key_places[i]);
+    if (!there) over.entries.emplace_back(key, value), over.key_locations.push_back(base.key_locations[i]);
   }
 }
 
@@ -377,7 +400,7 @@ class Maker {
   void check_reference(const std::set<std::string>& methods) {
     const ReferenceParameters& reference = e_.parameters.reference;
     const auto refuse = [&](const std::string& what) {
-      errors_.push_back({e_.place_of("reference"), "\"reference\" " + what});
+      errors_.push_back({e_.location_of("reference"), "\"reference\" " + what});
     };
     const bool lowest = reference.method == ReferenceParameters::lowest;
     if (!reference.method.empty() && !reference.file.empty())

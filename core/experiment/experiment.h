@@ -25,7 +25,7 @@ struct LoopParameters {
   static void declare(Declaration<LoopParameters>& d);
 };
 
-/// The flat pattern, or the mesh file, that the coarsest level is.
+/// The coarsest level: a flat pattern or a mesh file.
 struct ClothParameters {
   std::string shape = "square";
   double side = 1;
@@ -40,7 +40,7 @@ struct ClothParameters {
   static void declare(Declaration<ClothParameters>& d);
 };
 
-/// Where the cloth starts: rest, or the file's shape → scaled → rotated → moved.
+/// The initial state: the rest shape, or that of a file, scaled, then rotated, then translated.
 struct StartParameters {
   std::string file;
   Eigen::Vector3d scale{1, 1, 1};
@@ -49,62 +49,63 @@ struct StartParameters {
   double perturbation = 0;
   double perturbation_wavelength = 0.25;
   int seed = 1;
-  /// Where a vertex with this rest place starts; `noise` is across the pattern [m].
-  Eigen::Vector3d place(const Eigen::Vector3d& rest, double noise = 0) const;
+  /// The initial position of a vertex; `noise` is normal to the pattern [m].
+  Eigen::Vector3d transformed(const Eigen::Vector3d& rest, double noise = 0) const;
   static void declare(Declaration<StartParameters>& d);
 };
 
-/// Which vertices, by a region of the rest shape that means the same on every level, and where they belong.
-struct PlaceParameters {
+/// A boundary condition's vertices, by a region of the rest shape that means the same on every level, and the
+/// rigid motion that gives their targets.
+struct VertexSelection {
   std::string region = "nearest";
   Eigen::Vector3d point{0, 0, 0};
   double radius = 0;
   Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
   std::vector<int> vertices;
-  std::optional<Eigen::Vector3d> move;
-  std::optional<Eigen::Vector3d> turn;
-  Eigen::Vector3d about{0, 0, 0};
+  std::optional<Eigen::Vector3d> translate;
+  std::optional<Eigen::Vector3d> rotate;
+  Eigen::Vector3d centre{0, 0, 0};
 
-  bool moved() const { return move || turn; }
-  /// Of a vertex with this rest place: turned, then moved.
-  Eigen::Vector3d place(const Eigen::Vector3d& rest) const;
+  bool has_transform() const { return translate || rotate; }
+  /// The target of a vertex with this rest position: rotated about `centre`, then translated.
+  Eigen::Vector3d target(const Eigen::Vector3d& rest) const;
 };
 
-/// Hard positions: vertices held in place on every level.
-struct PinParameters : PlaceParameters {
+/// Dirichlet boundary condition (hard positions): the vertices stay at their targets on every level.
+struct PinParameters : VertexSelection {
   static void declare(Declaration<PinParameters>& d);
 };
 
-/// Soft positions: vertices pulled to places, as by a hand.
-struct HandleParameters : PlaceParameters {
+/// Penalty boundary condition (soft positions): springs pull the vertices to their targets.
+struct HandleParameters : VertexSelection {
   std::optional<double> stiffness;
   static void declare(Declaration<HandleParameters>& d);
 };
 
-/// How a keyed value goes from one key to the next.
-enum class Between { linear, log, jump };
+/// How a keyed value goes from one time to the next.
+enum class KeyInterpolation { linear, log, step };
 
 /// One parameter of the experiment over pseudo-time.
 struct KeyParameters {
-  std::string set;
-  std::vector<double> at;
-  ConfigNode to;
-  Between between = Between::linear;
+  std::string parameter;
+  std::vector<double> times;
+  ConfigNode values;
+  KeyInterpolation interpolation = KeyInterpolation::linear;
   static void declare(Declaration<KeyParameters>& d);
 };
 
-/// Load stepping: parameters that change while a level is solved.
+/// Load stepping: parameters that change in increments while a level is solved.
 struct ScheduleParameters {
   double duration = 0;
   int steps = 1;
-  bool settle = false;
+  bool equilibrate = false;
   std::vector<KeyParameters> keys;
   static void declare(Declaration<ScheduleParameters>& d);
 };
 
-/// The state that the methods' errors are measured against, beside each method's own finest one.
+/// The state that errors are measured against, beside each method's own finest one.
 struct ReferenceParameters {
-  /// In place of a method's name: of the finest states that have converged, that of lowest energy.
+  /// In place of a method's name: the converged finest state of lowest energy.
   static constexpr const char* lowest = "lowest";
   std::string method;
   double force_tolerance = 0;
@@ -112,8 +113,8 @@ struct ReferenceParameters {
   static void declare(Declaration<ReferenceParameters>& d);
 };
 
-/// When exact predicates count the intersections.
-enum class Verify { every_level, every_step };
+/// How often exact predicates count the intersections.
+enum class IntersectionCheck { every_level, every_step };
 
 /// A whole experiment file.
 struct ExperimentParameters {
@@ -133,66 +134,66 @@ struct ExperimentParameters {
   ConfigNode methods;
   std::vector<ConfigNode> metrics;
   ReferenceParameters reference;
-  int frames = 8;
-  Verify verify = Verify::every_level;
+  int snapshots = 8;
+  IntersectionCheck check_intersections = IntersectionCheck::every_level;
   static void declare(Declaration<ExperimentParameters>& d);
 };
 
-/// An experiment that has been read and checked, with its plugins made but nothing built yet.
+/// A validated experiment with its plugins, before any level is built.
 struct Experiment {
   ExperimentParameters parameters;
-  ConfigNode source;    ///< as written, with places
+  ConfigNode source;    ///< as written, with locations
   ConfigNode resolved;  ///< with every parameter of every plugin in it
   std::vector<NamedEnergy> energies;
   std::shared_ptr<Refiner> refiner;
   std::vector<std::shared_ptr<ContactModel>> contacts;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
-  const Registry* registry = nullptr;  ///< that the plugins are from; for those of a schedule's conditions
+  const Registry* registry = nullptr;  ///< of the plugins; a schedule makes further ones
 
-  /// The solver of one of the methods. Throws std::logic_error where there is no such method.
+  /// The solver of a method. Throws std::logic_error for an unknown method.
   const Solver& solver_of(const std::string& method) const;
-  /// Where a key of the file is set; without it, where the file begins.
-  Location place_of(const std::string& key) const;
+  /// The location of a key's value in the file; without the key, the file's beginning.
+  Location location_of(const std::string& key) const;
 };
 
-/// An error unless the name, of an experiment, a method or a sweep, can be one of files and a cell of a
-/// table.
+/// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);
 
-/// Values given beside the file, `key.path=value`, in order.
+/// Values from the command line, `key.path=value`, in order.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 
-/// Reads an experiment, collecting everything that is wrong with it; empty if anything is.
+/// Reads and validates an experiment; empty, with every error appended, if it is not valid.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
                                           const Registry& registry, ConfigErrors& errors);
 
-/// The same from a file's map that has been read already, overrides and all.
+/// The same from a map that has been read already, overrides included.
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
 
-/// The levels, models and starts of an experiment. Not movable: models refer to the hierarchy.
+/// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;
-  std::vector<NamedEnergy> energies;  ///< that the models were bound from, handles among them
+  std::vector<NamedEnergy> energies;  ///< of the models, handles included
   std::vector<std::unique_ptr<LevelModel>> models;
   std::vector<Positions> starts;
-  std::optional<Positions> reference;      ///< on the finest level, where the experiment names a file with it
-  std::unique_ptr<LoadStepping> schedule;  ///< null where the experiment has none
+  std::optional<Positions> reference;      ///< on the finest level, if the experiment names its file
+  std::unique_ptr<LoadStepping> schedule;  ///< null without one
 
   Problem problem() const;
 };
 
-/// What becomes of a start that touches something.
-enum class TouchingStart { refused, kept };
+/// Whether an initial state that intersects something is refused.
+enum class IntersectingStart { refused, allowed };
 
-/// Builds the scene; null, with every fault of the mesh, every pin that holds nothing and what the start
-/// touches appended, if it cannot be built. A touching start is `kept` for repair_start alone.
+/// Builds the scene; null, with every fault of the mesh, of pins and of the initial state appended, if that
+/// is not possible. An intersecting start is `allowed` for repair_start and warm starts alone.
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
-                                   TouchingStart touching = TouchingStart::refused);
+                                   IntersectingStart intersecting = IntersectingStart::refused);
 
-/// Contact keeps apart what is apart: a start that touches something is refused, and says where.
-void refuse_touching_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
-                           ConfigErrors& errors);
+/// Appends an error for every intersection of an initial state: contact only preserves intersection-free
+/// states.
+void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
+                               ConfigErrors& errors);
 
 }  // namespace drape

@@ -16,7 +16,7 @@
 namespace drape {
 
 FileLock::FileLock(const std::filesystem::path& file) : name_(file) {
-  // Without O_CLOEXEC, so that children hold it.
+  // Without O_CLOEXEC: child processes inherit the lock.
   file_ = open(file.c_str(), O_RDWR | O_CREAT, 0644);
   if (file_ < 0) throw std::runtime_error(file.string() + ": cannot be made (" + std::strerror(errno) + ")");
 }

@@ -5,17 +5,17 @@
 
 namespace drape {
 
-/// A file that one process at a time holds. The processes it starts hold it too, so that it is free only when
-/// the last of them has ended, however that came.
+/// A file that one process at a time locks. Its child processes inherit the lock, which is released when the
+/// last of them has exited.
 class FileLock {
  public:
-  /// Makes the file if need be. Throws std::runtime_error where that cannot be.
+  /// Creates the file if necessary. Throws std::runtime_error if that fails.
   explicit FileLock(const std::filesystem::path& file);
   ~FileLock();
   FileLock(const FileLock&) = delete;
   FileLock& operator=(const FileLock&) = delete;
 
-  bool acquire(double patience);  ///< whether it was free within so many seconds
+  bool acquire(double patience);  ///< waits up to this many seconds; whether it succeeded
   std::string holder() const;     ///< "process 17 on host"
 
  private:

@@ -6,7 +6,7 @@ namespace drape {
 
 namespace {
 
-/// File systems mostly take 255; the rest is for what a run appends.
+/// Most file systems allow 255 bytes; the rest is for endings that a run appends.
 constexpr std::size_t most_bytes = 200;
 
 bool is_utf8(const std::string& text) {

@@ -7,8 +7,8 @@
 
 namespace drape {
 
-/// Reads values of a JSON file that a run or a sweep wrote, and that may have been changed since. A value of
-/// the wrong kind throws std::runtime_error, which names the file and the key and says what to do.
+/// Reads values of a JSON file that a run or a sweep wrote and someone may have changed. A value of the wrong
+/// type throws std::runtime_error with file, key and remedy.
 class JsonFile {
  public:
   using Json = nlohmann::ordered_json;
@@ -16,10 +16,10 @@ class JsonFile {
   JsonFile(std::filesystem::path path, std::string remedy)
       : path_(std::move(path)), remedy_(std::move(remedy)) {}
 
-  /// T is bool, int (not negative), double (finite) or std::string. None where the key is absent or null.
+  /// T is bool, int (not negative), double (finite) or std::string. Empty if the key is absent or null.
   template <class T>
   std::optional<T> find(const Json& object, const std::string& key) const;
-  /// The same of a key that must be there.
+  /// The same for a required key.
   template <class T>
   T at(const Json& object, const std::string& key) const {
     if (const std::optional<T> value = find<T>(object, key)) return *value;
@@ -34,7 +34,7 @@ class JsonFile {
   std::string remedy_;
 };
 
-/// A number without fraction as an int; none where an int cannot hold it, or where it is negative.
+/// A whole, non-negative number as an int; empty otherwise.
 std::optional<int> whole_number(double value);
 
 }  // namespace drape

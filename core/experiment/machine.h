@@ -5,17 +5,16 @@
 
 namespace drape {
 
-std::string cpu_name();  ///< as the kernel gives it, "unknown" where it does not
+std::string cpu_name();  ///< from the kernel, or "unknown"
 int core_count();
-/// Memory that this process may come to have [bytes]: the machine's, or what a container's or the shell's
-/// limit
-/// (`ulimit -v`) leaves of it. A very large number where the kernel does not tell.
+/// Memory that this process may use [bytes]: the machine's, limited by container and shell (`ulimit -v`). A
+/// very large number if unknown.
 double machine_memory();
-/// Memory that could be had now without swapping [bytes]; likewise.
+/// Memory available now without swapping [bytes]; a very large number if unknown.
 double available_memory();
-/// Starts a new measurement of the process's largest resident memory, where the kernel allows it.
+/// Resets the process's peak resident memory, if the kernel supports it.
 void reset_peak_memory();
-/// Largest resident memory since then [bytes]; 0 where the kernel does not tell.
+/// Peak resident memory since the last reset [bytes]; 0 if unknown.
 std::int64_t peak_memory_bytes();
 
 }  // namespace drape

@@ -12,7 +12,7 @@ namespace drape {
 
 namespace {
 
-/// "gravity.acceleration", "pins.0.move, contact.range", "pins.0.move and 3 more".
+/// "gravity.acceleration", "pins.0.translate, contact.range", "pins.0.translate and 3 more".
 std::string first_two(const std::vector<std::string>& names) {
   if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
   return names.empty() ? "" : names[0] + (names.size() == 2 ? ", " + names[1] : "");
@@ -48,8 +48,8 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
   draw(row);
 }
 
-/// How much has been done: of an equilibrium the part of the way, by the residual's logarithm, to the
-/// tolerance; of a schedule increments as well, of which the beginning is one.
+/// Updates the finished fraction of the level: by the logarithm of the residual towards the tolerance, and
+/// under load stepping by increments, the initial equilibrium included.
 void Progress::take_note(const IterationRow& row) {
   const bool scheduled = conditions_ && row.time;
   const int increment = scheduled ? conditions_->increment() : 0,

@@ -9,12 +9,12 @@
 
 namespace drape {
 
-/// Shows a run on the terminal: one line that is rewritten while a level is solved (a plain line now and
-/// then where standard error is no terminal), and one that stays for every level done.
+/// Shows a run on the terminal: one line that is rewritten while a level is solved (a new line now and then
+/// if standard error is no terminal), and a permanent one for every finished level.
 class Progress : public Observer {
  public:
-  /// `tolerance` of the force residual is where the bar is full; `levels` how many there are. Under
-  /// `conditions` that change, of the parameters `changing`, it is full after the last of them.
+  /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping
+  /// (`conditions`, which change the parameters `changing`) it is full after the last increment.
   Progress(double tolerance, int levels, bool quiet, const LoadStepping* conditions = nullptr,
            std::vector<std::string> changing = {});
 
@@ -24,7 +24,7 @@ class Progress : public Observer {
   void level_finished(const LevelResult& result) override;
   void method_failed(int level, const std::string& cause);
 
-  /// What is shown after an iteration.
+  /// The line after an iteration.
   std::string line(const IterationRow& row) const;
 
  private:
@@ -39,9 +39,9 @@ class Progress : public Observer {
   std::string changing_, method_;
   Stopwatch level_clock_;
   double last_draw_ = 0;
-  int increment_ = 0;                              // of the conditions, that the residuals are of
-  double first_residual_ = 0, best_residual_ = 0;  // under the present conditions; 0 before the first
-  double done_ = 0;                                // of the level, in [0, 1]
+  int increment_ = 0;                              // that the residuals belong to
+  double first_residual_ = 0, best_residual_ = 0;  // of the current increment; 0 before the first
+  double done_ = 0;                                // fraction of the level, in [0, 1]
   TimeToGo to_go_;
 };
 

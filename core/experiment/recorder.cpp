@@ -20,14 +20,14 @@ namespace drape {
 
 namespace {
 
-/// The status of a method that threw, and of the level that it was at; no solver gives it.
+/// Status of a method that threw, and of its current level; no solver returns it.
 constexpr const char* failed = "failed";
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
-/// The member of an object that a metric's name stands for; "a.b" is member b of member a.
+/// The member of an object with a dotted name: "a.b" is member b of member a.
 nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
   const std::size_t dot = name.find('.');
   return dot == std::string::npos ? object[name]
@@ -43,7 +43,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
       scene_(scene),
       steps_(folder.file("steps.csv"), mode),
       log_(folder.file("log.jsonl"), mode),
-      frames_(experiment.parameters.frames),
+      snapshots_(experiment.parameters.snapshots),
       errors_(folder, experiment, scene) {}
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
@@ -74,10 +74,10 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   cut_files(folder, state);
   results_ = Json::parse(state.results);
   method_ = state.method;
-  sound_ = state.sound;
-  sound_of_method_ = state.sound_of_method;
+  intersection_free_ = state.intersection_free;
+  method_intersection_free_ = state.method_intersection_free;
   states_ = state.states;
-  frames_.restore(state.frames);
+  snapshots_.restore(state.snapshots);
   errors_.restore(state.measured);
   spent_ = state.spent;
   last_ = state.last;
@@ -91,15 +91,25 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 
 RecorderState Recorder::state() const {
   const auto [steps_bytes, log_bytes] = file_sizes(folder_);
-  RecorderState s{json_text(results_), method_, sound_, sound_of_method_, states_,     frames_.memory(),
-                  errors_.levels(),    spent_,  last_,  overhead_,        steps_bytes, log_bytes};
+  RecorderState s{json_text(results_),
+                  method_,
+                  intersection_free_,
+                  method_intersection_free_,
+                  states_,
+                  snapshots_.state(),
+                  errors_.levels(),
+                  spent_,
+                  last_,
+                  overhead_,
+                  steps_bytes,
+                  log_bytes};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
 }
 
-void Recorder::begun_from(const std::string& where) {
-  results_["begun_from"] = where;
+void Recorder::warm_started_from(const std::string& where) {
+  results_["warm_started_from"] = where;
   save();
 }
 
@@ -128,8 +138,8 @@ std::string Recorder::file_of(const std::string& method, int level, const char* 
 
 void Recorder::method_started(const std::string& method) {
   method_ = method;
-  sound_of_method_ = true;
-  spent_ = Work();
+  method_intersection_free_ = true;
+  spent_ = Cost();
   overhead_ = 0;
   reset_peak_memory();
   method_entry() = {{"status", "running"},
@@ -142,8 +152,8 @@ void Recorder::method_started(const std::string& method) {
 }
 
 void Recorder::level_started(int level) {
-  frames_.begin_level();
-  last_ = Work();
+  snapshots_.begin_level();
+  last_ = Cost();
   log({{"event", "level_started"}, {"method", method_}, {"level", level}});
 }
 
@@ -160,14 +170,14 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
            {"pair", to_string(touches[k])}});
     count += touches.size();
   }
-  if (count > 0) sound_ = sound_of_method_ = false;
+  if (count > 0) intersection_free_ = method_intersection_free_ = false;
   return count;
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
   const double seconds = r.seconds - overhead_;
   last_ = {std::max(seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
-  if (frames_.any()) frames_.iteration(last_, x);
+  if (snapshots_.any()) snapshots_.iteration(last_, x);
   char line[400];
   std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
                 r.iteration, seconds, r.energy, r.decrement, r.force_residual, r.step_length);
@@ -180,7 +190,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   if (r.smallest_gap && std::isfinite(*r.smallest_gap))
     std::snprintf(line, sizeof line, "%.6g", *r.smallest_gap), steps_ << line;
   steps_ << ',';
-  if (experiment_.parameters.verify == Verify::every_step)
+  if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
     if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
   std::snprintf(line, sizeof line, ",%.9g", spent_.flops + r.flops), steps_ << line;
   steps_ << std::endl;
@@ -238,13 +248,13 @@ void Recorder::level_finished(const LevelResult& r) {
   entry["levels"].push_back(state_entry(r));
   entry["levels"].back()["mesh_checksum"] =
       checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
-  // By the clock of the rows, which has the making of the objective in it; a level's own seconds have not.
-  const Work work = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
-  if (frames_.any())
-    entry["levels"].back()["frames"] =
-        errors_.add(method_, r, frames_.end_level(work, r.x), r.from_initial_state ? Work() : spent_, spent_);
+  // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
+  const Cost cost = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
+  if (snapshots_.any())
+    entry["levels"].back()["snapshots"] =
+        errors_.add(method_, r, snapshots_.end_level(cost, r.x), r.from_initial_state ? Cost() : spent_, spent_);
   states_.push_back(state);
-  spent_ = spent_ + work;
+  spent_ = spent_ + cost;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
@@ -270,7 +280,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
                                  const std::string& fields_file) {
-  Json row = Json::object();  // stays one without a metric of pairs
+  Json row = Json::object();  // not null, even without a metric of pairs
   VertexFields fields;
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
@@ -289,7 +299,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
 void Recorder::method_finished(const std::vector<LevelResult>& results,
                                const std::optional<MethodFailure>& failure) {
   Json& entry = method_entry();
-  // Of a level that fails while it is recorded there may be an entry.
+  // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
   Outcome worst = Outcome::converged;
   const int finest = static_cast<int>(scene_.models.size()) - 1;
@@ -306,12 +316,12 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   }
   write_collection(method_);
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
-  std::vector<Json> of_start;  // what the scene's start scores against each level's state
+  std::vector<Json> of_start;  // the initial state compared with each level's state
   for (const LevelResult& r : results)
     of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
-      const int coarse = results[c].level, fine = results[f].level;  // a method may leave levels out
+      const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
       const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
       const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};
@@ -319,7 +329,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }
-  if (!sound_of_method_) worst = Outcome::infeasible;
+  if (!method_intersection_free_) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {
     const Level& level = scene_.hierarchy.levels[failure->level];
@@ -367,19 +377,19 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
   if (p.force_tolerance == 0 || cancelled) return &state->x;
   entry["force_tolerance"] = p.force_tolerance;
   try {
-    tightened_ = tighten(experiment_, scene_, state->x, observer);
+    solved_reference_ = solve_to_tolerance(experiment_, scene_, state->x, observer);
   } catch (const std::exception& error) {
     entry.update({{"status", failed}, {"message", error.what()}});
     log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
     return &state->x;
   }
-  entry.update({{"status", to_string(tightened_->outcome)},
-                {"message", tightened_->message},
-                {"force_residual", finite_or_null(tightened_->force_residual)},
-                {"newton_iterations", tightened_->iterations},
-                {"seconds", tightened_->seconds}});
-  log({{"event", "reference_solved"}, {"status", to_string(tightened_->outcome)}});
-  return &tightened_->x;
+  entry.update({{"status", to_string(solved_reference_->outcome)},
+                {"message", solved_reference_->message},
+                {"force_residual", finite_or_null(solved_reference_->force_residual)},
+                {"newton_iterations", solved_reference_->iterations},
+                {"seconds", solved_reference_->seconds}});
+  log({{"event", "reference_solved"}, {"status", to_string(solved_reference_->outcome)}});
+  return &solved_reference_->x;
 }
 
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {

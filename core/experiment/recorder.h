@@ -6,61 +6,61 @@
 
 #include "core/experiment/errors.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/frames.h"
 #include "core/experiment/run_folder.h"
+#include "core/experiment/snapshots.h"
 
 namespace drape {
 
-/// A level's result, as its mesh in levels/ has it.
+/// A level's final state, as in levels/.
 struct RecordedState {
   std::string method;
   int level = 0;
   Positions x;
 };
 
-/// What a recorder knows in the middle of a run, and how long its files are.
+/// A recorder's state, with the sizes of its files.
 struct RecorderState {
-  std::string results;  ///< of results.json
+  std::string results;  ///< contents of results.json
   std::string method;
-  bool sound = true, sound_of_method = true;
-  std::vector<RecordedState> states;  ///< of all levels so far, in order
-  Frames::Memory frames;
-  std::vector<LevelFrames> measured;
-  Work spent, last;
+  bool intersection_free = true, method_intersection_free = true;
+  std::vector<RecordedState> states;  ///< all levels so far, in order
+  SnapshotRecorder::State snapshots;
+  std::vector<LevelSnapshots> measured;
+  Cost spent, last;
   double overhead = 0;
   std::uint64_t steps_bytes = 0, log_bytes = 0;
 };
 
-/// What a method ended with that threw.
+/// Why a method that threw has failed.
 struct MethodFailure {
-  int level = 0;  ///< it was at
+  int level = 0;  ///< the current one
   std::string cause;
 };
 
-/// Writes a run down while it goes: steps.csv, log.jsonl, levels/*.ply and results.json. Every function
-/// throws WriteError where that cannot be.
+/// Writes a run's results while it proceeds: steps.csv, log.jsonl, levels/*.ply and results.json. Every
+/// function throws WriteError if a file cannot be written.
 class Recorder : public Observer {
  public:
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
 
-  /// Goes on where another one of the same run was, whose files are cut to what they were then, and written
-  /// again where they are damaged or gone.
+  /// Resumes from another recorder's state: truncates the files to their former sizes and restores damaged or
+  /// missing ones.
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            const RecorderState& state);
-  /// The files are on the disk as far as the state knows them.
+  /// Flushes the files to the disk before it returns.
   RecorderState state() const;
-  /// The files that were written again.
+  /// The files that were restored.
   const std::vector<std::string>& restored() const { return restored_; }
-  /// Says in results.json where the methods begin, if that is not the scene's start.
-  void begun_from(const std::string& where);
+  /// Records the origin of a warm start in results.json.
+  void warm_started_from(const std::string& where);
 
   void method_started(const std::string& method);
-  /// Measures the levels reached and every pair of them, and writes results.json. A method that failed has
-  /// the results before that.
+  /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
+  /// keeps the results of its earlier levels.
   void method_finished(const std::vector<LevelResult>& results,
                        const std::optional<MethodFailure>& failure = std::nullopt);
-  /// Finds the reference, where need be by solving on under `observer`, and measures every method's finest
-  /// state and every frame's error. False when it was stopped.
+  /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
+  /// method's finest state and of every snapshot. False if it was stopped.
   bool measure_errors(Observer& observer, bool cancelled);
   void run_finished(bool complete);
 
@@ -69,8 +69,8 @@ class Recorder : public Observer {
   void increment_finished(const IncrementRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
 
-  /// Whether no state that was looked at had an intersection.
-  bool sound() const { return sound_; }
+  /// Whether no checked state had an intersection.
+  bool intersection_free() const { return intersection_free_; }
 
  private:
   using Json = nlohmann::ordered_json;
@@ -78,27 +78,27 @@ class Recorder : public Observer {
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
            std::ios::openmode mode);
   using Names = std::vector<std::string>;  // of files
-  // These give the files that were not there, or had other bytes.
+  // These return the names of files that were missing or different.
   Names write_scene();
   Names write_state(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   Names write_collection(const std::string& method) const;
   Names write_again();
-  /// Of a file that steps or the log was just written to.
+  /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][method_]; }
   std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);
-  /// Counts the pairs that intersect and logs the first ones; null where nothing is to be kept apart.
+  /// Counts intersecting pairs and logs the first ones; null without contact.
   Json intersections(int level, const Positions& x);
-  /// A metric's result; one that cannot measure the state leaves a note in `entry` and the run goes on.
+  /// A metric's result; the error of a metric that throws goes to `entry`.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
-  /// The finest states that methods have reached.
+  /// All states on the finest level.
   std::vector<const RecordedState*> finest_states() const;
-  /// The finest state that the experiment names as reference; null where there is none.
+  /// The finest state that the experiment chooses as reference; null without one.
   const RecordedState* reference_state() const;
-  /// The state that errors are measured against, also as reference.ply; null where there is none.
+  /// The state that errors are measured against; null without one.
   const Positions* find_reference(Observer& observer, bool cancelled);
   void log(Json entry);
   void save() const;
@@ -109,15 +109,15 @@ class Recorder : public Observer {
   std::ofstream steps_, log_;
   Json results_;
   std::string method_;
-  bool sound_ = true, sound_of_method_ = true;
-  std::vector<RecordedState> states_;  // of all levels so far
+  bool intersection_free_ = true, method_intersection_free_ = true;
+  std::vector<RecordedState> states_;  // all levels so far
   std::vector<std::string> restored_;
-  Frames frames_;
+  SnapshotRecorder snapshots_;
   ErrorTable errors_;
-  Work spent_;           // by the method, in the levels before this one
-  Work last_;            // of this level's last iteration
-  double overhead_ = 0;  // seconds that recording has taken between the levels of a method
-  std::optional<LevelResult> tightened_;
+  Cost spent_;           // of the method's levels before this one
+  Cost last_;            // of this level up to its last iteration
+  double overhead_ = 0;  // time that recording took between the levels of a method [s]
+  std::optional<LevelResult> solved_reference_;
 };
 
 }  // namespace drape

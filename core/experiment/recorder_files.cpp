@@ -17,7 +17,7 @@ std::uint64_t size_of(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Takes off what was written to a file after it had so many bytes.
+/// Truncates a file to so many bytes.
 void cut(const std::filesystem::path& file, std::uint64_t bytes) {
   std::error_code error;
   std::filesystem::resize_file(file, bytes, error);
@@ -60,24 +60,23 @@ void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
     std::error_code error;
     const std::uint64_t now = std::filesystem::file_size(file, error);
     if (error || now < bytes)
-      throw std::runtime_error(
-          file.string() +
-          ": is shorter than when the checkpoint was made; it was changed since, so that "
-          "the run cannot go on: run the experiment anew");
+      throw std::runtime_error(file.string() +
+                               ": is shorter than when the checkpoint was made; it was changed since, and "
+                               "the run cannot be resumed: run the experiment again");
   }
 }
 
-void record_broken_off(const RunFolder& folder, const std::string& cause) {
+void record_abort(const RunFolder& folder, const std::string& cause) {
   try {
     auto results = nlohmann::ordered_json::parse(read_file(folder.file("results.json")));
-    results["broken_off"] = cause;
+    results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
-      if (method.at("status") == "running") method["status"] = "broken_off";
+      if (method.at("status") == "running") method["status"] = "aborted";
     folder.write_text("results.json", json_text(results, 1) + "\n");
     std::ofstream(folder.file("log.jsonl"), std::ios::app)
-        << json_text({{"event", "run_broken_off"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
+        << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
   } catch (const std::exception&) {
-    // What kept the run from going on keeps this from being written; the message and the exit code tell.
+    // The cause of the abort may prevent this write too; message and exit code remain.
   }
 }
 
@@ -106,7 +105,7 @@ Recorder::Names Recorder::write_state(const RecordedState& state) const {
     const bool ply = extension == std::string_view(".ply");
     if (write_where_other(folder_.file(name), ply ? ply_bytes(mesh) : vtp_text(mesh)))
       written.push_back(name);
-    sync_to_disk(folder_.file(name));  // checkpoints to come take it for granted
+    sync_to_disk(folder_.file(name));  // later checkpoints rely on it
   }
   return written;
 }

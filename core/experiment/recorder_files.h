@@ -10,27 +10,26 @@
 
 namespace drape {
 
-// What a recorder does with the files of its folder as a whole. All throw WriteError where a file cannot be
-// written.
+// Operations on a run's files. All throw WriteError if a file cannot be written.
 
-/// Text of which what is no UTF-8, as a file's name may be, is replaced.
+/// The JSON text; bytes that are not UTF-8, as in file names, are replaced.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
 /// Seconds since 1970.
 double wall_clock();
 
-/// Of steps.csv and log.jsonl.
+/// Sizes of steps.csv and log.jsonl [bytes].
 std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
-/// Takes off what was written to these after they had the sizes of the state.
+/// Truncates them to the sizes of the state.
 void cut_files(const RunFolder& folder, const RecorderState& state);
 
-/// Writes the rest shapes that are not as the scene has them, and gives their names.
+/// Writes the rest shapes that differ from their files, and returns their names.
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
 
-/// Throws std::runtime_error where steps.csv or log.jsonl is shorter than in the state.
+/// Throws std::runtime_error if steps.csv or log.jsonl is shorter than in the state.
 void refuse_short_files(const RunFolder& folder, const RecorderState& state);
 
-/// Says in the folder of a run that it was broken off, and why, as far as the folder can still be written to.
-void record_broken_off(const RunFolder& folder, const std::string& cause);
+/// Records in the folder that the run was aborted, and why, as far as it is still writable.
+void record_abort(const RunFolder& folder, const std::string& cause);
 
 }  // namespace drape

@@ -11,7 +11,7 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
   const std::string& named = experiment.parameters.reference.file;
   if (named.empty()) return std::nullopt;
   const auto refuse = [&](const std::string& why) {
-    errors.push_back({experiment.place_of("reference"), "\"reference\": " + why});
+    errors.push_back({experiment.location_of("reference"), "\"reference\": " + why});
     return std::nullopt;
   };
   std::filesystem::path file = named;
@@ -36,8 +36,8 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
   }
 }
 
-LevelResult tighten(const Experiment& experiment, const Scene& scene, const Positions& x,
-                    Observer& observer) {
+LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene, const Positions& x,
+                               Observer& observer) {
   NewtonParameters newton = experiment.parameters.newton;
   newton.force_tolerance = experiment.parameters.reference.force_tolerance;
   const Stopwatch clock;

@@ -15,21 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a run writes; the only names that --overwrite may remove.
+// Names that a run writes, the only ones that --overwrite may remove.
 constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv",
                                      "log.jsonl",   "levels",       "fields",       "rest",
-                                     "pictures",    "obstacles",    "frames",       "errors.csv",
+                                     "pictures",    "obstacles",    "snapshots",    "errors.csv",
                                      "start.ply",   "checkpoint",   "reference.ply"};
 constexpr const char* lock_name = "checkpoint/lock";
-/// Of the names of a method's files, which begin with the method's.
+/// Longest ending of a method's file names, which begin with the method's name.
 constexpr const char* longest_ending = "_l10_l11_H_difference.png.part";
 
-/// Whether it is a run's: its lock is the first thing that one makes, and nothing takes it away.
+/// Whether it is a run's folder: a run creates its lock first and never removes it.
 bool is_of_a_run(const RunFolder& folder) {
   return fs::exists(folder.file("results.json")) || fs::exists(folder.file(lock_name));
 }
 
-/// A run's file or folder there that is not empty; "" where there is none.
+/// A non-empty file or folder with one of a run's names; "" without one.
 fs::path left_there(const RunFolder& folder) {
   for (const char* own : own_names) {
     const fs::path path = folder.file(own);
@@ -43,7 +43,7 @@ fs::path left_there(const RunFolder& folder) {
   return {};
 }
 
-/// What is there may be lost only if it is a run's and `overwrite` says so.
+/// Files may be replaced only if they are a run's and `overwrite` is set.
 void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
   const fs::path left = left_there(folder);
   if (left.empty()) return;
@@ -57,7 +57,7 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
                              "replace them with --overwrite");
 }
 
-/// The folders on the way that are not there, the innermost first.
+/// The missing folders of the path, innermost first.
 std::vector<fs::path> missing_folders(const fs::path& folder) {
   std::vector<fs::path> missing;
   std::error_code error;
@@ -126,11 +126,11 @@ RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::mo
     refuse_what_is_there(*this, overwrite);
   } catch (...) {
     std::error_code error;
-    for (const fs::path& folder : made) fs::remove(folder, error);  // nothing but what is empty
+    for (const fs::path& folder : made) fs::remove(folder, error);  // removes only empty ones
     throw;
   }
   lock();
-  refuse_what_is_there(*this, overwrite);  // by another run, that has ended just now
+  refuse_what_is_there(*this, overwrite);  // by another run that has just finished
   clear(*this);
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) make_folder(file(folder));
 }
@@ -140,10 +140,10 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
   if (!std::filesystem::exists(folder.file("results.json")))
     throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
   folder.lock();
-  // A pipe in their place would hold up the run that goes on writing them.
+  // A pipe in their place would block the resumed run.
   for (const char* name : {"steps.csv", "log.jsonl"})
     if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
-      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment anew");
+      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment again");
   return folder;
 }
 
@@ -152,7 +152,7 @@ void RunFolder::lock() {
   lock_ = std::make_unique<FileLock>(file(lock_name));
   if (!lock_->acquire(0))
     throw std::runtime_error(path_.string() + ": " + lock_->holder() +
-                             " is at this run; wait for it, or stop it");
+                             " uses this folder; wait for it, or stop it");
 }
 
 void RunFolder::write_text(const std::string& name, const std::string& text) const {

@@ -9,21 +9,20 @@
 
 namespace drape {
 
-/// Throws std::runtime_error where a run of these methods would have files there whose names or paths are
-/// longer than the file system takes.
+/// Throws std::runtime_error if file names or paths of a run of these methods would be too long for the file
+/// system.
 void refuse_long_names(const std::filesystem::path& folder, const std::vector<std::string>& methods);
 
-/// A run's results folder. Whole files are written under another name and renamed, so that nothing
-/// half-written stands under a final name.
+/// A run's results folder. Files are written under a temporary name and renamed: a final name never has an
+/// incomplete file.
 class RunFolder {
  public:
-  /// Makes the folder, and takes away what an earlier run has left in it. Throws std::runtime_error, with
-  /// everything as it was, when it cannot be written to, when there is something left and `overwrite` is
-  /// false, or when it holds files of others under the names that a run uses. Throws WriteError when it can
-  /// no longer be written to after that.
+  /// Creates the folder and removes the results of an earlier run. Throws std::runtime_error, without a
+  /// change, if the folder is not writable, has results and `overwrite` is false, or has foreign files with
+  /// names of a run. Throws WriteError if a later write fails.
   RunFolder(std::filesystem::path path, bool overwrite);
-  /// The folder of a run that is to go on. Throws std::runtime_error when it holds none, or one that a
-  /// process is still at.
+  /// The folder of a run to be resumed. Throws std::runtime_error if it has no run, or one that is still
+  /// running.
   static RunFolder of_run(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
@@ -35,7 +34,7 @@ class RunFolder {
   void lock();
 
   std::filesystem::path path_;
-  std::unique_ptr<FileLock> lock_;  // held as long as the run is under way
+  std::unique_ptr<FileLock> lock_;  // locked while the run proceeds
 };
 
 }  // namespace drape

@@ -4,15 +4,15 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/progress.h"
 #include "core/experiment/recorder_files.h"
-#include "core/experiment/session.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
 #include "core/mesh/message_text.h"
 #include "core/numerics/stopwatch.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/report.h"
 #include "core/view/live_view.h"
 
@@ -20,12 +20,12 @@ namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder, the session, the progress bar and the live view.
+/// Passes everything on to the recorder, the checkpoints, the progress bar and the live view.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, Session& session, Progress& progress, LiveView* view,
+  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress, LiveView* view,
               const std::function<bool()>& stop)
-      : recorder_(recorder), session_(session), progress_(progress), view_(view), stop_(stop) {}
+      : recorder_(recorder), checkpoints_(checkpoints), progress_(progress), view_(view), stop_(stop) {}
 
   void method_started(const std::string& name, bool resumable, const MethodState& state) {
     resumable_ = resumable;
@@ -34,7 +34,7 @@ class RunObserver : public Observer {
     progress_.method_started(name);
     if (view_) view_->method_started(name);
   }
-  /// Shows what an earlier part of the run has done of the method.
+  /// Shows the results of the method before the run was interrupted.
   void catch_up(const MethodState& state) {
     for (const LevelResult& result : state.finished)
       if (view_) view_->level_started(result.level), view_->level_finished(result);
@@ -42,7 +42,7 @@ class RunObserver : public Observer {
     progress_.level_started(state.level);
     if (view_) view_->level_started(state.level);
   }
-  /// What the method under way has come to.
+  /// Finished levels of the current method.
   const std::vector<LevelResult>& finished() const { return finished_; }
   int level() const { return level_; }
 
@@ -63,18 +63,18 @@ class RunObserver : public Observer {
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
     finished_.push_back(result);
-    if (resumable_) session_.level_finished(result);
+    if (resumable_) checkpoints_.level_finished(result);
     progress_.level_finished(result);
     if (view_) view_->level_finished(result);
   }
-  bool checkpoint_due() override { return resumable_ && session_.due(stop_requested()); }
-  void checkpoint(const NewtonState& state) override { session_.save(state); }
+  bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
+  void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
   bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
   bool refine_requested() override { return view_ && view_->refine_requested(); }
 
  private:
   Recorder& recorder_;
-  Session& session_;
+  CheckpointManager& checkpoints_;
   Progress& progress_;
   LiveView* view_;
   bool resumable_ = false;
@@ -83,7 +83,7 @@ class RunObserver : public Observer {
   const std::function<bool()>& stop_;
 };
 
-/// Of what belongs to no method: nothing is recorded.
+/// Observes a solve that belongs to no method; it is not recorded.
 class UnrecordedObserver : public Observer {
  public:
   UnrecordedObserver(Progress& progress, const std::function<bool()>& stop)
@@ -111,7 +111,7 @@ void require_methods(const Experiment& experiment, const std::vector<std::string
       throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
 }
 
-/// The resolved experiment as it is read from the results folder: mesh files are the copies that lie there.
+/// The resolved experiment with paths to the copies of mesh files in the results folder.
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
   ConfigErrors none;
@@ -132,8 +132,7 @@ std::vector<std::string> methods_of(const Experiment& experiment, const RunOptio
   return names;
 }
 
-/// What the exception that is being handled says. A file that cannot be written is of the whole run: that is
-/// thrown on.
+/// The message of the exception in flight. A WriteError concerns the whole run and is rethrown.
 std::string cause_in_method() {
   try {
     throw;
@@ -146,32 +145,32 @@ std::string cause_in_method() {
   }
 }
 
-/// Does what belongs to a run that has begun.
-template <class Work>
-bool with_folder(const RunFolder& folder, const RunOptions& options, const Work& work) {
+/// Performs an action of a run that has begun; errors abort the run.
+template <class Action>
+bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {
   std::string cause;
   try {
-    return work();
-  } catch (const RunBrokenOff&) {
+    return action();
+  } catch (const RunAborted&) {
     throw;
   } catch (const std::exception& error) {
     cause = reason_of(error);
   } catch (...) {
     cause = "an exception that is no std::exception";
   }
-  record_broken_off(folder, cause);
-  if (options.view) options.view->run_finished("the run was broken off: " + cause);
+  record_abort(folder, cause);
+  if (options.view) options.view->run_finished("the run was aborted: " + cause);
   std::error_code none;
-  throw RunBrokenOff(cause + "; the run is broken off. Once that is put right, " +
-                     (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
-                          ? "go on with drape run --resume " + folder.path().string()
-                          : "run the experiment anew: there is no checkpoint of it"));
+  throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " +
+                   (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
+                        ? "resume it with drape run --resume " + folder.path().string()
+                        : "run the experiment again: there is no checkpoint of it"));
 }
 
-/// How long a run that has been told to stop still draws its report's pictures [s].
+/// Time that a stopped run still spends on its report's pictures [s].
 constexpr double seconds_for_pictures = 2;
 
-/// The results are there whatever becomes of their report.
+/// Writes the report. If that fails, the results remain.
 void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   const std::string name = folder.path().string();
   std::optional<Stopwatch> since_stop;
@@ -182,21 +181,21 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   try {
     write_report(folder.path(), leave);
   } catch (const std::exception& error) {
-    throw RunBrokenOff(reason_of(error) + "; the results in " + name +
-                       " are there without their report; write it with drape report " + name);
+    throw RunAborted(reason_of(error) + "; the results in " + name +
+                     " are there without their report; write it with drape report " + name);
   }
 }
 
-/// Runs what is left: the method under way if `resumed`, those after it, what is measured of them all.
+/// Runs the remaining methods, beginning with the current one if `resumed`, then measures errors.
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
-  Session session(folder, recorder, begun, options.checkpoint);
+  CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
   const Problem problem = scene.problem();
   std::vector<std::string> changing;
-  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.set);
+  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
                     problem.load_stepping, changing);
-  RunObserver observer(recorder, session, progress, options.view, options.stop);
+  RunObserver observer(recorder, checkpoints, progress, options.view, options.stop);
 
   bool all_converged = begun.all_converged, cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
@@ -212,7 +211,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       observer.catch_up(state);
     } else {
       recorder.method_started(name);
-      session.method_started(m);
+      checkpoints.method_started(m);
     }
     std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
@@ -230,7 +229,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
     all_converged = all_converged && converged;
-    session.method_finished(converged);
+    checkpoints.method_finished(converged);
   }
   UnrecordedObserver unrecorded(progress, options.stop);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
@@ -238,7 +237,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
-  const bool good = all_converged && recorder.sound();
+  const bool good = all_converged && recorder.intersection_free();
   if (options.view)
     options.view->run_finished((cancelled ? "stopped on request"
                                 : good    ? "everything converged"
@@ -263,12 +262,12 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     begun.config = to_yaml(config);
     begun.methods = methods;
     begun.first_level = options.first_level;
-    if (!options.begun_from.empty()) begun.own_start = scene.starts[options.first_level];
+    if (!options.warm_started_from.empty()) begun.own_start = scene.starts[options.first_level];
     folder.write_text("config.yaml", begun.config);
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
-    if (!options.begun_from.empty()) recorder.begun_from(options.begun_from);
-    begun.files = marks_of_files(config, folder.path());
+    if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
+    begun.files = fingerprints_of_files(config, folder.path());
     return run(experiment, scene, options, folder, recorder, begun, false);
   });
 }
@@ -281,7 +280,7 @@ bool resume_experiment(const Experiment& experiment, const Scene& scene, const R
   return with_folder(folder, options, [&] {
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);
     if (!recorder.restored().empty())
-      std::fprintf(stderr, "warning: damaged or gone since, and written again: %s\n",
+      std::fprintf(stderr, "warning: damaged or missing files were written again: %s\n",
                    joined(recorder.restored()).c_str());
     return run(experiment, scene, options, folder, recorder, checkpoint, true);
   });

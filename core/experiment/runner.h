@@ -15,33 +15,32 @@ class LiveView;
 
 struct RunOptions {
   std::filesystem::path out;         ///< results folder
-  std::vector<std::string> methods;  ///< which to run, in the experiment's order; empty for all
+  std::vector<std::string> methods;  ///< methods to run; empty for all
   bool overwrite = false;            ///< replace the results of an earlier run in `out`
-  bool quiet = false;                ///< no progress
+  bool quiet = false;                ///< no progress line
   bool report = true;                ///< write report.html and its pictures at the end
-  double checkpoint = 5;             ///< about how often the state is saved [s]; 0 for at every step
-  int first_level = 0;               ///< where every method begins
-  std::string begun_from;      ///< what else than the scene's start is there, in words; empty if nothing
-  std::function<bool()> stop;  ///< asked after every step; may be empty
-  LiveView* view = nullptr;    ///< shown the run, and may stop it; may be null
+  double checkpoint = 5;             ///< checkpoint interval [s]; 0 saves at every step
+  int first_level = 0;               ///< first level of every method
+  std::string warm_started_from;     ///< origin of a warm start, in words; empty without one
+  std::function<bool()> stop;        ///< polled after every step; may be empty
+  LiveView* view = nullptr;          ///< shows the run and may stop it; may be null
 };
 
-/// A run that had begun and cannot go on, as where nothing can be written any more. Its folder says so, as
-/// far as that could be written.
-class RunBrokenOff : public std::runtime_error {
+/// A run was aborted after it had begun, as on a full disk. Its folder records the cause if that is possible.
+class RunAborted : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Runs the methods one after another and writes everything down as it goes. Returns true when every
-/// level of every method converged. What a method throws is its outcome, and the others run. Throws
-/// std::runtime_error, before anything is written, for a folder or a name that cannot be used and for a
-/// method that the experiment does not have, and RunBrokenOff after that.
+/// Runs the methods one after another and records their results. Returns true if every level of every method
+/// succeeded without intersections. A method that throws counts as failed, and the others run. Throws
+/// std::runtime_error, before it writes, for a folder or a name that cannot be used and for an unknown
+/// method; RunAborted after that.
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options);
 
-/// Goes on with a run where its checkpoint was made, in its folder `options.out`, to the same results as if
-/// it had not been interrupted. The checkpoint says what methods there are and where they begin. Throws
-/// std::runtime_error where it does not fit, before anything is written, and RunBrokenOff after that.
+/// Resumes a run from its checkpoint in its folder `options.out`. The results are those of an uninterrupted
+/// run, bit for bit. The checkpoint determines methods and first level. Throws std::runtime_error, before it
+/// writes, if the checkpoint does not fit; RunAborted after that.
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
                        Checkpoint checkpoint);
 

@@ -2,8 +2,8 @@
 #include <random>
 #include <stdexcept>
 
+#include "core/experiment/boundary_conditions.h"
 #include "core/experiment/experiment.h"
-#include "core/experiment/places.h"
 #include "core/experiment/reference.h"
 #include "core/experiment/schedule.h"
 #include "core/experiment/size_estimate.h"
@@ -48,7 +48,7 @@ TriangleMesh make_cloth(const Experiment& e) {
   return make_grid(c, size);
 }
 
-/// Smooth noise with values about ±1 that depends on the place and the seed alone: some plane waves.
+/// Smooth noise with values about ±1, a sum of plane waves that depends on position and seed alone.
 class Noise {
  public:
   Noise(double wavelength, int seed) {
@@ -77,21 +77,21 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
   try {
     const TriangleMesh mesh = read_mesh(file);
     for (const std::string& fault : check_coordinates(mesh.vertices))
-      errors.push_back({e.place_of("start"), file + ": " + fault});
+      errors.push_back({e.location_of("start"), file + ": " + fault});
     if (mesh.vertices.rows() == coarsest.vertex_count() &&
         same_triangles(mesh.triangles, coarsest.rest.triangles))
       return mesh.vertices;
     errors.push_back(
-        {e.place_of("start"), "\"start\": " + file +
-                                  " has other vertices or triangles than the coarsest level; take a "
-                                  "mesh like rest/l0.ply of a run's folder"});
+        {e.location_of("start"), "\"start\": " + file +
+                                     " has other vertices or triangles than the coarsest level; take a "
+                                     "mesh like rest/l0.ply of a run's folder"});
   } catch (const std::exception& problem) {
-    errors.push_back({e.place_of("start"), reason_of(problem)});
+    errors.push_back({e.location_of("start"), reason_of(problem)});
   }
   return coarsest.rest.vertices;
 }
 
-/// The shape that the start moves, on every level: the rest's, or that of the file.
+/// The untransformed initial shape of every level: the rest shape, or that of the file.
 std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
   const std::string& file = e.parameters.start.file;
   std::vector<Positions> shapes;
@@ -102,41 +102,40 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
   return shapes;
 }
 
-/// Moves a level's shape to where it starts; the noise is that of the rest shape's place.
+/// The initial state of a level: its shape, transformed, with noise that depends on the rest positions.
 Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
                      double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
   Positions x(rest.rows(), 3);
   for (Eigen::Index i = 0; i < rest.rows(); ++i) {
     const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
-    x.row(i) = s.place(shape.row(i), across).transpose();
+    x.row(i) = s.transformed(shape.row(i), across).transpose();
   }
   return x;
 }
 
-/// Whether the cloth starts where it can be computed with: appends what is wrong.
+/// Whether every initial coordinate is within bounds; appends the faults.
 bool check_start(const Experiment& e, const Level& level, const Positions& x, ConfigErrors& errors) {
   const std::vector<std::string> faults = check_coordinates(x);
   for (const std::string& fault : faults)
     errors.push_back(
-        {e.place_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
+        {e.location_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
   return faults.empty();
 }
 
 }  // namespace
 
-void refuse_touching_start(const Experiment& e, const LevelModel& model, const Positions& start,
-                           ConfigErrors& errors) {
+void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
+                               ConfigErrors& errors) {
   constexpr std::size_t most_said = 3;
   for (const auto& contact : model.contacts()) {
     const std::vector<Intersection> touches = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
-      errors.push_back({e.place_of("start"), "the start of level " + std::to_string(model.level().index) +
-                                                 " touches: " + to_string(touches[k])});
+      errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
+                                                    " touches: " + to_string(touches[k])});
     if (touches.size() > most_said)
-      errors.push_back(
-          {e.place_of("start"), "… and " + std::to_string(touches.size() - most_said) +
-                                    " more pairs; move the start or the obstacle so that they are apart"});
+      errors.push_back({e.location_of("start"), "… and " + std::to_string(touches.size() - most_said) +
+                                                    " more pairs; move the start and the obstacle apart"});
   }
 }
 
@@ -146,7 +145,7 @@ const Solver& Experiment::solver_of(const std::string& method) const {
   throw std::logic_error("no method " + method);
 }
 
-Location Experiment::place_of(const std::string& key) const {
+Location Experiment::location_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);
   return node ? node->where : source.where;
 }
@@ -157,49 +156,50 @@ Problem Scene::problem() const {
   return p;
 }
 
-std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors, TouchingStart touching) {
+std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
+                                   IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
   TriangleMesh cloth;
   try {
     cloth = make_cloth(e);
   } catch (const std::exception& error) {
-    errors.push_back({e.place_of("cloth"), reason_of(error)});
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
     return nullptr;
   }
   const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
-  for (const std::string& fault : check_mesh(cloth)) errors.push_back({e.place_of("cloth"), file + fault});
+  for (const std::string& fault : check_mesh(cloth)) errors.push_back({e.location_of("cloth"), file + fault});
   if (!errors.empty()) return nullptr;
 
   auto scene = std::make_unique<Scene>();
   try {
     scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
   } catch (const std::exception& error) {
-    errors.push_back({e.place_of("cloth"), reason_of(error)});
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
-  check_places(e, coarsest, errors);
+  check_boundary_conditions(e, coarsest, errors);
   const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
   if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
     const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
-    std::vector<DirichletVertex> held =
+    std::vector<DirichletVertex> dirichlet =
         dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
-    for (const DirichletVertex& h : held) start.row(h.vertex) = h.target.transpose();
+    for (const DirichletVertex& h : dirichlet) start.row(h.vertex) = h.target.transpose();
     if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {
       scene->models.push_back(
-          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(held), e.contacts));
+          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(dirichlet), e.contacts));
     } catch (const std::exception& error) {
-      errors.push_back({e.place_of("energies"), reason_of(error)});
+      errors.push_back({e.location_of("energies"), reason_of(error)});
       return nullptr;
     }
-    if (touching == TouchingStart::refused)
-      refuse_touching_start(e, *scene->models.back(), scene->starts.back(), errors);
+    if (intersecting == IntersectingStart::refused)
+      refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
   if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<Schedule>(e, *scene);

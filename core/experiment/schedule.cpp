@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/experiment/places.h"
+#include "core/experiment/boundary_conditions.h"
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/message_text.h"
 #include "core/model/stretch_limit.h"
 #include "core/plugin/make.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 
@@ -16,9 +16,9 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Sections whose parameters may change over pseudo-time.
+/// Sections whose parameters may change; the others choose the discretisation and the methods.
 const std::vector<std::string> changeable = {"material", "energies", "contact", "pins", "handles"};
-/// An increment is tried at most so often, in ever smaller fractions, before it waits for equilibrium.
+/// An increment is tried at most this often, in ever smaller fractions, before it waits for equilibrium.
 constexpr int max_tries = 30;
 constexpr double min_fraction = 1e-6;
 
@@ -36,11 +36,11 @@ std::vector<double> numbers_of(const ConfigNode& node) {
   return numbers;
 }
 
-/// What a key's `to` says at each of its times; empty where that is not so many numbers each.
+/// The values of a key at each of its times; empty unless all have equally many numbers.
 std::vector<std::vector<double>> values_of(const KeyParameters& key) {
-  if (key.to.kind != NodeKind::list || key.to.items.size() != key.at.size()) return {};
+  if (key.values.kind != NodeKind::list || key.values.items.size() != key.times.size()) return {};
   std::vector<std::vector<double>> values;
-  for (const ConfigNode& item : key.to.items) {
+  for (const ConfigNode& item : key.values.items) {
     values.push_back(numbers_of(item));
     if (values.back().empty() || values.back().size() != values[0].size()) return {};
   }
@@ -49,20 +49,21 @@ std::vector<std::vector<double>> values_of(const KeyParameters& key) {
 
 std::vector<double> value_at(const KeyParameters& key, const std::vector<std::vector<double>>& values,
                              double time) {
-  const auto next = std::upper_bound(key.at.begin(), key.at.end(), time);
-  if (next == key.at.begin()) return values.front();
-  const auto i = static_cast<std::size_t>(next - key.at.begin()) - 1;
-  if (next == key.at.end() || key.between == Between::jump) return values[i];
-  const double part = (time - key.at[i]) / (key.at[i + 1] - key.at[i]);
+  const auto next = std::upper_bound(key.times.begin(), key.times.end(), time);
+  if (next == key.times.begin()) return values.front();
+  const auto i = static_cast<std::size_t>(next - key.times.begin()) - 1;
+  if (next == key.times.end() || key.interpolation == KeyInterpolation::step) return values[i];
+  const double part = (time - key.times[i]) / (key.times[i + 1] - key.times[i]);
   std::vector<double> value = values[i];
   for (std::size_t c = 0; c < value.size(); ++c)
-    value[c] = key.between == Between::log ? value[c] * std::pow(values[i + 1][c] / value[c], part)
-                                           : value[c] + part * (values[i + 1][c] - value[c]);
+    value[c] = key.interpolation == KeyInterpolation::log
+                   ? value[c] * std::pow(values[i + 1][c] / value[c], part)
+                   : value[c] + part * (values[i + 1][c] - value[c]);
   return value;
 }
 
 ConfigNode node_of(const KeyParameters& key, const double* numbers) {
-  const ConfigNode& shape = key.to.items[0];
+  const ConfigNode& shape = key.values.items[0];
   if (shape.kind != NodeKind::list) return ConfigNode::of(*numbers);
   ConfigNode list;
   list.kind = NodeKind::list;
@@ -73,12 +74,12 @@ ConfigNode node_of(const KeyParameters& key, const double* numbers) {
 double duration_of(const ScheduleParameters& p) {
   double duration = p.duration;
   for (const KeyParameters& key : p.keys)
-    if (p.duration == 0 && !key.at.empty()) duration = std::max(duration, key.at.back());
+    if (p.duration == 0 && !key.times.empty()) duration = std::max(duration, key.times.back());
   return duration;
 }
 
 /// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
-StepLimit obstacle_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
+StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
   StepLimit limit;
   for (std::size_t k = 0; k < to.contacts().size(); ++k) {
     if (to.contacts()[k] == from.contacts()[k]) continue;
@@ -93,33 +94,46 @@ StepLimit obstacle_limit(const LevelModel& from, const LevelModel& to, const Pos
 }  // namespace
 
 void KeyParameters::declare(Declaration<KeyParameters>& d) {
-  d.add("set", &KeyParameters::set)
+  d.add("parameter", &KeyParameters::parameter)
+      .formerly("set")
       .required()
-      .meaning(
-          "path of the parameter, as for --set: in material, energies, contact, pins or handles; a plugin "
-          "of a list by its place or its name, as in energies.gravity.acceleration");
-  d.add("at", &KeyParameters::at).at_least(-1e9).at_most(1e9).required().meaning("pseudo-times, rising");
-  d.add_node("to", &KeyParameters::to)
+      .description(
+          "path of the parameter, as for --set, in material, energies, contact, pins or handles; an item of a "
+          "list goes by its index or its name, as in energies.gravity.acceleration");
+  d.add("times", &KeyParameters::times)
+      .formerly("at")
+      .at_least(-1e9)
+      .at_most(1e9)
       .required()
-      .meaning("a list of as many values, numbers or lists of them");
-  d.add_choice("between", &KeyParameters::between,
-               {{"linear", Between::linear}, {"log", Between::log}, {"jump", Between::jump}})
-      .meaning("from one time to the next; before the first and after the last the value stays");
+      .description("pseudo-times, ascending");
+  d.add_node("values", &KeyParameters::values)
+      .formerly("to")
+      .required()
+      .description("one value per time, each a number or a list of numbers");
+  d.add_choice("interpolation", &KeyParameters::interpolation,
+               {{"linear", KeyInterpolation::linear},
+                {"log", KeyInterpolation::log},
+                {"step", KeyInterpolation::step}})
+      .formerly("between")
+      .description("interpolation between two times; constant before the first and after the last");
 }
 
 void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
   d.add("duration", &ScheduleParameters::duration)
       .at_least(0)
       .at_most(1e9)
-      .meaning("pseudo-time in all, in the unit of the keys; 0 goes to the last of them");
+      .description("total pseudo-time, in the unit of `times`; 0 takes the last time of all keys");
   d.add("steps", &ScheduleParameters::steps)
       .at_least(1)
       .at_most(1e6)
-      .meaning("number of equal increments")
+      .description("number of equal load increments")
       .source("supplement, section 4");
-  d.add("settle", &ScheduleParameters::settle)
-      .meaning("to equilibrium after every change; if not, one implicit step. After the last always");
-  d.add_sections("keys", &ScheduleParameters::keys).meaning("what changes");
+  d.add("equilibrate", &ScheduleParameters::equilibrate)
+      .formerly("settle")
+      .description(
+          "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate "
+          "after the last");
+  d.add_sections("keys", &ScheduleParameters::keys).description("parameters that change");
 }
 
 void set_first_keys(ConfigNode& source) {
@@ -128,11 +142,11 @@ void set_first_keys(ConfigNode& source) {
   const ConfigNode* keys = schedule ? schedule->find("keys") : nullptr;
   if (!keys || keys->kind != NodeKind::list) return;
   for (const ConfigNode& key : std::vector<ConfigNode>(keys->items)) {
-    const ConfigNode *set = key.find("set"), *to = key.find("to");
-    if (!set || !to || to->kind != NodeKind::list || to->items.empty()) continue;
-    const std::string& path = set->scalar;
+    const ConfigNode *parameter = key.find("parameter"), *values = key.find("values");
+    if (!parameter || !values || values->kind != NodeKind::list || values->items.empty()) continue;
+    const std::string& path = parameter->scalar;
     if (std::find(changeable.begin(), changeable.end(), path.substr(0, path.find('.'))) != changeable.end())
-      set_path(source, path, to->items[0], set->where, said_later);
+      set_path(source, path, values->items[0], parameter->where, said_later);
   }
 }
 
@@ -141,20 +155,21 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
   for (std::size_t k = 0; k < p.keys.size(); ++k) {
     const KeyParameters& key = p.keys[k];
     const Location where = e.source.find("schedule")->find("keys")->items[k].where;
-    const std::string name = "key \"" + excerpt(key.set) + "\"";
+    const std::string name = "key \"" + excerpt(key.parameter) + "\"";
     const auto refuse = [&](const std::string& what) { errors.push_back({where, name + " " + what}); };
-    if (std::find(changeable.begin(), changeable.end(), key.set.substr(0, key.set.find('.'))) ==
+    if (key.parameter.empty()) continue;  // the schema has reported it
+    if (std::find(changeable.begin(), changeable.end(), key.parameter.substr(0, key.parameter.find('.'))) ==
         changeable.end())
       refuse("cannot change while a level is solved; keys are for parameters of " + joined(changeable));
-    else if (!std::is_sorted(key.at.begin(), key.at.end(), std::less_equal<>()))
-      refuse("must have times \"at\" that rise");
+    else if (!std::is_sorted(key.times.begin(), key.times.end(), std::less_equal<>()))
+      refuse("must have ascending \"times\"");
     else if (values_of(key).empty())
-      refuse("must have as many values under \"to\" as times under \"at\", all numbers or all lists of " +
-             std::string("as many numbers, as in {at: [0, 1], to: [[0, 0, 0], [0, 0, 0.1]]}"));
-    else if (key.between == Between::log)
+      refuse("must have as many \"values\" as \"times\", all numbers or all lists of " +
+             std::string("equally many numbers, as in {times: [0, 1], values: [[0, 0, 0], [0, 0, 0.1]]}"));
+    else if (key.interpolation == KeyInterpolation::log)
       for (const auto& value : values_of(key))
         if (*std::min_element(value.begin(), value.end()) <= 0) {
-          refuse("goes by its logarithm, so that all its values must be above 0");
+          refuse("is interpolated by its logarithm: all its values must be above 0");
           break;
         }
   }
@@ -162,11 +177,11 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
   static const Schema schema = schema_of<ExperimentParameters>();
   // Every keyed value, as its parameter would take it from the file.
   for (std::size_t k = 0; k < p.keys.size(); ++k)
-    for (const ConfigNode& value : p.keys[k].to.items) {
+    for (const ConfigNode& value : p.keys[k].values.items) {
       ConfigNode config = e.resolved;
       ConfigErrors own;
-      const Location where = e.source.find("schedule")->find("keys")->items[k].find("to")->where;
-      if (set_path(config, p.keys[k].set, value, where, own)) {
+      const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
+      if (set_path(config, p.keys[k].parameter, value, where, own)) {
         ExperimentParameters read;
         schema.read(&read, config, own);
         for (const ConfigNode& node : read.energies) make_from<Energy>(*e.registry, node, own);
@@ -176,7 +191,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
           make_from<ContactModel>(*e.registry, read.contact, own);
       }
       for (const ConfigError& error : own)
-        errors.push_back({where, "key \"" + excerpt(p.keys[k].set) + "\": " + error.message});
+        errors.push_back({where, "key \"" + excerpt(p.keys[k].parameter) + "\": " + error.message});
       if (!own.empty()) break;
     }
 }
@@ -208,7 +223,7 @@ LoadState Schedule::load_state(const std::vector<double>& numbers,
   ConfigErrors errors;
   const double* at = numbers.data();
   for (std::size_t k = 0; k < p_.keys.size(); ++k) {
-    set_path(config, p_.keys[k].set, node_of(p_.keys[k], at), Location(), errors);
+    set_path(config, p_.keys[k].parameter, node_of(p_.keys[k], at), Location(), errors);
     at += values_[k][0].size();
   }
   LoadState m;
@@ -306,7 +321,8 @@ StepLimit Schedule::try_fraction(double fraction, int level, const Positions& x)
   LevelModel model = model_for(next, level);
   if (std::string refused = strain_limit_violations(model.limits(), x, 1); !refused.empty())
     return {0.5, std::move(refused)};
-  if (StepLimit limit = obstacle_limit(*scene_.models[level], model, x); limit.fraction < 1) return limit;
+  if (StepLimit limit = obstacle_step_limit(*scene_.models[level], model, x); limit.fraction < 1)
+    return limit;
   *scene_.models[level] = std::move(model);
   update_energies_above(level, next);
   set_state(std::move(next), std::move(made_from), std::move(numbers));

@@ -4,12 +4,12 @@
 
 namespace drape {
 
-/// Sets in an experiment's map what its schedule's keys say for their beginning, so that it is read with it.
-/// What is wrong with them is left to check_schedule.
+/// Sets the first value of every key of the schedule in an experiment's map, before the map is read.
+/// check_schedule reports faults of the keys.
 void set_first_keys(ConfigNode& source);
 
-/// Appends what is wrong with the schedule of an experiment that has been read otherwise: paths that may not
-/// change, times, and values that their parameters refuse.
+/// Appends the faults of a schedule: parameters that may not change, times that do not ascend, and values
+/// that their parameters refuse.
 void check_schedule(const Experiment& experiment, ConfigErrors& errors);
 
 /// The parameters, energies and contact models at one point of the pseudo-time.
@@ -19,14 +19,14 @@ struct LoadState {
   std::vector<std::shared_ptr<ContactModel>> contacts;
 };
 
-/// The keyed parameters of an experiment over pseudo-time, and the models of a scene under them. Refers to
-/// the scene, which owns it.
+/// The keyed parameters of an experiment over pseudo-time, and a scene's models under them. Refers to the
+/// scene, which owns it.
 class Schedule final : public LoadStepping {
  public:
   Schedule(Experiment experiment, Scene& scene);
 
   int increment_count() const override { return p_.steps; }
-  bool equilibrates() const override { return p_.settle; }
+  bool equilibrates() const override { return p_.equilibrate; }
   void begin(int level, bool from_start) override;
   LoadSteppingState state() const override { return {increment_, effective_}; }
   void restore(int level, const LoadSteppingState& state) override;

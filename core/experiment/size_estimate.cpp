@@ -15,7 +15,7 @@ namespace {
 
 /// A hinge's Hessian takes 16 blocks and a vertex has 3 hinges: their numbers must fit an int.
 constexpr double max_finest_vertices = 4e7;
-/// A grid whose vertices are more, or fewer, than those asked for by more than this factor is refused.
+/// A grid is refused if its number of vertices differs from the requested one by more than this factor.
 constexpr double max_vertex_ratio = 2;
 
 // Peak memory is 0.1 GB for the program and then grows as n log₂ n, as factors of plane meshes do. The
@@ -71,7 +71,7 @@ std::vector<double> estimated_vertices(const ExperimentParameters& p) {
                                 ? static_cast<double>(read_mesh(p.cloth.file).vertices.rows())
                                 : p.cloth.vertices;
     for (int l = 0; l < p.levels; ++l) {
-      const double cells = std::pow(2.0, l);  // on a level, of each cell of the coarsest along an edge
+      const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
       vertices.push_back(grid ? (cells * (size.columns - 1) + 1) * (cells * (size.rows - 1) + 1)
                               : cells * cells * coarsest);
     }
@@ -111,7 +111,7 @@ void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& erro
   why += fitting > 0 ? "; take at most " + std::to_string(fitting) + (fitting == 1 ? " level" : " levels")
                      : "; ask for fewer vertices";
   if (finest <= max_finest_vertices) why += ", or allow it with --allow-memory";
-  errors.push_back({e.place_of(e.source.find("levels") ? "levels" : "cloth"), why});
+  errors.push_back({e.location_of(e.source.find("levels") ? "levels" : "cloth"), why});
 }
 
 }  // namespace drape

@@ -6,27 +6,27 @@
 
 namespace drape {
 
-/// Columns and rows of vertices of a square's or rectangle's grid: those that are set, and else as many as
-/// make about `vertices` even cells.
+/// Columns and rows of vertices of a square's or rectangle's grid: as set, otherwise about `vertices`
+/// vertices with square cells.
 struct GridSize {
   int columns = 0, rows = 0;
 };
 
-/// Throws std::runtime_error where that is far from the vertices asked for, or more than a coarsest level may
-/// have.
+/// Throws std::runtime_error if the result is far from the requested vertices or too large for a coarsest
+/// level.
 GridSize grid_size(const ClothParameters& cloth);
 
-/// About how many vertices each level will have, before any is built; only a mesh file is read for it. Empty
-/// where the cloth cannot be made: building it says why.
+/// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
+/// be made, which build_scene reports.
 std::vector<double> estimated_vertices(const ExperimentParameters& p);
 
-/// Memory that a run takes at most, about, whose finest level has so many vertices [bytes].
+/// Estimated peak memory of a run whose finest level has so many vertices [bytes].
 double estimated_memory(double vertices);
 
-std::string memory_text(double bytes);  ///< as "2.3 GB"
+std::string memory_text(double bytes);  ///< "2.3 GB"
 
-/// Refuses levels with more vertices than indices can count and, unless allowed, a run whose memory may
-/// exceed this machine's.
+/// Appends an error for levels with more vertices than indices can count and, unless allowed, for a run that
+/// may need more memory than this machine has.
 enum class LargeMemory { refused, allowed };
 void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors);
 

@@ -15,14 +15,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double tiny_gap = 1e-6;  // [m]
-/// Distances that are tried, in parts of the cloth's diagonal: each so much longer than the last.
+/// Trial distances, relative to the cloth's diagonal, in a geometric series.
 constexpr double shortest_part = 1e-3, growth = 1.5;
-/// How often the way to the first place that is free is halved, not to go further than needed.
+/// Bisections of the first free translation, to move no further than necessary.
 constexpr int halvings = 5;
 
-/// What a start is like at one place.
-struct Standing {
-  std::vector<Intersection> touches;  ///< of the first level that has any; nothing else is known then
+/// Intersections and gaps of the translated initial state.
+struct Clearance {
+  std::vector<Intersection> touches;  ///< of the first level with any; the rest is then unknown
   int level = 0;                      ///< that level
   int contacts = 0;                   ///< pairs within d̂, on all levels
   double smallest_gap = std::numeric_limits<double>::infinity();
@@ -32,7 +32,7 @@ bool same_pair(const Intersection& a, const Intersection& b) {
   return a.first == b.first && a.second == b.second;
 }
 
-/// One vertex of every piece of the cloth.
+/// One vertex of every connected component of the cloth.
 std::vector<int> pieces_of(const Level& level) {
   std::vector<int> first, open;
   std::vector<char> seen(level.vertex_count(), 0);
@@ -52,8 +52,8 @@ std::vector<int> pieces_of(const Level& level) {
   return first;
 }
 
-/// The part of all directions from p in which the mesh shows its back, less those in which it shows its
-/// front: 1 inside a closed mesh that faces outwards, 0 outside (van Oosterom and Strackee 1983).
+/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
+/// (solid angles: van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   double angle = 0;
   for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
@@ -66,9 +66,9 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
   return angle / (4 * M_PI);
 }
 
-class Places {
+class StartProbe {
  public:
-  explicit Places(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
+  explicit StartProbe(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
     for (const auto& contact : scene.models[0]->contacts())
       for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
     const Positions& x = scene.starts[0];
@@ -77,26 +77,26 @@ class Places {
 
   double diagonal() const { return diagonal_; }
 
-  Standing at(const Vector3d& way) const {
-    Standing standing;
+  Clearance at(const Vector3d& translation) const {
+    Clearance clearance;
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
-      const Positions x = scene_.starts[l].rowwise() + way.transpose();
-      standing.level = static_cast<int>(l);
+      const Positions x = scene_.starts[l].rowwise() + translation.transpose();
+      clearance.level = static_cast<int>(l);
       for (const auto& contact : scene_.models[l]->contacts()) {
-        standing.touches = contact->intersections(x);
-        if (!standing.touches.empty()) return standing;
+        clearance.touches = contact->intersections(x);
+        if (!clearance.touches.empty()) return clearance;
         const auto near = contact->build_candidates(x, x)->build_collisions(x);
-        standing.contacts += near->contact_count();
-        standing.smallest_gap = std::min(standing.smallest_gap, near->smallest_gap());
+        clearance.contacts += near->contact_count();
+        clearance.smallest_gap = std::min(clearance.smallest_gap, near->smallest_gap());
       }
     }
-    return standing;
+    return clearance;
   }
 
-  /// Whether a piece of the cloth, which touches nothing, is within an obstacle: contact would keep it there.
-  bool enclosed(const Vector3d& way) const {
+  /// Whether a component of the cloth lies inside an obstacle without intersecting it.
+  bool enclosed(const Vector3d& translation) const {
     return std::any_of(pieces_.begin(), pieces_.end(), [&](int v) {
-      const Vector3d p = scene_.starts[0].row(v).transpose() + way;
+      const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
       return std::any_of(obstacles_.begin(), obstacles_.end(),
                          [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
     });
@@ -109,10 +109,10 @@ class Places {
   double diagonal_ = 0;
 };
 
-/// Looks for the place to go to; remembers what touches everywhere.
-class Search {
+/// Searches for a translation; remembers pairs that intersect after every one.
+class TranslationSearch {
  public:
-  Search(const Places& places, const Standing& start) : places_(places), lasting_(start) {
+  TranslationSearch(const StartProbe& probe, const Clearance& start) : probe_(probe), persistent_(start) {
     if (start.touches.empty()) best_contacts_ = start.contacts, found_ = true;
   }
 
@@ -121,10 +121,10 @@ class Search {
          {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
       double before = 0;
       for (double part = shortest_part; part < growth; part *= growth) {
-        const double distance = std::min(part, 1.0) * places_.diagonal();
+        const double distance = std::min(part, 1.0) * probe_.diagonal();
         if (is_better(distance * direction)) {
           shorten(direction, before, distance);
-          // What is still within d̂ then is the cloth itself, or there may be a better place.
+          // Without contacts this is the best; otherwise another direction may be better.
           if (best_contacts_ == 0) return;
         }
         before = distance;
@@ -133,23 +133,23 @@ class Search {
   }
 
   bool found() const { return found_; }
-  const Vector3d& way() const { return way_; }
-  /// Of the pairs that touch at the start, those that did at every place.
-  const std::vector<Intersection>& lasting() const { return lasting_.touches; }
+  const Vector3d& translation() const { return translation_; }
+  /// The pairs that intersected initially and after every trial.
+  const std::vector<Intersection>& persistent() const { return persistent_.touches; }
 
  private:
-  /// Takes note of the place if it is free, with fewer contacts than any before.
-  bool is_better(const Vector3d& way, bool or_as_good = false) {
-    const Standing standing = places_.at(way);
-    if (!standing.touches.empty()) {
-      keep_lasting(standing);
+  /// Accepts a translation without intersections if it has fewer contacts than any before.
+  bool is_better(const Vector3d& translation, bool or_as_good = false) {
+    const Clearance clearance = probe_.at(translation);
+    if (!clearance.touches.empty()) {
+      intersect_persistent(clearance);
       return false;
     }
-    if (found_ && standing.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
-    if (places_.enclosed(way)) return false;
+    if (found_ && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
+    if (probe_.enclosed(translation)) return false;
     found_ = true;
-    best_contacts_ = standing.contacts;
-    way_ = way;
+    best_contacts_ = clearance.contacts;
+    translation_ = translation;
     return true;
   }
 
@@ -160,40 +160,39 @@ class Search {
     }
   }
 
-  void keep_lasting(const Standing& other) {
-    if (other.level != lasting_.level) return;  // triangles of another level
-    std::erase_if(lasting_.touches, [&](const Intersection& touch) {
+  void intersect_persistent(const Clearance& other) {
+    if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
+    std::erase_if(persistent_.touches, [&](const Intersection& touch) {
       return std::none_of(other.touches.begin(), other.touches.end(),
                           [&](const Intersection& now) { return same_pair(touch, now); });
     });
   }
 
-  const Places& places_;
-  Standing lasting_;
+  const StartProbe& probe_;
+  Clearance persistent_;
   bool found_ = false;
   int best_contacts_ = 0;
-  Vector3d way_ = Vector3d::Zero();
+  Vector3d translation_ = Vector3d::Zero();
 };
 
-std::string pinned_text(const Standing& start) {
+std::string pinned_text(const Clearance& start) {
   return "the start of level " + std::to_string(start.level) + " touches: " + to_string(start.touches[0]) +
-         "; a cloth with pins is not moved, for they say where it is: move the pins or the obstacle";
+         "; a cloth with pins is not moved: move the pins or the obstacle";
 }
 
-std::string hopeless_text(const Standing& start, const Search& search, double diagonal) {
+std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
   const std::string ways = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
   const std::string level = " on level " + std::to_string(start.level);
-  if (!search.lasting().empty())
-    return ways + " does not part " + to_string(search.lasting()[0]) + level +
+  if (!search.persistent().empty())
+    return ways + " does not part " + to_string(search.persistent()[0]) + level +
            "; change the start's shape or the obstacle";
-  return ways +
-         " finds no place where it touches nothing; where it is, these do: " + to_string(start.touches[0]) +
-         level;
+  return ways + " finds no position without intersections; at the start these intersect: " +
+         to_string(start.touches[0]) + level;
 }
 
-void move(Experiment& experiment, const Vector3d& way) {
+void move(Experiment& experiment, const Vector3d& translation) {
   Vector3d& translate = experiment.parameters.start.translate;
-  translate += way;
+  translate += translation;
   std::string text;
   for (int c = 0; c < 3; ++c) text += (c ? ", " : "[") + ConfigNode::of(translate[c]).scalar;
   ConfigErrors none;
@@ -203,22 +202,22 @@ void move(Experiment& experiment, const Vector3d& way) {
 }  // namespace
 
 Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
-  const Places places(scene);
-  const Standing start = places.at(Vector3d::Zero());
+  const StartProbe probe(scene);
+  const Clearance start = probe.at(Vector3d::Zero());
   const bool touches = !start.touches.empty();
   if (!touches && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   if (!experiment.parameters.pins.empty()) {
-    if (touches) errors.push_back({experiment.place_of("start"), pinned_text(start)});
+    if (touches) errors.push_back({experiment.location_of("start"), pinned_text(start)});
     return Vector3d::Zero();
   }
-  Search search(places, start);
+  TranslationSearch search(probe, start);
   search.run();
   if (!search.found()) {
-    errors.push_back({experiment.place_of("start"), hopeless_text(start, search, places.diagonal())});
+    errors.push_back({experiment.location_of("start"), hopeless_text(start, search, probe.diagonal())});
     return Vector3d::Zero();
   }
-  if (!search.way().isZero(0)) move(experiment, search.way());
-  return search.way();
+  if (!search.translation().isZero(0)) move(experiment, search.translation());
+  return search.translation();
 }
 
 }  // namespace drape

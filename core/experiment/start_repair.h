@@ -4,11 +4,11 @@
 
 namespace drape {
 
-/// Moves a start that touches something, or is closer than a micrometre to it, the same way on every level:
-/// up, or else to a side, until nothing touches and no obstacle is within d̂ or around the
-/// cloth. Returns the way [m], zero where nothing had to be moved. It is added to the experiment's
-/// `start.translate`, from which the scene is to be built again. Where a start that touches cannot be moved
-/// apart, or has pins, errors say why.
+/// Translates an initial state that intersects something, or is closer than a micrometre to it: up, or else
+/// sideways, equally on every level, until nothing intersects and no obstacle is within d̂ or encloses the
+/// cloth. Returns the translation [m], zero if none was necessary. It is added to the
+/// experiment's `start.translate`, and the scene must be built again. Appends an error if no translation is
+/// found or the cloth has pins.
 Eigen::Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors);
 
 }  // namespace drape

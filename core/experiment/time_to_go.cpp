@@ -7,12 +7,12 @@ namespace drape {
 
 namespace {
 
-/// No time is shown before this many notes have made progress, and before this part of the whole is done.
+/// No estimate before this many notes with progress and this fraction.
 constexpr int min_notes = 8;
 constexpr double min_done = 0.02;
-/// An estimate above this many times the time so far is not shown.
+/// Estimates above this many times the elapsed time are not shown.
 constexpr double max_ratio = 50;
-/// Time in which what is shown comes about as near to the estimate as 1/e of the way [s].
+/// Time constant of the smoothing [s].
 constexpr double smoothing = 5;
 
 }  // namespace
@@ -41,7 +41,7 @@ std::optional<double> TimeToGo::extrapolated() const {
   const double rate = (track_.back().second - done) / (now_ - middle);
   const double estimate = (1 - track_.back().second) / rate;
   if (!(rate > 0) || !(estimate <= max_ratio * (now_ - begun))) return {};
-  return std::max(estimate, 1e-3);  // of a time that has a logarithm
+  return std::max(estimate, 1e-3);  // positive, for its logarithm
 }
 
 }  // namespace drape

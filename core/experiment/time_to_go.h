@@ -6,22 +6,22 @@
 
 namespace drape {
 
-/// How long something still takes, from how much of it has been done when. What it says changes smoothly:
-/// from one note to the next by no more than a factor of two, and by a factor of ten only over seconds.
+/// Estimates remaining time from progress over time. The estimate changes smoothly: at most by a factor of
+/// two per note, and by a factor of ten only over seconds.
 class TimeToGo {
  public:
-  /// At `seconds`, which rise, `done` of the whole has been done, in [0, 1]; less than before counts as
-  /// nothing new.
+  /// Notes that the fraction `done` in [0, 1] was complete at `seconds`, which ascend. A fraction below the
+  /// last one counts as no progress.
   void note(double seconds, double done);
-  /// After the last note [s]; none while it is unknown: at first, and where nothing has been done for long.
+  /// Remaining time after the last note [s]; empty at first and after a long time without progress.
   std::optional<double> seconds() const { return known_ ? std::optional(shown_) : std::nullopt; }
 
  private:
-  /// At the rate of the later half of the time so far.
+  /// By the rate of the second half of the time so far.
   std::optional<double> extrapolated() const;
 
-  std::vector<std::pair<double, double>> track_;  // seconds, done; where that rose
-  double now_ = 0, shown_ = 0;                    // shown_ is 0 before it was known for the first time
+  std::vector<std::pair<double, double>> track_;  // seconds and fraction, where it rose
+  double now_ = 0, shown_ = 0;                    // shown_ is 0 before the first estimate
   bool known_ = false;
 };
 

@@ -20,7 +20,7 @@ Location place(const std::string& file, const YAML::Mark& mark) {
   return {file, mark.line + 1, mark.column + 1};
 }
 
-/// Copies yaml-cpp's graph into a tree; an alias is a copy of its anchor, with the anchor's place.
+/// Copies yaml-cpp's graph into a tree; an alias becomes a copy of its anchor, with the anchor's location.
 class Converter {
  public:
   Converter(const std::string& file, ConfigErrors& errors) : file_(file), errors_(errors) {}
@@ -28,7 +28,7 @@ class Converter {
   ConfigNode convert(const YAML::Node& yaml) {
     ConfigNode node;
     node.where = place(file_, yaml.Mark());
-    // An alias inside its own anchor never ends, and a few nested ones can make billions of nodes.
+    // An alias inside its own anchor is infinite, and nested aliases can expand to billions of nodes.
     if (++nodes_ > max_nodes || depth_ > max_depth) {
       if (!refused_) errors_.push_back({node.where, "too many nested or repeated nodes; check the aliases"});
       refused_ = true;
@@ -53,7 +53,7 @@ class Converter {
     refuse_nul(node.scalar, node.where);
   }
 
-  /// Names of files end at a NUL for the system, but not for us.
+  /// For the system a file name ends at a NUL; for std::string it does not.
   void refuse_nul(const std::string& text, const Location& where) {
     if (text.find('\0') != std::string::npos)
       errors_.push_back({where, "\"" + excerpt(text) + "\" has a NUL character; take it out"});
@@ -78,8 +78,8 @@ class Converter {
       }
       refuse_nul(entry.first.Scalar(), where);
       node.add(entry.first.Scalar(), convert(entry.second));
-      node.key_places.back() = where;
-      // yaml-cpp puts a missing value where the next thing stands.
+      node.key_locations.back() = where;
+      // yaml-cpp locates a missing value at the next token.
       if (ConfigNode& value = node.entries.back().second; value.kind == Kind::null) value.where = where;
     }
   }
@@ -93,8 +93,7 @@ class Converter {
   bool refused_ = false;
 };
 
-/// yaml-cpp ends a file at some control characters, without a word, and what is not UTF-8 cannot be written
-/// to results.json.
+/// yaml-cpp silently ends a file at some control characters, and results.json needs UTF-8.
 bool is_text(const std::string& text, const std::string& name, ConfigErrors& errors) {
   const std::size_t at = first_unprintable(text);
   if (at == text.npos) return true;
@@ -105,7 +104,7 @@ bool is_text(const std::string& text, const std::string& name, ConfigErrors& err
   return false;
 }
 
-/// Where the root nodes of a text's documents are.
+/// Locations of the root nodes of a text's documents.
 class DocumentRoots : public YAML::EventHandler {
  public:
   std::vector<YAML::Mark> marks;
@@ -135,8 +134,9 @@ class DocumentRoots : public YAML::EventHandler {
   bool in_document_ = false;
 };
 
-/// An error if there is more than one document. YAML::LoadAll would tell too, but does not end where a
-/// document begins with a sign such as "," or "]", which the parser leaves for the next one.
+/// An error if there is more than one document. YAML::LoadAll would not terminate on a document that begins
+/// with
+/// "," or "]", which the parser leaves for the next one.
 bool is_one_document(const std::string& text, const std::string& name, ConfigErrors& errors) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
@@ -162,10 +162,10 @@ void set_places(ConfigNode& node, const Location& where) {
   node.where = where;
   for (ConfigNode& item : node.items) set_places(item, where);
   for (auto& entry : node.entries) set_places(entry.second, where);
-  for (Location& key : node.key_places) key = where;
+  for (Location& key : node.key_locations) key = where;
 }
 
-/// Whether an item of a list goes by the word: a plugin by its type, other things by their name.
+/// Whether the word is the type or the name of a list's item.
 bool is_called(const ConfigNode& item, const std::string& word) {
   if (item.kind == Kind::scalar) return item.scalar == word;
   for (const char* key : {"type", "name"})
@@ -173,7 +173,7 @@ bool is_called(const ConfigNode& item, const std::string& word) {
   return false;
 }
 
-/// The part of `node` that one word of a path names, made if it is a new key; null where there is none.
+/// The child of `node` that one word of a path names; a new key is added. Null without such a child.
 ConfigNode* step(ConfigNode& node, const std::string& word, const Location& where) {
   if (node.kind == Kind::list) {
     if (const auto index = parse_integer(word))

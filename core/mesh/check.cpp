@@ -79,7 +79,7 @@ bool check_indices(const TriangleMesh& mesh, Faults& faults) {
 }
 
 void check_shapes(const TriangleMesh& mesh, Faults& faults) {
-  constexpr double smallest_height = 1e-12;  // relative; far above rounding, far below any usable triangle
+  constexpr double smallest_height = 1e-12;  // relative; far above round-off, far below any usable triangle
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (repeats_vertex(mesh.triangles, t)) {
       faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex");
@@ -106,7 +106,7 @@ void check_duplicates(const Triangles& triangles, Faults& faults) {
                        text(sorted[i - 1].second));
 }
 
-/// Sets of triangle corners that hang together across edges; one set a fan.
+/// Sets of triangle corners that are connected across edges; each set is a fan.
 class Fans {
  public:
   explicit Fans(int corner_count) : parent_(corner_count) { std::iota(parent_.begin(), parent_.end(), 0); }

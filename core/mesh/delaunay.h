@@ -12,11 +12,12 @@ namespace drape {
 /// on the points alone.
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points);
 
-/// Edge length h of `vertices` evenly spread over an area: with b = border_length / h border vertices there
-/// are 2 · vertices − b triangles of area √3/4 h² (Euler's formula, less its constant).
+/// Edge length h of a mesh of `vertices` vertices with equilateral triangles: with b = border_length / h
+/// boundary vertices there are 2 · vertices − b triangles of area √3/4 h² (Euler's formula, less its
+/// constant).
 double even_spacing(double area, double border_length, int vertices);
 
-/// Random numbers that are the same with every standard library.
+/// Random numbers that are equal for every standard library.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}

@@ -2,9 +2,9 @@
 
 namespace drape {
 
-/// The largest coordinate of a mesh [m]: there doubles still resolve 1e-7 m.
+/// The largest coordinate of a mesh [m]. Doubles resolve 1e-7 m at that distance.
 constexpr double largest_coordinate = 1e9;
-/// The least diagonal of a mesh's box [m].
+/// The least diagonal of a mesh's bounding box [m].
 constexpr double smallest_diagonal = 1e-9;
 
 }  // namespace drape

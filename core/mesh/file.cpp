@@ -48,7 +48,7 @@ std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
     throw FileError("cannot read " + name + ": " + reason,
                     error == ENOENT ? "no such file" : "cannot be read (" + reason + ")");
   };
-  // A pipe without a writer holds up an open that waits.
+  // Opening a pipe without a writer would block.
   const Descriptor file{open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
   struct stat status {};
   if (file.number < 0 || fstat(file.number, &status) != 0) refuse_number(errno);

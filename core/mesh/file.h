@@ -15,38 +15,38 @@ struct FileError : std::runtime_error {
   std::string cause;
 };
 
-/// The most that is read of a file [bytes]: of any, and of a config.
+/// Largest file to be read [bytes]: of any kind, and of a config.
 inline constexpr std::uintmax_t largest_file = 2'000'000'000, largest_config = 8'000'000;
 
-/// A file or folder cannot be written: the disk is full, the folder is gone, or the like. Whatever wants to
-/// write it cannot go on, while other errors concern only what threw them.
+/// A file or folder cannot be written, as on a full disk. It ends the run, where other errors end only the
+/// method that threw them.
 class WriteError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The whole file as bytes. Every file that a user names or can change is read by this. Throws FileError,
-/// without waiting, for what is no regular file (pipes and devices may give bytes for ever) or has more than
-/// `most` bytes.
+/// The whole file as bytes. Every file that a user names or can change goes through this function. Throws
+/// FileError, without blocking, for a file that is not regular (a pipe may never end) or larger than `most`
+/// bytes.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
-/// Writes path + ".part" and renames it, so that nothing half-written stands under the final name.
-/// Throws WriteError naming the path and the cause; the part is then removed.
+/// Writes path + ".part" and renames it: the final name never has an incomplete file. Throws WriteError naming
+/// path and cause, after removing the part.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// As write_file, unless the file has these bytes already. Whether it had others, or was not there.
+/// As write_file, unless the file has these bytes already. Returns whether it wrote.
 bool write_where_other(const std::filesystem::path& path, std::string_view bytes);
 
-/// Makes the folder, and those above it, where need be. Throws WriteError.
+/// Makes the folder and its parents if they do not exist. Throws WriteError.
 void make_folder(const std::filesystem::path& path);
 
-/// Replaces what has the new name. Throws WriteError.
+/// Renames a file; replaces one of the new name. Throws WriteError.
 void rename_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// CRC-32.
+/// The CRC-32 of the bytes.
 std::uint32_t checksum_of(std::string_view bytes);
 
-/// Returns once what has been written to a file or folder is on the disk, where the system can say so.
+/// Flushes a file or folder to the disk (fsync), where the system supports it.
 void sync_to_disk(const std::filesystem::path& path);
 
 }  // namespace drape

@@ -7,12 +7,12 @@
 
 namespace drape {
 
-// Flat cloth patterns in the plane z = 0, all triangles counter-clockwise seen from +z. Lengths in
-// metres. Misuse throws std::runtime_error. Every result is the same, bit for bit, from run to run.
+// Flat cloth patterns in the plane z = 0, triangles counter-clockwise seen from +z, lengths in metres.
+// Misuse throws std::runtime_error. Results are deterministic, bit for bit.
 
 enum class Diagonals {
   one_way,     ///< every cell is cut like '/'
-  criss_cross  ///< cells are cut like '/' and '\' in turn, as on a chessboard ("union jack")
+  criss_cross  ///< cells are cut like '/' and '\' alternately, as on a chessboard ("union jack")
 };
 
 /// A rectangle from (0, 0) to `size` with columns × rows vertices, row by row; vertex (i, j) is i + columns ·
@@ -24,26 +24,26 @@ TriangleMesh grid(Eigen::Vector2d size, int columns, int rows, Diagonals diagona
 /// 1) is √3/2 · size.x() / (columns - 1), and halves of them at the sides x = 0 and x = size.x().
 TriangleMesh equilateral(const Eigen::Vector2d& size, int columns, int rows);
 
-/// Columns and rows for `equilateral` that come nearest to equilateral triangles and, where both given counts
-/// are 0, to `vertices` in all; a count above 0 stays.
+/// Columns and rows for `equilateral` whose triangles are closest to equilateral. If both given counts are 0,
+/// the number of vertices is also close to `vertices`; a positive count stays as it is.
 Eigen::Vector2i equilateral_counts(const Eigen::Vector2d& size, int vertices, int columns = 0, int rows = 0);
 
-/// Corners of one closed polygon in order, in either direction; the last is joined to the first.
+/// Corners of a closed polygon in order, in either orientation.
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/// A polygon, loops[0], with holes, loops[1 …], meshed by Delaunay refinement with all angles above 20°
-/// where the polygon's own angles permit (CGAL's 2D mesh generator, after Shewchuk's Delaunay refinement).
-/// Sides are cut evenly to the inner spacing. The number of vertices is within 15 % of `vertices_about`.
-/// `seed` places the first inner vertex, on which all others depend: another seed, another mesh.
+/// A polygon, loops[0], with holes, loops[1 …], meshed by Delaunay refinement (CGAL's 2D mesh generator, after
+/// Shewchuk). All angles exceed 20° where the polygon's own angles permit. Sides are divided evenly at the
+/// inner spacing. The number of vertices is within 15 % of `vertices_about`. Another `seed` gives another
+/// mesh.
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed);
 
-/// A disc about the origin, by delaunay_polygon from a regular polygon inscribed in the circle, whose sides
-/// match the inner spacing.
+/// A disc about the origin: delaunay_polygon of a regular polygon that is inscribed in the circle and has
+/// sides of the inner spacing.
 TriangleMesh disc(double radius, int vertices_about);
 
 /// A rectangle from (0, 0) to `size` with exactly `vertices` vertices: the Delaunay triangulation of evenly
-/// spaced border vertices, the corners among them, and well-spaced random inner ones (darts, thrown at a
-/// distance that shrinks until all have found room).
+/// spaced boundary vertices and of inner ones by dart throwing (Poisson disk sampling) with a radius that
+/// shrinks until all fit.
 TriangleMesh random_triangulation(Eigen::Vector2d size, int vertices, unsigned seed);
 
 }  // namespace drape

@@ -48,7 +48,7 @@ bool contains(const Ring& ring, const Point& p) {
   return CGAL::bounded_side_2(ring.begin(), ring.end(), p, Kernel()) == CGAL::ON_BOUNDED_SIDE;
 }
 
-/// The loops, checked: simple polygons, holes inside the first and outside one another.
+/// Validates the loops: simple polygons, holes inside the first and outside one another.
 std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
   if (loops.empty()) throw std::runtime_error("polygon: there is no loop");
   std::vector<Ring> rings;
@@ -78,7 +78,7 @@ bool encloses(const std::vector<Ring>& rings, const Point& p) {
          std::none_of(rings.begin() + 1, rings.end(), [&](const Ring& hole) { return contains(hole, p); });
 }
 
-/// The loops as constraints, every side cut evenly into pieces of about `spacing`.
+/// The loops as constraints, every side divided evenly into segments of about `spacing`.
 void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulation& triangulation) {
   for (const Polygon& loop : loops) {
     std::vector<Point> points;
@@ -95,7 +95,7 @@ void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulati
   }
 }
 
-/// Inserts one random point that keeps `spacing` from the border, where there is room for one.
+/// Inserts one random point at least `spacing` from the boundary, if there is one.
 void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned seed,
                         Triangulation& triangulation) {
   Random random(seed);
@@ -137,23 +137,22 @@ TriangleMesh inside(Triangulation& triangulation) {
       in_order(std::move(triangles))};
 }
 
-/// Nothing where corners and angles ask for more than so many vertices.
+/// Empty if the corners and angles require more than so many vertices.
 std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::vector<Ring>& rings,
                                     double spacing, double longest_edge, unsigned seed, double most) {
   Triangulation triangulation;
   insert_loops(loops, spacing, triangulation);
   insert_first_inner(rings, spacing, seed, triangulation);
-  std::vector<Point> hole_points;  // CGAL wants a point in every region that is not to be meshed
+  std::vector<Point> hole_points;  // CGAL needs a point in every region that is not meshed
   for (auto f : triangulation.finite_face_handles()) {
     const Point c = CGAL::centroid(triangulation.triangle(f));
     if (!encloses(rings, c)) hole_points.push_back(c);
   }
-  constexpr double shape_bound = 0.125;  // sin² of the smallest angle, 20.7°: refinement ends for certain
+  constexpr double shape_bound = 0.125;  // sin² of the smallest angle, 20.7°: refinement terminates for certain
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
   mesher.set_seeds(hole_points.begin(), hole_points.end(), false);
   mesher.init();
-  // A step adds a vertex or makes way for one; where rounding makes it add one that is there, there is no
-  // end.
+  // A step adds a vertex or prepares one. If round-off makes it add an existing one, it never terminates.
   constexpr double steps_each = 20;
   double steps = 0;
   while (mesher.try_one_step_refine_mesh())
@@ -194,7 +193,7 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
                              " vertices cannot be had; nearest is " + nearest +
                              " (corners and angles ask for that many)");
   };
-  const double most = 1e4 + 20.0 * vertices_about;  // far beyond what a first attempt overshoots by
+  const double most = 1e4 + 20.0 * vertices_about;  // well above the overshoot of a first attempt
   const double spacing = even_spacing(inner_area, border, vertices_about);
   double longest_edge = 1.4 * spacing;
   TriangleMesh best;

@@ -31,12 +31,12 @@ int columns_for(const Eigen::Vector2d& size, double rows, double most) {
 }  // namespace
 
 Eigen::Vector2i equilateral_counts(const Eigen::Vector2d& size, int vertices, int columns, int rows) {
-  constexpr double most = 1e9;  // of a count that follows from the other
+  constexpr double most = 1e9;  // of a derived count
   if (columns > 0 && rows > 0) return {columns, rows};
   if (columns > 0) return {columns, rows_for(size, columns, most)};
   if (rows > 0) return {columns_for(size, rows, most), rows};
 
-  // Both counts are rounded: look among their neighbours for what comes nearest in number and in shape.
+  // Both counts are rounded: try their neighbours for the best number and shape.
   const double guess = std::sqrt(vertices * height_of_unit * (size.x() / size.y()));
   const double largest = std::max(2.0, vertices / 2.0);
   const int first = static_cast<int>(std::clamp(0.5 * guess - 2, 2.0, largest));

@@ -10,8 +10,8 @@ namespace {
 
 using Points = std::vector<Eigen::Vector2d>;
 
-/// Border vertices of a rectangle, counter-clockwise from (0, 0), sides cut evenly. The last division of a
-/// side must give its end to the bit, or the corner stands beside it: fractions first, then the length.
+/// Boundary vertices of a rectangle, counter-clockwise from (0, 0), evenly spaced. Fractions are computed
+/// before lengths: the last point of a side must equal the corner to the bit.
 Points rectangle_border(const Eigen::Vector2d& size, int columns, int rows) {
   Points points;
   for (int i = 0; i < columns; ++i) points.emplace_back(size.x() * (static_cast<double>(i) / columns), 0);
@@ -22,7 +22,7 @@ Points rectangle_border(const Eigen::Vector2d& size, int columns, int rows) {
   return points;
 }
 
-/// Points in square cells, for asking whether a disc is free.
+/// Points in square cells, for queries whether a disc is empty.
 class CellGrid {
  public:
   CellGrid(const Eigen::Vector2d& size, double cell)
@@ -30,7 +30,7 @@ class CellGrid {
 
   void add(const Eigen::Vector2d& p) { items_[column(p.x()) + columns_ * row(p.y())].push_back(p); }
 
-  /// Whether no point lies nearer than radius ≤ cell.
+  /// Whether no point is closer than radius ≤ cell.
   bool is_free(const Eigen::Vector2d& p, double radius) const {
     const int i = column(p.x()), j = row(p.y());
     for (int r = std::max(j - 1, 0); r <= std::min(j + 1, rows_ - 1); ++r)
@@ -50,11 +50,11 @@ class CellGrid {
   std::vector<Points> items_;
 };
 
-/// Adds inner points until there are `count`, none nearer to another or to the border than can be had.
+/// Adds `count` inner points, as far from each other and from the boundary as possible.
 void throw_darts(const Eigen::Vector2d& size, double spacing, int count, Random& random, Points& points) {
-  constexpr int patience = 400;  // darts that miss before the distance shrinks
+  constexpr int patience = 400;  // misses before the radius shrinks
   constexpr double shrink = 0.98;
-  const double border_share = 0.6;  // of the distance, kept from the sides: lower makes flat triangles there
+  const double border_share = 0.6;  // least distance to the sides, relative to the radius: less makes slivers there
   CellGrid taken(size, spacing);
   for (const Eigen::Vector2d& p : points) taken.add(p);
   double radius = spacing;

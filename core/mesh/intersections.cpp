@@ -28,8 +28,8 @@ bool overlap_beside_edge(const Corners& a, const Corners& b) {
   const Vector edge = (a[1] - a[0]).normalized();
   const Vector u = a[2] - a[0], v = b[2] - b[0];
   const Vector across_u = u - edge.dot(u) * edge, across_v = v - edge.dot(v) * edge;
-  // Unfolded by more than a right angle, by far more than rounding: most pairs of a mesh. Coplanar ones of
-  // a flat but tilted mesh would otherwise need exact arithmetic.
+  // Unfolded by more than a right angle, beyond round-off: most pairs of a mesh. Without this shortcut the
+  // coplanar pairs of a flat but tilted mesh need exact arithmetic.
   if (across_u.dot(across_v) < -1e-6 * u.norm() * v.norm()) return false;
   const Point p = point(a[0]), q = point(a[1]), r = point(a[2]), s = point(b[2]);
   return CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;
@@ -39,7 +39,7 @@ bool overlap_beside_edge(const Corners& a, const Corners& b) {
 bool meet_beside_vertex(const Corners& a, const Corners& b) {
   const Vector a1 = (a[1] - a[0]).normalized(), a2 = (a[2] - a[0]).normalized();
   const Vector b1 = (b[1] - b[0]).normalized(), b2 = (b[2] - b[0]).normalized();
-  // On either side of a plane through the corner, by far more than rounding.
+  // On opposite sides of a plane through the corner, beyond round-off.
   const Vector n = a1 + a2 - b1 - b2;
   if (std::min(n.dot(a1), n.dot(a2)) > 1e-6 && std::max(n.dot(b1), n.dot(b2)) < -1e-6) return false;
   return CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(b[1]), point(b[2]))) ||
@@ -48,8 +48,7 @@ bool meet_beside_vertex(const Corners& a, const Corners& b) {
 
 bool has_no_area(const Corners& c) { return CGAL::collinear(point(c[0]), point(c[1]), point(c[2])); }
 
-/// A triangle without area touches a neighbour, whose corner or edge it has come upon; CGAL's predicates are
-/// not made for it.
+/// A degenerate triangle touches a neighbour's corner or edge; CGAL's predicates exclude it.
 bool meet(const Corners& a, const Corners& b, int shared) {
   if (has_no_area(a) || has_no_area(b)) return true;
   if (shared == 3) return true;
@@ -65,7 +64,7 @@ std::array<int, 3> vertices(const TriangleMesh& mesh, int t) {
   return {mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)};
 }
 
-/// Brings the vertices that both have to the front, in the same order; their number.
+/// Moves shared vertices to the front, in the same order, and returns their number.
 int share_first(std::array<int, 3>& a, std::array<int, 3>& b) {
   int shared = 0;
   for (int i = 0; i < 3; ++i)

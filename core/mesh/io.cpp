@@ -41,7 +41,7 @@ void require_fields(const std::filesystem::path& path, const TriangleMesh& mesh,
     };
     if (field.name.empty() || field.name.find_first_of(" \t\r\n\v\f") != std::string::npos)
       refuse("needs a name without white space");
-    if (!names.insert(field.name).second) refuse("has a name that is taken");
+    if (!names.insert(field.name).second) refuse("has the name of another field");
     if (field.values.size() != mesh.vertices.rows())
       refuse("has " + std::to_string(field.values.size()) + " values for " +
              std::to_string(mesh.vertices.rows()) + " vertices");

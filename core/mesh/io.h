@@ -10,7 +10,7 @@
 
 namespace drape {
 
-/// One scalar a vertex, by name, as pictures and saved states carry it.
+/// A named scalar per vertex.
 struct VertexField {
   std::string name;        ///< not empty, no white space
   Eigen::VectorXd values;  ///< n
@@ -18,10 +18,10 @@ struct VertexField {
 using VertexFields = std::vector<VertexField>;
 
 /// Reads a Wavefront OBJ (v and f), an OFF (text) or a PLY (text, binary little or big endian), by
-/// extension. Polygons become fans around their first corner, which is right for convex ones.
-/// Vertices keep their order and are not merged; coordinates are finite, and no more of the geometry is
-/// checked (see check_mesh). What a file has beyond what it declares is refused. Throws std::runtime_error
-/// with "file:line: what is wrong" (in binary parts: the element).
+/// extension. Polygons are split into fans around their first corner, which suits convex ones.
+/// Vertices keep their order and are not merged. Coordinates are finite; check_mesh checks the rest of the
+/// geometry. Data beyond what the file declares are refused. Throws std::runtime_error with "file:line: fault"
+/// (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
@@ -38,7 +38,7 @@ void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, cons
 /// Writes a VTK XML PolyData file, base64 inline, for ParaView.
 void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
 
-/// Writes a ParaView collection: time [s] and a .vtp path relative to the collection, one pair a frame.
+/// Writes a ParaView collection: time [s] and a .vtp path relative to the collection, one pair per frame.
 void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
 
 }  // namespace drape

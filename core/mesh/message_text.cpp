@@ -29,7 +29,7 @@ std::size_t utf8_length(std::string_view text, std::uint32_t& code) {
   return code < smallest[length] || code > 0x10ffff || surrogate ? 0 : length;
 }
 
-/// Whether a terminal would act on the character, or show the text about it in another order.
+/// Whether a terminal would interpret the character or reorder the text around it.
 bool acts_on_terminal(std::uint32_t code) {
   return code < 0x20 || (code >= 0x7f && code < 0xa0) || code == 0x200e || code == 0x200f ||
          (code >= 0x2028 && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
@@ -63,7 +63,7 @@ bool continues_character(char byte) { return (static_cast<unsigned char>(byte) &
 
 std::string printable(std::string_view text, std::size_t most_bytes) {
   if (text.size() <= most_bytes) return escaped(text);
-  // Messages begin with the place and end with the cause: both stay.
+  // Messages begin with the location and end with the cause: both stay.
   std::size_t head = most_bytes / 3 * 2, tail = text.size() - most_bytes / 3;
   while (head > 0 && continues_character(text[head])) --head;
   while (tail < text.size() && continues_character(text[tail])) ++tail;

@@ -11,7 +11,7 @@
 namespace drape {
 namespace {
 
-/// Numbers that stand behind what is read: a weight, a colour, a normal.
+/// Numbers after those that are read: a weight, a colour, a normal.
 void check_further_numbers(const TextReader& reader, std::size_t first_word, std::size_t most) {
   const auto& words = reader.words();
   if (words.size() > first_word + most) reader.fail("the line has too many values");
@@ -44,7 +44,7 @@ int obj_corner(const TextReader& reader, std::string_view word, int vertex_count
   return static_cast<int>(v > 0 ? v - 1 : vertex_count + v);
 }
 
-/// Whether an OBJ may have a line that begins so, which is no vertex and no face.
+/// Whether OBJ defines such a keyword, other than those of vertices and faces.
 bool is_other_obj_line(std::string_view word) {
   constexpr std::string_view known[] = {
       "vt",    "vn",       "vp",       "vc",     "p",      "l",      "g",          "s",
@@ -82,7 +82,7 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes)
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes) {
   TextReader reader(path, bytes, '#');
   const std::string_view magic = reader.next_word("OFF");
-  // Prefixes announce texture, colour and normals, which stand behind the coordinates and are not read.
+  // Prefixes announce texture, colour and normals, which follow the coordinates and are skipped.
   if (magic != "OFF" && magic != "COFF" && magic != "NOFF" && magic != "CNOFF" && magic != "STOFF")
     reader.fail("an OFF file begins with OFF, not '" + excerpt(magic) + "'");
   std::string_view word = reader.next_word("the number of vertices");
@@ -90,7 +90,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
   const int vertex_count = reader.count(word, "vertices");
   const int face_count = reader.count(reader.next_word("the number of faces"), "faces");
   if (reader.has_words_left()) reader.integer(reader.next_word("the number of edges"));
-  if (reader.has_words_left()) reader.fail("the line goes on after the numbers of vertices, faces and edges");
+  if (reader.has_words_left()) reader.fail("the line has more than the numbers of vertices, faces and edges");
   reader.set_note("the header declares " + std::to_string(vertex_count) + " vertices, " +
                   std::to_string(face_count) + " faces");
 
@@ -111,7 +111,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     check_further_numbers(reader, size + 1, 4);  // a colour
     builder.add_polygon(polygon);
   }
-  if (reader.next_line()) reader.fail("the file goes on after its last face");
+  if (reader.next_line()) reader.fail("the file has data after its last face");
   return builder.mesh();
 }
 

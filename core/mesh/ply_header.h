@@ -19,7 +19,7 @@ struct PlyProperty {
   std::optional<PlyType> count_type;  ///< lists only
 };
 
-/// A kind of thing in the file, its number and what each of them holds.
+/// A kind of element in the file, the number of them and their properties.
 struct PlyElement {
   std::string name;
   int count;
@@ -33,7 +33,7 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-/// Reads from "ply" to "end_header" and leaves the reader behind that line.
+/// Reads from "ply" to "end_header"; the reader is then behind that line.
 PlyHeader read_ply_header(TextReader& reader);
 
 }  // namespace drape

@@ -42,7 +42,7 @@ class PlyBody {
     const bool more = format_ == PlyFormat::ascii ? reader_.next_line()
                                                   : bytes_.find_first_not_of(" \t\r\n") != bytes_.npos;
     if (!more) return;
-    const std::string message = "the file goes on after the elements that its header declares";
+    const std::string message = "the file has data after the elements that its header declares";
     if (format_ == PlyFormat::ascii) reader_.fail(message);
     throw std::runtime_error(path_.string() + ": " + message + reader_.note());
   }

@@ -18,11 +18,11 @@ class TextReader {
   bool next_line();
   /// Words of the current line.
   const std::vector<std::string_view>& words() const { return words_; }
-  /// The next word, on this line or a later one; an error names what was `expected` where the text ends.
+  /// The next word, on this line or a later one; the error at the end of the text names what was `expected`.
   std::string_view next_word(const std::string& expected);
-  /// Whether next_word has words of this line to give out.
+  /// Whether next_word has further words of this line.
   bool has_words_left() const { return next_ < words_.size(); }
-  /// Drops the words of this line that next_word has not given out.
+  /// Skips the remaining words of this line.
   void finish_line() { next_ = words_.size(); }
   /// Bytes up to the end of this line.
   std::size_t position() const { return position_; }
@@ -36,9 +36,9 @@ class TextReader {
   /// integer(word), a number of `things`, each of which takes at least a byte of the text.
   int count(std::string_view word, const std::string& things) const;
 
-  /// What every error from now on ends with, in parentheses.
+  /// A note in parentheses at the end of every further error.
   void set_note(std::string note) { note_ = std::move(note); }
-  /// The note as an error ends with it; empty without one.
+  /// The note in parentheses; empty without one.
   std::string note() const { return note_.empty() ? "" : " (" + note_ + ")"; }
 
   [[noreturn]] void fail(const std::string& message) const;  ///< std::runtime_error "file:line: message"

@@ -9,30 +9,30 @@ void Material::declare(Declaration<Material>& d) {
       .unit("kg/m³")
       .at_least(1e-6)
       .at_most(1e6)
-      .meaning("ρ, mass per volume")
+      .description("ρ, mass per volume")
       .source("supplement, Table 2");
   d.add("thickness", &Material::thickness)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(10)
-      .meaning("d, thickness of the cloth")
+      .description("d, thickness of the cloth")
       .source("supplement, Table 2");
   d.add("membrane_modulus", &Material::membrane_modulus)
       .unit("Pa")
       .at_least(1e-6)
       .at_most(bounds::largest_modulus)
-      .meaning("E_mem, Young's modulus in stretching")
+      .description("E_mem, Young's modulus in stretching")
       .source("supplement, Table 2");
   d.add("bending_modulus", &Material::bending_modulus)
       .unit("Pa")
       .at_least(0)
       .at_most(bounds::largest_modulus)
-      .meaning("E_bend, Young's modulus in bending")
+      .description("E_bend, Young's modulus in bending")
       .source("supplement, Table 2");
   d.add("poisson_ratio", &Material::poisson_ratio)
       .at_least(0)
       .below(0.5)
-      .meaning("ν, of both moduli")
+      .description("ν, of both moduli")
       .source("supplement, Table 2");
 }
 

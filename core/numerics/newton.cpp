@@ -227,7 +227,7 @@ class Newton {
     if (s.factor_values.empty()) return;
     BlockMatrix matrix(pattern);
     if (s.factor_values.size() != matrix.values.size())
-      throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment anew");
+      throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
     matrix.values = s.factor_values;
     cholesky_.factorise(matrix, s.factor_shift * model_.masses());
     restored_matrix_ = std::move(matrix);

@@ -11,7 +11,7 @@ void compare(std::string& faults, const std::string& what, const std::string& th
   faults += (faults.empty() ? "" : "; ") + what + " is " + theirs + " in the plugin and " + own + " in drape";
 }
 
-/// A text of the plugin, which may have left it out.
+/// A text of the plugin, which may be null.
 std::string text_of(const char* theirs) { return theirs ? theirs : "not given"; }
 
 }  // namespace

@@ -8,10 +8,10 @@ namespace drape {
 class Registry;
 }
 
-/// What a plugin library tells about itself, in plain C: read before any C++ of it is called.
+/// A plugin library's description of itself in plain C, read before any of its C++ is called.
 struct DrapePluginDescriptor {
   std::uint32_t magic;           ///< DRAPE_ABI_MAGIC
-  std::uint32_t abi_number;      ///< DRAPE_ABI_NUMBER; what follows is read only if it is ours
+  std::uint32_t abi_number;      ///< DRAPE_ABI_NUMBER; the fields below are read only if it matches
   const char* compiler;          ///< "GCC 12.2"
   const char* standard_library;  ///< "libstdc++ 12, C++11 ABI 1"
   const char* eigen_version;     ///< "3.4.0"
@@ -20,11 +20,11 @@ struct DrapePluginDescriptor {
   void (*register_entries)(drape::Registry&);
 };
 
-// Macros, not inline functions: of an inline function the dynamic linker would hand the plugin the copy in
-// the core library, and every plugin would seem to fit.
+// Macros, not inline functions: the dynamic linker would resolve an inline function in the plugin to the core
+// library's copy, and every plugin would seem to match.
 
 #define DRAPE_ABI_MAGIC 0x50415244u  // "DRAP"
-/// Raise with every change to a class that crosses the library boundary.
+/// Increment with every change to a class that crosses the library boundary.
 #define DRAPE_ABI_NUMBER 7u
 
 #define DRAPE_TEXT_(x) #x
@@ -46,7 +46,7 @@ struct DrapePluginDescriptor {
 #define DRAPE_EIGEN_VERSION \
   DRAPE_TEXT(EIGEN_WORLD_VERSION) "." DRAPE_TEXT(EIGEN_MAJOR_VERSION) "." DRAPE_TEXT(EIGEN_MINOR_VERSION)
 
-/// The descriptor of the library that is being compiled.
+/// The descriptor of the library under compilation.
 #define DRAPE_ABI_DESCRIPTOR(register_entries)                                                      \
   {                                                                                                 \
     DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_COMPILER, DRAPE_STANDARD_LIBRARY, DRAPE_EIGEN_VERSION, \
@@ -55,7 +55,7 @@ struct DrapePluginDescriptor {
 
 namespace drape {
 
-/// What keeps a library from working with this one, naming both sides; empty if nothing does.
+/// Why a library is not compatible with this one, naming both sides; empty if it is.
 std::string mismatch(const DrapePluginDescriptor& theirs);
 
 }  // namespace drape

@@ -19,7 +19,7 @@ ConfigNode scalar_node(std::string text, bool quoted) {
   return node;
 }
 
-/// Whether every YAML reader takes the unquoted text for a text.
+/// Whether every YAML reader reads the unquoted text as a text.
 bool plainly_text(const std::string& text) {
   static const std::set<std::string> taken = {"true", "false", "null", "yes", "no", "on", "off"};
   std::string lower = text;
@@ -32,7 +32,7 @@ bool plainly_text(const std::string& text) {
          std::all_of(text.begin(), text.end(), harmless) && !taken.count(lower);
 }
 
-/// Whether the text is made like a number or a word, with nothing in it that YAML gives a meaning.
+/// Whether the text looks like a number or a word and has no YAML syntax in it.
 bool plainly_scalar(const std::string& text) {
   const auto is_word = [](unsigned char c) { return std::isalnum(c); };
   const auto harmless = [&](unsigned char c) { return is_word(c) || c == '.' || c == '+' || c == '-'; };
@@ -80,7 +80,7 @@ const ConfigNode* ConfigNode::find(const std::string& key) const {
 
 void ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
-  key_places.push_back(value.where);
+  key_locations.push_back(value.where);
   entries.emplace_back(key, std::move(value));
 }
 
@@ -105,7 +105,7 @@ std::string ConfigNode::one_line() const {
 ConfigNode ConfigNode::of(double value) {
   char text[32];
   std::string digits(text, std::to_chars(text, text + sizeof text, value).ptr);
-  // Readers of YAML 1.1, such as Python's, take "1e-05" for a text and "1.0e-05" for a number.
+  // YAML 1.1, as in Python, reads "1e-05" as a text and "1.0e-05" as a number.
   const size_t exponent = digits.find('e');
   if (exponent != std::string::npos && digits.find('.') == std::string::npos) digits.insert(exponent, ".0");
   return scalar_node(digits, false);

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -35,7 +35,7 @@ std::string type_text(const Parameter& p) {
   return type + (p.nullable ? " or null" : "");
 }
 
-/// Every parameter in order, those of a section after it.
+/// Every parameter in order; a section is followed by its parameters.
 void collect(const Schema& schema, const ConfigNode& defaults, int depth, const std::string& prefix,
              std::vector<Row>& rows) {
   for (const Parameter& p : schema.parameters) {
@@ -60,7 +60,7 @@ std::vector<Row> rows_of(const Schema& schema) {
 
 std::string unit_of(const Parameter& p) { return p.unit == "1" ? "" : p.unit; }
 
-/// Columns of code points, not bytes: units are written with ², ρ and the like.
+/// The number of code points: units contain ², ρ and the like.
 size_t width(const std::string& text) {
   size_t n = 0;
   for (const char c : text) n += (c & 0xC0) != 0x80;
@@ -92,7 +92,7 @@ std::string describe(const Schema& schema) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;
-    std::string note = p.meaning;
+    std::string note = p.description;
     if (!p.source.empty()) note += (note.empty() ? "[" : " [") + p.source + "]";
     if (!note.empty()) text += "      " + std::string(2 * size_t(rows[i - 1].depth), ' ') + note + "\n";
   }
@@ -108,12 +108,12 @@ std::string describe_markdown(const Schema& schema) {
   const std::vector<Row> rows = rows_of(schema);
   if (rows.empty()) return "No parameters.\n";
   std::string text =
-      "| name | type | default | unit | range | meaning | source |\n|---|---|---|---|---|---|---|\n";
+      "| name | type | default | unit | range | description | source |\n|---|---|---|---|---|---|---|\n";
   for (const Row& row : rows) {
     const Parameter& p = *row.parameter;
     const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
     text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
-            cell(row.range) + cell(p.meaning) + cell(p.source) + "\n";
+            cell(row.range) + cell(p.description) + cell(p.source) + "\n";
   }
   return text;
 }

@@ -7,28 +7,27 @@
 
 namespace drape {
 
-/// For the terminal: a row for each parameter with type, default and range, its meaning and source below;
-/// the parameters of sections are indented.
+/// A terminal page: a row per parameter with type, default and range, its description and source below;
+/// parameters of sections are indented.
 std::string describe(const Schema& schema);
-std::string describe(const RegistryEntry& entry);  ///< the same after the entry's name, summary and library
+std::string describe(const RegistryEntry& entry);  ///< with the entry's name, summary and library above
 
-/// For the reference page: a Markdown table, sections' parameters as `section.name`.
+/// A Markdown table for the reference page; parameters of sections appear as `section.name`.
 std::string describe_markdown(const Schema& schema);
-std::string describe_markdown(const RegistryEntry& entry);  ///< the same under a heading and the summary
+std::string describe_markdown(const RegistryEntry& entry);  ///< with a heading and the summary above
 
-/// A plugin's own page with what follows its heading "## Parameters", up to the next one, made anew; the
-/// heading comes last where there was none.
+/// A plugin's README with its section "## Parameters" replaced; the section is appended if there was none.
 std::string with_parameters(const std::string& page, const RegistryEntry& entry);
 
-/// The node as JSON: a plain scalar that spells a number or a boolean is one.
+/// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
 nlohmann::ordered_json json_value(const ConfigNode& node);
 
-/// For editors: the JSON Schema of configs with this schema. With a registry, nodes that choose a plugin
-/// allow the names and parameters of those in it; without, anything.
+/// The JSON Schema of configs with this schema, for editors. With a registry, nodes that choose a plugin
+/// accept the registered names and parameters; without, anything.
 nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
 
-/// For editors: a map of names to plugins of a kind, as an experiment's methods are; without a `type` the
-/// name is the plugin's.
+/// The JSON Schema of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to
+/// the name.
 nlohmann::ordered_json named_plugins_schema(const std::string& kind, const Registry& registry);
 
 }  // namespace drape

@@ -18,7 +18,7 @@ Json scalar_schema(const std::string& type, const Parameter& p) {
   return json;
 }
 
-/// A plugin's name, or a map with it and its parameters.
+/// A plugin's name, or a map with its name and parameters.
 Json plugin_schema(const std::string& kind, const Registry& registry) {
   Json names = Json::array();
   Json alternatives = Json::array();
@@ -52,9 +52,9 @@ Json parameter_schema(const Parameter& p, const Registry* registry) {
     json = item_schema(p.type, p, registry);
     if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
   }
-  if (!p.word_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
+  if (!p.shorthand_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
   if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
-  std::string description = p.meaning;
+  std::string description = p.description;
   if (!p.unit.empty() && p.unit != "1") description += (description.empty() ? "[" : " [") + p.unit + "]";
   if (!description.empty()) json["description"] = description;
   return json;

@@ -27,7 +27,7 @@ std::vector<fs::path> libraries_of(const fs::path& directory) {
   return libraries;
 }
 
-/// Calls what a plugin gave, so that whatever it throws names the library.
+/// Calls a function of a plugin; errors that it throws name the library.
 template <class Call>
 auto call(const std::string& path, const char* what, const Call& function) {
   try {

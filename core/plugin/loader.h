@@ -7,13 +7,13 @@
 
 namespace drape {
 
-/// Where plugins are looked for: <folder of the running command>/../lib/drape if it exists, then every
-/// folder of the colon-separated DRAPE_PLUGIN_PATH. Throws if one of the latter is not a folder.
+/// The plugin search path: <folder of the running command>/../lib/drape if it exists, then every folder of
+/// the colon-separated DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
 std::vector<std::filesystem::path> plugin_directories();
 
-/// Loads every *.so of the folders, sorted by name in each, and registers what it names. Throws
-/// std::runtime_error, one line with the library's path, for one that cannot be loaded, is no plugin, does
-/// not fit this build (before any C++ of it is called) or repeats a name. Libraries stay loaded for good.
+/// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
+/// with the library's path, for a library that cannot be loaded, is no plugin, is not compatible with this
+/// build (before any of its C++ is called) or repeats a name. Libraries are never unloaded.
 void load_plugins(Registry& registry, const std::vector<std::filesystem::path>& directories);
 
 }  // namespace drape

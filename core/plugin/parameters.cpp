@@ -4,9 +4,10 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "core/mesh/message_text.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -24,7 +25,7 @@ std::optional<Number> parse_all(const std::string& text) {
   return value;
 }
 
-/// What was written, for "must be …, not …".
+/// The written value, for "must be …, not …".
 std::string shown(const ConfigNode& node) {
   switch (node.kind) {
     case Kind::null:
@@ -46,7 +47,7 @@ std::string with_unit(double value, const Parameter& p) {
   return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
 }
 
-/// "must be …" if the number is out of range, else "".
+/// What the number must be if it is out of range, else "".
 std::string range_fault(double value, const Parameter& p) {
   if (!std::isfinite(value)) return "a finite number";
   if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
@@ -56,7 +57,7 @@ std::string range_fault(double value, const Parameter& p) {
   return "";
 }
 
-/// What a scalar must be and is not, or "".
+/// What a scalar must be if it is not, else "".
 std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
   const bool plain = node.kind == Kind::scalar && !node.quoted;
   if (type == "number" || type == "integer") {
@@ -104,7 +105,7 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   }
 }
 
-/// Whether the node may be handed to `p.read`; if not, says why.
+/// Whether the node is valid for `p.read`; if not, appends an error.
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
   if (p.nullable && node.kind == Kind::null) return true;
@@ -115,33 +116,32 @@ bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   return errors.size() == before;
 }
 
-/// A section that was written as a bare word, as the map that it stands for; set_path has made one of it
-/// already, with the word as its type, where it set another key.
-ConfigNode spelt_out(const ConfigNode& node, const Parameter& p) {
-  if (p.word_key.empty()) return node;
+/// The map that a section's shorthand stands for. set_path has expanded a shorthand to a map with the word as
+/// `type` if it set another key of the section.
+ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
+  if (p.shorthand_key.empty()) return node;
   ConfigNode map = node;
   for (auto& [key, value] : map.entries)
-    if (key == "type") key = p.word_key;
+    if (key == "type") key = p.shorthand_key;
   if (node.kind != Kind::scalar) return map;
   map = ConfigNode();
   map.where = node.where;
-  map.add(p.word_key, node);
+  map.add(p.shorthand_key, node);
   return map;
 }
 
-/// A file's path, or those of a list, as it holds from the current folder, which is what one on the command
-/// line is relative to.
-ConfigNode from_here(const ConfigNode& node) {
+/// Path relative to the current folder, as paths on the command line are; for a list, each.
+ConfigNode relative_path(const ConfigNode& node) {
   ConfigNode path = node;
-  for (ConfigNode& item : path.items) item = from_here(item);
+  for (ConfigNode& item : path.items) item = relative_path(item);
   if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
     path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
   return path;
 }
 
-/// The same as it holds from anywhere.
-ConfigNode from_anywhere(ConfigNode path) {
-  for (ConfigNode& item : path.items) item = from_anywhere(item);
+/// The same as an absolute path.
+ConfigNode absolute_path(ConfigNode path) {
+  for (ConfigNode& item : path.items) item = absolute_path(item);
   if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
   return path;
 }
@@ -158,7 +158,32 @@ void convert(const ConfigNode& node, int& value) { value = parse_integer(node.sc
 void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
 void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
 
+void check_former_names(const Schema& schema) {
+  for (const Parameter& p : schema.parameters)
+    for (const Parameter& other : schema.parameters)
+      if (std::find(p.former_names.begin(), p.former_names.end(), other.name) != p.former_names.end())
+        throw std::runtime_error("\"" + other.name + "\" is declared, and as a former name of \"" + p.name +
+                                 "\"");
+}
+
 }  // namespace parameter_detail
+
+namespace {
+
+/// `"old" in newton is now called "new"` for a key of an earlier version, else "". `renamed` receives the
+/// parameter that has the new name, if it is of the same section.
+std::string renaming_of(const std::string& key, const std::string& in, const Schema& schema,
+                        const Parameter** renamed) {
+  for (const Parameter& p : schema.parameters)
+    if (std::find(p.former_names.begin(), p.former_names.end(), key) != p.former_names.end()) {
+      *renamed = &p;
+      return "\"" + key + "\"" + in + " is now called \"" + p.name + "\"";
+    }
+  const auto moved = schema.moved.find(key);
+  return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
+}
+
+}  // namespace
 
 void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
   const std::string in = name.empty() ? "" : " in " + name;
@@ -170,26 +195,34 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   std::vector<std::string> known;
   for (const Parameter& p : parameters) known.push_back(p.name);
   std::map<std::string, size_t> first_of;
+  std::set<const Parameter*> renamed;  // written under a former name
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
     const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
     if (first != i) {
-      errors.push_back({map.key_places[i], "repeated key \"" + excerpt(key) + "\"" + in +
-                                               "; it is first set at " + map.key_places[first].text()});
+      errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
+                                                  "; it is first set at " + map.key_locations[first].text()});
     } else if (index == known.size()) {
+      const Parameter* parameter = nullptr;
+      if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
+        errors.push_back({map.key_locations[i], renaming});
+        renamed.insert(parameter);
+        continue;
+      }
       const std::string nearest = nearest_word(key, known);
       const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
                                : known.empty()  ? "; it takes no keys"
                                                 : "; known keys are " + joined(known);
-      errors.push_back({map.key_places[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
+      errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
     } else if (check(node, parameters[index], errors)) {
       parameters[index].read(
-          object, parameters[index].path ? from_here(node) : spelt_out(node, parameters[index]), errors);
+          object, parameters[index].path ? relative_path(node) : expand_shorthand(node, parameters[index]),
+          errors);
     }
   }
   for (const Parameter& p : parameters)
-    if (p.required && !map.find(p.name))
+    if (p.required && !map.find(p.name) && !renamed.count(&p))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
 }
 
@@ -197,7 +230,7 @@ ConfigNode Schema::write(const void* object) const {
   ConfigNode map;
   map.kind = Kind::map;
   for (const Parameter& p : parameters)
-    map.add(p.name, p.path ? from_anywhere(p.write(object)) : p.write(object));
+    map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
   return map;
 }
 

@@ -8,13 +8,13 @@
 
 namespace drape {
 
-/// The number that all of `text` spells in decimal, or nothing; "+1", "1e-3" and ".5" are numbers.
+/// The decimal number that the whole text spells ("+1", "1e-3", ".5"), or nothing.
 std::optional<double> parse_number(const std::string& text);
 std::optional<int> parse_integer(const std::string& text);
 
 namespace parameter_detail {
 
-// Conversions of nodes that have passed the checks of Schema::read.
+// Conversions of nodes that Schema::read has validated.
 void convert(const ConfigNode& node, double& value);
 void convert(const ConfigNode& node, int& value);
 void convert(const ConfigNode& node, bool& value);
@@ -37,6 +37,9 @@ void convert(const ConfigNode& node, std::optional<T>& value) {
   value.reset();
   if (node.kind != ConfigNode::Kind::null) convert(node, value.emplace());
 }
+
+/// Throws std::runtime_error if a former name is also a present one.
+void check_former_names(const Schema& schema);
 
 inline ConfigNode to_node(double value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(int value) { return ConfigNode::of(value); }
@@ -67,7 +70,7 @@ ConfigNode to_node(const std::optional<T>& value) {
   return value ? to_node(*value) : ConfigNode();
 }
 
-// What a member type asks of a config.
+// The config type of a member type.
 template <class T>
 struct Shape;
 template <class T>
@@ -132,7 +135,7 @@ class Declaration {
     return ParameterHandle(p);
   }
 
-  /// An enum, written as one of some words.
+  /// An enum, written as one of the words.
   template <class Enum>
   ParameterHandle add_choice(const std::string& name, Enum Struct::*member,
                              std::vector<std::pair<std::string, Enum>> words) {
@@ -165,7 +168,7 @@ class Declaration {
     return ParameterHandle(p);
   }
 
-  /// Any number of such structs, written as a list of maps; it replaces the list of defaults.
+  /// A list of such structs, written as a list of maps; it replaces the default list.
   template <class Section>
   ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member) {
     Parameter& p = append(name, "list of sections");
@@ -183,11 +186,14 @@ class Declaration {
     return ParameterHandle(p);
   }
 
-  /// A ConfigNode, or a std::vector of them, kept as it was written; name its kind with `.plugin("energy")`.
+  /// A ConfigNode or a std::vector of them, stored as written; name its kind with `.plugin("energy")`.
   template <class Node>
   ParameterHandle add_node(const std::string& name, Node Struct::*member) {
     return add(name, member);
   }
+
+  /// A key of an earlier version whose parameter is now at `path`, counted from the top of the file.
+  void moved(const std::string& key, const std::string& path) { schema.moved[key] = path; }
 
  private:
   Parameter& append(const std::string& name, const std::string& type) {
@@ -204,6 +210,7 @@ template <class Struct>
 Schema schema_of(const std::string& name) {
   Declaration<Struct> declaration;
   Struct::declare(declaration);
+  parameter_detail::check_former_names(declaration.schema);
   declaration.schema.name = name;
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
   return declaration.schema;

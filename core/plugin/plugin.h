@@ -3,13 +3,13 @@
 #include "core/plugin/abi.h"
 #include "core/plugin/registry.h"
 
-/// Names a plugin library's entries, once in each library:
+/// Registers a plugin library's entries, once per library:
 ///
 ///     DRAPE_PLUGIN(registry) {
 ///       registry.add<drape::Energy, Gravity>("gravity", "Weight of the cloth.");
 ///     }
 ///
-/// It exports one C function, `drape_plugin`, whose descriptor is compared before anything else is called.
+/// It exports one C function, `drape_plugin`, whose descriptor is checked before any other call.
 #define DRAPE_PLUGIN(registry)                                                                        \
   static void drape_register_entries(drape::Registry& registry);                                      \
   extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {     \

@@ -5,7 +5,7 @@
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/make.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 namespace drape {
 
@@ -14,7 +14,7 @@ Schema section_schema(const RegistryEntry& entry) {
   Parameter type;
   type.name = "type";
   type.type = "text";
-  type.meaning = "which " + entry.kind;
+  type.description = "which " + entry.kind;
   type.required = true;
   type.choices = {entry.name};
   type.read = [](void*, const ConfigNode&, ConfigErrors&) {};

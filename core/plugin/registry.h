@@ -10,23 +10,23 @@
 
 namespace drape {
 
-/// One thing that experiments choose by name.
+/// One plugin that experiments choose by name.
 struct RegistryEntry {
   std::string kind;     ///< "energy", "refiner", "contact", "solver", "metric"
   std::string name;     ///< as written in YAML, snake_case
   std::string summary;  ///< one sentence
-  std::string library;  ///< path of the shared library it came from
+  std::string library;  ///< path of its shared library
   Schema schema;        ///< its parameters
-  /// A parameter struct with its defaults, to be read into by `schema`.
+  /// A default-constructed parameter struct, for `schema` to read into.
   std::function<std::shared_ptr<void>()> make_parameters;
-  /// The object made from such a struct, as a pointer to the kind's interface.
+  /// Makes the object from such a struct; the pointer is to the kind's interface.
   std::function<std::shared_ptr<void>(const void* parameters)> make;
 };
 
-/// The schema of such a thing as a config writes it: the key `type` with its name, then its parameters.
+/// The schema of a plugin's section in a config: the key `type`, then its parameters.
 Schema section_schema(const RegistryEntry& entry);
 
-/// Everything that can be chosen by name. Filled by the loader, read by the experiment.
+/// All plugins. The loader fills it, the experiment reads it.
 class Registry {
  public:
   /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name.
@@ -39,7 +39,7 @@ class Registry {
   std::vector<const RegistryEntry*> of_kind(const std::string& kind) const;
   const std::vector<std::unique_ptr<RegistryEntry>>& entries() const { return entries_; }
 
-  /// The library whose entries are being added; set by the loader.
+  /// The library that is being loaded; set by the loader.
   std::string current_library;
 
  private:

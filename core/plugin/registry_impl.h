@@ -10,7 +10,7 @@ class Metric;
 class Refiner;
 class Solver;
 
-/// The word for an interface of core/model.
+/// The name of an interface of core/model.
 template <class Interface>
 struct Kind;
 template <>
@@ -45,7 +45,7 @@ void Registry::add(const std::string& name, const std::string& summary) {
   entry->schema = schema_of<Parameters>(name);
   entry->make_parameters = entry->schema.fresh;
   entry->make = [](const void* parameters) -> std::shared_ptr<void> {
-    // Through Interface*: that is the type the void pointer is cast back to.
+    // Through Interface*, the type that the void pointer is cast back to.
     std::shared_ptr<Interface> object =
         std::make_shared<Implementation>(*static_cast<const Parameters*>(parameters));
     return object;

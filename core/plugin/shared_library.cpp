@@ -18,14 +18,14 @@ using FileHeader = ElfW(Ehdr);
 using ProgramHeader = ElfW(Phdr);
 using SectionHeader = ElfW(Shdr);
 
-/// A file that parts are read of, none of which is taken to be there.
+/// Reads parts of a file, each checked against its size.
 class Bytes {
  public:
   explicit Bytes(const fs::path& file) : stream_(file, std::ios::binary), size_(fs::file_size(file)) {
     if (!stream_) throw std::runtime_error("it cannot be read; check its permissions");
   }
 
-  /// Throws std::runtime_error where the file ends before `size` bytes from `offset` on.
+  /// Throws std::runtime_error if the file ends before `size` bytes from `offset` on.
   void require(std::uint64_t offset, std::uint64_t size) const {
     if (offset <= size_ && size <= size_ - offset) return;
     throw std::runtime_error("the file is cut short at " + std::to_string(size_) +

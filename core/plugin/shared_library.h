@@ -5,9 +5,9 @@
 
 namespace drape {
 
-/// Why the file cannot be a shared library that this process may load, and what to do about it; "" if nothing
-/// speaks against it. dlopen maps what a library's headers promise without looking whether the file has it,
-/// and a file cut short then ends the process with SIGBUS.
+/// Why the file is not a loadable shared library, with a remedy; "" if it may be one. The check is needed
+/// because dlopen maps segments without checking the file's size: a truncated file ends the process with
+/// SIGBUS.
 std::string fault_of_library(const std::filesystem::path& file);
 
 }  // namespace drape

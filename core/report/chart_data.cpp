@@ -12,33 +12,33 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_points = 500;  // a series; more cannot be seen and only make the page large
+constexpr std::size_t most_points = 500;  // per series; more are not visible
 
-/// Energies are compared with others of the same function only: the plain energy of a level, or a
-/// level's proxy, which the finest level does not have.
+/// Energies are comparable only within the same objective: a level's plain energy, or its proxy (the finest
+/// level has none).
 bool is_proxy(const RunData& run, const IterationSeries& series, const StepRow& row) {
   return row.proxy_energy && series.level != run.finest_level();
 }
 
-Figure objective(const RunData& run, const IterationSeries& series, const StepRow& row) {
+OptionalNumber objective(const RunData& run, const IterationSeries& series, const StepRow& row) {
   return is_proxy(run, series, row) ? row.proxy_energy : row.energy;
 }
 
-/// Root mean square length of the Newton direction over the vertices [m]. A static step has no h of its own;
-/// its decrement was made with the first one.
-Figure newton_step(const RunData& run, const IterationSeries& series, const StepRow& row) {
-  Figure h = row.step_size;
+/// Root mean square length of the Newton direction over the vertices [m]. A static step has no h; its
+/// decrement was computed with the first one.
+OptionalNumber newton_step(const RunData& run, const IterationSeries& series, const StepRow& row) {
+  OptionalNumber h = row.step_size;
   for (const MethodRecord& method : run.methods) {
     if (!h && method.name == series.method) h = method.step_size;
   }
-  return h && row.decrement ? Figure(*h * *row.decrement) : Figure();
+  return h && row.decrement ? OptionalNumber(*h * *row.decrement) : OptionalNumber();
 }
 
 Json series_json(const RunData& run) {
   std::map<std::pair<int, bool>, double> best;
   for (const IterationSeries& series : run.iterations) {
     for (const StepRow& row : series.rows) {
-      const Figure energy = objective(run, series, row);
+      const OptionalNumber energy = objective(run, series, row);
       if (!energy) continue;
       const auto key = std::pair(series.level, is_proxy(run, series, row));
       const auto known = best.emplace(key, *energy).first;
@@ -53,7 +53,7 @@ Json series_json(const RunData& run) {
     for (std::size_t k = 0; k < count; ++k) {
       if (k % stride != 0 && k + 1 != count) continue;
       const StepRow& row = series.rows[k];
-      const Figure energy = objective(run, series, row);
+      const OptionalNumber energy = objective(run, series, row);
       iteration.push_back(k + 1);
       seconds.push_back(rounded(row.seconds));
       residual.push_back(rounded(row.force_residual));
@@ -71,11 +71,11 @@ Json series_json(const RunData& run) {
   return all;
 }
 
-/// Bars: one label a level of each method, one row of values a name.
-Json bars_json(const RunData& run, NamedFigures LevelRecord::*member) {
+/// Bars: one label per level and method, one row of values per name.
+Json bars_json(const RunData& run, NamedNumbers LevelRecord::*member) {
   Json labels = Json::array();
   std::vector<std::string> names;
-  std::vector<std::map<std::string, Figure>> columns;
+  std::vector<std::map<std::string, OptionalNumber>> columns;
   for (const MethodRecord& method : run.methods) {
     for (const LevelRecord& level : method.levels) {
       if ((level.*member).empty()) continue;
@@ -102,8 +102,8 @@ Json errors_json(const RunData& run) {
   Json all = Json::array();
   for (const ErrorSeries& series : run.errors) {
     Json entry = {{"method", series.method}, {"level", series.level}};
-    for (std::size_t w = 0; w < error_works.size(); ++w)
-      for (const ErrorRow& row : series.rows) entry[error_works[w]].push_back(rounded(row.work[w]));
+    for (std::size_t w = 0; w < error_costs.size(); ++w)
+      for (const ErrorRow& row : series.rows) entry[error_costs[w]].push_back(rounded(row.cost[w]));
     for (std::size_t t = 0; t < error_targets.size(); ++t)
       for (std::size_t m = 0; m < error_measures.size(); ++m)
         for (const ErrorRow& row : series.rows)
@@ -133,7 +133,7 @@ Json changes_json(const RunData& run) {
 
 }  // namespace
 
-Json rounded(const Figure& value) {
+Json rounded(const OptionalNumber& value) {
   if (!value) return nullptr;
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", *value);

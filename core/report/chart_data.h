@@ -7,13 +7,13 @@
 
 namespace drape {
 
-/// What the page of a run draws, as JSON that is safe inside a <script> element: series per method and level
+/// The data of a run's charts, as JSON that is safe inside a <script> element: series per method and level
 /// (iteration, seconds, force residual, energy above the best; cost and errors), seconds by phase, energy by
 /// part.
 std::string chart_data(const RunData& run);
 
-/// Six digits: enough to draw, a third of the bytes; null where there is no figure.
-nlohmann::ordered_json rounded(const Figure& value);
+/// Six digits, enough for drawing; null if absent.
+nlohmann::ordered_json rounded(const OptionalNumber& value);
 
 /// JSON made safe inside a script element.
 std::string script_json(const nlohmann::ordered_json& data);

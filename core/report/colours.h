@@ -7,7 +7,7 @@
 
 namespace drape {
 
-/// The value below which the share `quantile` of all finite |values| lie; 0 if there are none.
+/// The quantile of all finite |values|; 0 without any.
 double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, double quantile);
 
 /// Blue at -scale and below, white at 0, red at +scale and above; grey where not finite.

@@ -7,7 +7,7 @@
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/parameters.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/pair_measures.h"
 #include "core/report/run_rows.h"
@@ -17,13 +17,13 @@ namespace drape {
 
 namespace {
 
-constexpr double time_noise = 0.10;     // times of one machine that differ by less are the same
-constexpr double least_seconds = 0.05;  // and so are those that differ by less than this
-constexpr double figure_noise = 0.01;   // of every other figure
+constexpr double time_noise = 0.10;      // smaller relative differences of times count as equal
+constexpr double least_seconds = 0.05;   // smaller differences of times count as equal [s]
+constexpr double relative_noise = 0.01;  // the same for all other quantities
 
 struct Key {
   const char* name;
-  Figure LevelRecord::*of;  ///< of a level; null for those of pairs of levels and of whole methods
+  OptionalNumber LevelRecord::*of;  ///< null for quantities of pairs of levels and of whole methods
 };
 constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
                               {"iterations", &LevelRecord::newton_iterations},
@@ -40,7 +40,7 @@ std::vector<std::string> known_keys() {
   };
   for (const Key& key : level_keys) add(key.name);
   for (const PairMeasure& measure : pair_measures) add(measure.name);
-  for (const RowFigure& f : row_figures()) add(f.name);
+  for (const RowQuantity& f : row_quantities()) add(f.name);
   return keys;
 }
 
@@ -52,16 +52,16 @@ bool higher_is_better(const std::string& key) {
   return key == "smallest_gap";
 }
 
-/// Figures by place, then key, in order of writing; and how each method ended.
+/// Values by level and key, in file order, and whether each method converged.
 struct Sheet {
-  std::vector<std::tuple<std::string, std::string, double>> figures;
+  std::vector<std::tuple<std::string, std::string, double>> entries;
   std::vector<std::pair<std::string, bool>> converged;
 
-  void add(const std::string& where, const std::string& key, const Figure& value) {
-    if (value) figures.emplace_back(where, key, *value);
+  void add(const std::string& where, const std::string& key, const OptionalNumber& value) {
+    if (value) entries.emplace_back(where, key, *value);
   }
   const double* find(const std::string& where, const std::string& key) const {
-    for (const auto& [w, k, value] : figures)
+    for (const auto& [w, k, value] : entries)
       if (w == where && k == key) return &value;
     return nullptr;
   }
@@ -70,7 +70,7 @@ struct Sheet {
 void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, const MethodRecord& method) {
   const std::string name = prefix + method.name;
   sheet.converged.emplace_back(name, has_converged(method.status));
-  for (const RowFigure& f : row_figures()) sheet.add(name, f.name, f.of(run, method));
+  for (const RowQuantity& f : row_quantities()) sheet.add(name, f.name, f.of(run, method));
   if (method.levels.size() > 1)
     for (const LevelRecord& level : method.levels)
       for (const Key& key : level_keys)
@@ -85,9 +85,9 @@ void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, con
                 measure.name, pair.*measure.value);
 }
 
-Sheet sheet_of(const RunSet& set, bool named) {
+Sheet sheet_of(const RunCollection& collection, bool named) {
   Sheet sheet;
-  for (const SetRun& run : set.runs) {
+  for (const RunRecord& run : collection.runs) {
     std::string prefix;
     if (named) prefix = run.variation + (run.seed ? ", seed " + html::count(run.seed) : "") + ": ";
     if (!run.data) continue;
@@ -98,7 +98,7 @@ Sheet sheet_of(const RunSet& set, bool named) {
 
 std::string verdict(const Change& c) {
   const double difference = c.after - c.before;
-  const double noise = is_time(c.key) ? time_noise : figure_noise;
+  const double noise = is_time(c.key) ? time_noise : relative_noise;
   if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
   if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
   const bool good = (difference < 0) != higher_is_better(c.key);
@@ -107,7 +107,7 @@ std::string verdict(const Change& c) {
   return good ? "better" : "worse";
 }
 
-/// Energies may be negative, and counts nought: what a ratio adds is a part of the figure's size.
+/// Energies may be negative and counts zero: a ratio is relative to the absolute value.
 bool holds(const Change& c, double ratio) {
   if (is_time(c.key) && c.after - c.before < least_seconds) return true;
   if (higher_is_better(c.key)) return c.after * ratio >= c.before;
@@ -115,8 +115,8 @@ bool holds(const Change& c, double ratio) {
 }
 
 std::string change_of(const Change& c) {
-  if (c.before > 0 && c.after > 0) return "×" + html::figure(c.after / c.before);
-  return (c.after > c.before ? "+" : "") + html::figure(c.after - c.before);
+  if (c.before > 0 && c.after > 0) return "×" + html::number_text(c.after / c.before);
+  return (c.after > c.before ? "+" : "") + html::number_text(c.after - c.before);
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ std::vector<Bound> parse_bounds(const std::vector<std::string>& texts) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
       const std::string near = nearest_word(key, known);
       throw std::runtime_error(
-          "--bound " + excerpt(text) + ": there is no figure \"" + excerpt(key) + "\"; " +
+          "--bound " + excerpt(text) + ": there is no quantity \"" + excerpt(key) + "\"; " +
           (near.empty() ? "there are " + joined(known) : "did you mean \"" + near + "\"?"));
     }
     const std::optional<double> ratio = parse_number(text.substr(equals + 1));
@@ -144,11 +144,12 @@ std::vector<Bound> parse_bounds(const std::vector<std::string>& texts) {
   return bounds;
 }
 
-Comparison::Comparison(const RunSet& before, const RunSet& after, const std::vector<Bound>& bounds)
+Comparison::Comparison(const RunCollection& before, const RunCollection& after,
+                       const std::vector<Bound>& bounds)
     : bounds_(bounds.size()) {
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;
   const Sheet a = sheet_of(before, named), b = sheet_of(after, named);
-  for (const auto& [where, key, value] : a.figures)
+  for (const auto& [where, key, value] : a.entries)
     if (const double* now = b.find(where, key)) {
       Change& change = changes_.emplace_back(Change{where, key, value, *now, "", false});
       change.verdict = verdict(change);
@@ -172,30 +173,30 @@ Comparison::Comparison(const RunSet& before, const RunSet& after, const std::vec
       ++met;
       if (holds(change, bound.ratio)) continue;
       change.broken = true;
-      broken_.push_back(change.where + ": " + bound.key + " went from " + html::figure(change.before) +
-                        " to " + html::figure(change.after) + ", more than the bound of " +
+      broken_.push_back(change.where + ": " + bound.key + " went from " + html::number_text(change.before) +
+                        " to " + html::number_text(change.after) + ", more than the bound of " +
                         ConfigNode::of(bound.ratio).scalar +
                         (higher_is_better(bound.key) ? " lets it fall" : " allows"));
     }
     if (met == 0)
-      throw std::runtime_error("--bound " + bound.key + ": no match has this figure on both sides");
+      throw std::runtime_error("--bound " + bound.key + ": no match has this quantity on both sides");
   }
   if (bounds.empty()) return;
-  for (const std::string& name : lost_)
-    broken_.push_back(name + ": is in the first alone, so that no bound holds");
+  for (const std::string& name : lost_) broken_.push_back(name + ": is in the first alone; no bound holds");
   for (const auto& [name, was] : a.converged)
     for (const auto& [other, is] : b.converged)
       if (name == other && was && !is)
-        broken_.push_back(name + ": converged before and does not now, so that no bound holds");
+        broken_.push_back(name + ": converged before and does not now; no bound holds");
 }
 
 std::string Comparison::text() const {
   std::map<std::string, int> counts;
-  std::vector<std::vector<std::string>> rows = {{"where", "figure", "before", "after", "change", "verdict"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"where", "quantity", "before", "after", "change", "verdict"}};
   for (const Change& c : changes_) {
     ++counts[c.verdict];
     if (!c.verdict.empty() || c.broken)
-      rows.push_back({c.where, c.key, html::figure(c.before), html::figure(c.after), change_of(c),
+      rows.push_back({c.where, c.key, html::number_text(c.before), html::number_text(c.after), change_of(c),
                       c.verdict + (c.broken ? " (bound broken)" : "")});
   }
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";
@@ -203,7 +204,8 @@ std::string Comparison::text() const {
     if (counts.count(word))
       text += (text.empty() || text.back() == '\n' ? "" : ", ") + std::to_string(counts[word]) + " " +
               (*word ? word : "the same");
-  text += ". Times within 10 % or 0.05 s of each other, and other figures within 1 %, count as the same.\n";
+  text +=
+      ". Times within 10 % or 0.05 s of each other, and other quantities within 1 %, count as the same.\n";
   const auto list = [&](const char* where, const std::vector<std::string>& names) {
     constexpr std::size_t most_listed = 40;
     for (std::size_t k = 0; k < std::min(names.size(), most_listed); ++k)

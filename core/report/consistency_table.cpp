@@ -12,7 +12,7 @@ namespace {
 
 using html::Cell;
 using html::escape;
-using html::figure;
+using html::number_text;
 
 using Row = std::vector<Cell>;
 
@@ -75,26 +75,26 @@ std::vector<const ConsistencyRecord*> pointers_to(
   return pointers;
 }
 
-/// The cells of one row, its best figure strong.
+/// The cells of one row, the best one in bold.
 void add_compared(Row& row, const std::vector<Source>& sources, const PairMeasure& measure, int coarse,
                   int fine) {
   const auto records = records_of(sources, coarse, fine);
-  const Figure best = best_of(measure, pointers_to(records));
+  const OptionalNumber best = best_of(measure, pointers_to(records));
   for (const auto& record : records) {
-    const Figure value = record ? (*record).*(measure.value) : Figure();
-    row.push_back({figure(value), true, best && value && *value == *best});
+    const OptionalNumber value = record ? (*record).*(measure.value) : OptionalNumber();
+    row.push_back({number_text(value), true, best && value && *value == *best});
   }
 }
 
-/// What the scene's start scores in the place of the coarse states: one figure where the methods agree on it
-/// as far as it is shown, else the lowest and the highest.
+/// The score of the scene's initial state in place of the coarse states: one number if it is equal for all
+/// methods as displayed, else the range.
 std::string start_cell(const std::vector<Source>& sources, const PairMeasure& measure, int coarse, int fine) {
   std::vector<double> values;
   for (const auto& record : records_of(sources, coarse, fine))
     if (record && record->of_start.*(measure.value)) values.push_back(*(record->of_start.*(measure.value)));
-  if (values.empty()) return figure({});
+  if (values.empty()) return number_text({});
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const std::string from = figure(*low), to = figure(*high);
+  const std::string from = number_text(*low), to = number_text(*high);
   return from == to ? from : from + " … " + to;
 }
 
@@ -133,17 +133,17 @@ std::string measures_table(const std::vector<std::pair<int, int>>& pairs, const 
 
 }  // namespace
 
-Figure best_of(const PairMeasure& measure, const std::vector<const ConsistencyRecord*>& records) {
+OptionalNumber best_of(const PairMeasure& measure, const std::vector<const ConsistencyRecord*>& records) {
   const ConsistencyRecord* best = nullptr;
   int known = 0;
   for (const ConsistencyRecord* record : records) {
-    const Figure& value = record->*measure.value;
+    const OptionalNumber& value = record->*measure.value;
     if (!value) continue;
     ++known;
     if (!best || measure.beats(*value, *(best->*measure.value))) best = record;
   }
   if (known < 2) return {};
-  const Figure& start = best->of_start.*measure.value;  // not known of runs of earlier versions
+  const OptionalNumber& start = best->of_start.*measure.value;  // unknown for runs of earlier versions
   if (start && !measure.beats(*(best->*measure.value), *start)) return {};
   return best->*measure.value;
 }
@@ -184,7 +184,7 @@ std::string table1_text(const RunData& run) {
       rows.push_back({std::to_string(coarse) + " → " + std::to_string(fine), measure.name, measure.unit});
       for (std::size_t k = 0; k < sources.size(); ++k) {
         const auto record = sources[k].find(coarse, fine);
-        rows.back().push_back(figure(record ? (*record).*(measure.value) : Figure()));
+        rows.back().push_back(number_text(record ? (*record).*(measure.value) : OptionalNumber()));
         if (k + 1 == own.size()) rows.back().push_back(start_cell(own, measure, coarse, fine));
       }
     }

@@ -29,9 +29,11 @@ std::string Csv::text(std::size_t row, const std::string& column) const {
   return found == columns_.end() ? "" : rows_[row][found->second];
 }
 
-Figure Csv::figure(std::size_t row, const std::string& column) const { return figure_of(text(row, column)); }
+OptionalNumber Csv::number(std::size_t row, const std::string& column) const {
+  return number_of(text(row, column));
+}
 
-Figure figure_of(const std::string& cell) {
+OptionalNumber number_of(const std::string& cell) {
   char* end = nullptr;
   const double value = std::strtod(cell.c_str(), &end);
   if (end == cell.c_str() || !std::isfinite(value)) return {};

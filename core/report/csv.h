@@ -9,24 +9,24 @@
 
 namespace drape {
 
-/// A table that a run has written; columns are found by the header's names. A last line cut short by a killed
-/// run is left out; a file that is not there is an empty table.
+/// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
+/// a missing file is an empty table.
 class Csv {
  public:
   explicit Csv(const std::filesystem::path& path);
 
   std::size_t size() const { return rows_.size(); }
   bool has(const std::string& column) const { return columns_.count(column) > 0; }
-  /// Empty, or absent, where there is no such column.
+  /// Empty or absent without such a column.
   std::string text(std::size_t row, const std::string& column) const;
-  Figure figure(std::size_t row, const std::string& column) const;
+  OptionalNumber number(std::size_t row, const std::string& column) const;
 
  private:
   std::map<std::string, std::size_t> columns_;
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// The number that a text begins with, if it is finite.
-Figure figure_of(const std::string& cell);
+/// The finite number at the beginning of a text.
+OptionalNumber number_of(const std::string& cell);
 
 }  // namespace drape

@@ -53,7 +53,7 @@ std::string escape(std::string_view text) {
   return safe;
 }
 
-std::string figure(const Figure& value) {
+std::string number_text(const OptionalNumber& value) {
   if (!value) return dash;
   if (*value == 0) return "0";
   char scientific[32];
@@ -68,14 +68,14 @@ std::string figure(const Figure& value) {
   return plain;
 }
 
-std::string fixed(const Figure& value, int decimals) {
+std::string fixed(const OptionalNumber& value, int decimals) {
   if (!value) return dash;
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", decimals, *value);
   return text;
 }
 
-std::string count(const Figure& value) {
+std::string count(const OptionalNumber& value) {
   if (!value) return dash;
   std::string digits = std::to_string(std::llround(std::abs(*value)));
   for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3) {
@@ -84,9 +84,9 @@ std::string count(const Figure& value) {
   return (*value < 0 ? "-" : "") + digits;
 }
 
-std::string bytes(const Figure& value) {
+std::string bytes(const OptionalNumber& value) {
   if (!value || *value <= 0) return dash;
-  return *value < 1e9 ? figure(*value / 1e6) + " MB" : figure(*value / 1e9) + " GB";
+  return *value < 1e9 ? number_text(*value / 1e6) + " MB" : number_text(*value / 1e9) + " GB";
 }
 
 std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<std::vector<Cell>>& body) {

@@ -12,14 +12,14 @@ namespace drape::html {
 /// Text made safe inside elements and quoted attributes.
 std::string escape(std::string_view text);
 
-/// Three significant digits ("403", "0.0213", "7.21e4"), or a dash.
-std::string figure(const Figure& value);
-/// With so many digits after the point, or a dash.
-std::string fixed(const Figure& value, int decimals);
+/// Three significant digits ("403", "0.0213", "7.21e4"), or a dash if absent.
+std::string number_text(const OptionalNumber& value);
+/// With so many decimals, or a dash.
+std::string fixed(const OptionalNumber& value, int decimals);
 /// A whole number with thin spaces between thousands, or a dash.
-std::string count(const Figure& value);
+std::string count(const OptionalNumber& value);
 /// "812 MB", or a dash.
-std::string bytes(const Figure& value);
+std::string bytes(const OptionalNumber& value);
 
 /// A table cell; numbers are aligned to the right.
 struct Cell {

@@ -11,17 +11,17 @@ namespace drape {
 namespace {
 
 using html::escape;
-using html::figure;
+using html::number_text;
 
-/// "0.001" rather than a measured figure's "1.00e-3".
+/// "0.001", where a measured number would be "1.00e-3".
 std::string shortest(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
 }
 
-/// The method whose widest pair of levels differs least, where several have one and the flat start would not
-/// do as well.
+/// The method whose coarsest and finest levels differ least, if several have them and the flat initial state
+/// would not score as well.
 std::string most_consistent(const RunData& run) {
   const auto pairs = run.pairs();
   if (pairs.empty()) return "";
@@ -29,7 +29,7 @@ std::string most_consistent(const RunData& run) {
   std::vector<const ConsistencyRecord*> records;
   for (const MethodRecord& method : run.methods)
     if (const ConsistencyRecord* pair = method.pair(coarse, fine)) records.push_back(pair);
-  const Figure lowest = best_of(pair_measures[0], records);
+  const OptionalNumber lowest = best_of(pair_measures[0], records);
   if (!lowest) return "";
   const auto best = std::find_if(run.methods.begin(), run.methods.end(), [&](const MethodRecord& method) {
     const ConsistencyRecord* pair = method.pair(coarse, fine);
@@ -37,7 +37,7 @@ std::string most_consistent(const RunData& run) {
   });
   return "; from level " + std::to_string(coarse) + " to " + std::to_string(fine) + ", <b>" +
          escape(best->name) +
-         "</b> changes its mean curvature least (d<sub>H</sub><sup>fit</sup> = " + figure(lowest) + ")";
+         "</b> changes its mean curvature least (d<sub>H</sub><sup>fit</sup> = " + number_text(lowest) + ")";
 }
 
 /// "1 pair" or "3 pairs".
@@ -45,13 +45,13 @@ std::string counted(double number, const std::string& thing) {
   return std::to_string(std::llround(number)) + " " + thing + (number == 1 ? "" : "s");
 }
 
-/// What was looked at in a run: states of levels, and of iterations where every step was to be verified.
-struct Looked {
+/// Checked states of a run: those of levels, and of iterations if every step is checked.
+struct Audit {
   int levels = 0, iterations = 0;
-  std::string found;  ///< where there were intersections
-  Figure smallest_gap;
+  std::string found;  ///< intersecting states
+  OptionalNumber smallest_gap;
 
-  void gap(const Figure& gap) {
+  void gap(const OptionalNumber& gap) {
     if (gap) smallest_gap = std::min(smallest_gap.value_or(*gap), *gap);
   }
   void note(const std::string& method, int level, const std::string& what) {
@@ -59,44 +59,44 @@ struct Looked {
   }
 };
 
-void look_at_levels(const RunData& run, Looked& looked) {
+void audit_levels(const RunData& run, Audit& audit) {
   for (const MethodRecord& method : run.methods) {
     for (const LevelRecord& level : method.levels) {
-      looked.gap(level.smallest_gap);
+      audit.gap(level.smallest_gap);
       if (!level.intersections) continue;
-      ++looked.levels;
+      ++audit.levels;
       if (*level.intersections > 0)
-        looked.note(method.name, level.level, counted(*level.intersections, "intersecting pair"));
+        audit.note(method.name, level.level, counted(*level.intersections, "intersecting pair"));
     }
   }
 }
 
-void look_at_iterations(const RunData& run, Looked& looked) {
+void audit_iterations(const RunData& run, Audit& audit) {
   for (const IterationSeries& series : run.iterations) {
     int crossing = 0;
     for (const StepRow& row : series.rows) {
-      looked.gap(row.smallest_gap);
-      looked.iterations += row.intersections.has_value();
+      audit.gap(row.smallest_gap);
+      audit.iterations += row.intersections.has_value();
       crossing += row.intersections.value_or(0) > 0;
     }
     if (crossing > 0)
-      looked.note(series.method, series.level, "intersections in " + counted(crossing, "iteration"));
+      audit.note(series.method, series.level, "intersections in " + counted(crossing, "iteration"));
   }
 }
 
 }  // namespace
 
 std::optional<Verdict> intersection_verdict(const RunData& run) {
-  Looked looked;
-  look_at_levels(run, looked);
-  look_at_iterations(run, looked);
-  if (looked.levels + looked.iterations == 0) return {};
-  if (!looked.found.empty())
-    return Verdict{false, "Intersections: " + looked.found + ". log.jsonl names the first ones."};
-  std::string text = "No intersection at any recorded state (" + counted(looked.levels, "level");
-  if (looked.iterations > 0) text += " and " + counted(looked.iterations, "iteration");
-  text += " looked at";
-  if (looked.smallest_gap) text += ", smallest gap on the way " + figure(looked.smallest_gap) + " m";
+  Audit audit;
+  audit_levels(run, audit);
+  audit_iterations(run, audit);
+  if (audit.levels + audit.iterations == 0) return {};
+  if (!audit.found.empty())
+    return Verdict{false, "Intersections: " + audit.found + ". log.jsonl names the first ones."};
+  std::string text = "No intersection at any recorded state (" + counted(audit.levels, "level");
+  if (audit.iterations > 0) text += " and " + counted(audit.iterations, "iteration");
+  text += " checked";
+  if (audit.smallest_gap) text += ", smallest gap on the way " + number_text(audit.smallest_gap) + " m";
   return Verdict{true, text + ")."};
 }
 
@@ -111,7 +111,7 @@ std::string troubles(const RunData& run) {
         items += where + ": failed" + message + "</li>\n";
       else if (!succeeded(level.status) && !level.status.empty())
         items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
-                 " iterations at force residual " + figure(level.force_residual) + message + "</li>\n";
+                 " iterations at force residual " + number_text(level.force_residual) + message + "</li>\n";
       else if (!message.empty())
         remarks += where + message + "</li>\n";
     }
@@ -119,14 +119,14 @@ std::string troubles(const RunData& run) {
   const auto list = [](const std::string& title, const std::string& rows) {
     return rows.empty() ? "" : "<p>" + title + "</p>\n<ul>\n" + rows + "</ul>\n";
   };
-  return list("What did not converge:", items) + list("To be known of what converged:", remarks);
+  return list("What did not converge:", items) + list("Remarks on what converged:", remarks);
 }
 
-Figure final_energy(const RunData& run, const MethodRecord& method) {
+OptionalNumber final_energy(const RunData& run, const MethodRecord& method) {
   if (method.levels.empty()) return {};
   const LevelRecord& last = method.levels.back();
   if (last.energy_on_finest) return last.energy_on_finest;
-  return last.level == run.finest_level() ? last.energy : Figure();
+  return last.level == run.finest_level() ? last.energy : OptionalNumber();
 }
 
 namespace {
@@ -135,7 +135,7 @@ std::string energy_words(double energy, double lowest) {
   const double percent = 100 * (energy - lowest) / std::abs(lowest);
   if (percent == 0) return "lowest energy";
   return percent < 0.1 ? "energy within 0.1&nbsp;% of the lowest"
-                       : "energy " + figure(percent) + "&nbsp;% higher";
+                       : "energy " + number_text(percent) + "&nbsp;% higher";
 }
 
 }  // namespace
@@ -143,12 +143,12 @@ std::string energy_words(double energy, double lowest) {
 std::string method_verdict(const RunData& run, const MethodRecord& method) {
   if (method.status == "failed") return "failed; below is why, and its figures are of the levels before that";
   if (!has_converged(method.status)) return "did not converge; its figures are of where it stopped";
-  Figure fastest, lowest, best_preview;
+  OptionalNumber fastest, lowest, best_preview;
   int compared = 0;
   const auto preview = [&](const MethodRecord& m) {
-    return m.levels.size() > 1 ? m.levels.front().energy_on_finest : Figure();
+    return m.levels.size() > 1 ? m.levels.front().energy_on_finest : OptionalNumber();
   };
-  const auto lower = [](Figure& best, const Figure& value) {
+  const auto lower = [](OptionalNumber& best, const OptionalNumber& value) {
     if (value) best = std::min(best.value_or(*value), *value);
   };
   for (const MethodRecord& m : run.methods) {
@@ -159,10 +159,10 @@ std::string method_verdict(const RunData& run, const MethodRecord& method) {
     lower(best_preview, preview(m));
   }
   if (compared < 2) return "converged; nothing to compare it with";
-  const Figure seconds = method.cost(&LevelRecord::seconds), energy = final_energy(run, method);
+  const OptionalNumber seconds = method.cost(&LevelRecord::seconds), energy = final_energy(run, method);
   std::string text;
   if (seconds && *fastest > 0)
-    text = *seconds == *fastest ? "fastest" : figure(*seconds / *fastest) + "× the fastest's time";
+    text = *seconds == *fastest ? "fastest" : number_text(*seconds / *fastest) + "× the fastest's time";
   if (energy && *lowest != 0) text += (text.empty() ? "" : "; ") + energy_words(*energy, *lowest);
   if (best_preview && preview(method) == best_preview) text += "; best preview";
   return text;
@@ -177,11 +177,10 @@ std::string outcome_sentence(const RunData& run) {
     to_rounding = to_rounding || m.status == to_string(Outcome::converged_to_rounding);
   }
   const int total = static_cast<int>(run.methods.size());
-  std::string text =
-      run.complete ? ""
-      : run.broken_off.empty()
-          ? "The run is not complete; these are the figures it had written. "
-          : "The run was broken off (" + escape(run.broken_off) + "); these are the figures it had written. ";
+  std::string text = run.complete          ? ""
+                     : run.aborted.empty() ? "The run is not complete; these are the figures it had written. "
+                                           : "The run was aborted (" + escape(run.aborted) +
+                                                 "); these are the figures it had written. ";
   text += std::to_string(converged) + " of " + std::to_string(total) + (total == 1 ? " method" : " methods") +
           " converged";
   if (run.force_tolerance)
@@ -197,10 +196,10 @@ std::string outcome_sentence(const RunData& run) {
   }
   if (compared > 1) {
     text += "; <b>" + escape(lowest->name) + "</b> ends with the lowest energy (" +
-            figure(final_energy(run, *lowest)) + " J";
+            number_text(final_energy(run, *lowest)) + " J";
     for (const MethodRecord& m : run.methods) {
       if (&m == lowest || !has_converged(m.status) || !final_energy(run, m)) continue;
-      text += ", " + escape(m.name) + " " + figure(*final_energy(run, m) - *final_energy(run, *lowest)) +
+      text += ", " + escape(m.name) + " " + number_text(*final_energy(run, m) - *final_energy(run, *lowest)) +
               " J above";
     }
     text += ")";

@@ -18,9 +18,9 @@ namespace drape {
 namespace {
 
 constexpr int picture_width = 900, picture_height = 700, map_size = 700;
-constexpr int most_vertices_with_edges = 4000;  // beyond, the lines would run into each other
+constexpr int most_vertices_with_edges = 4000;  // more lines would merge
 
-/// The fine state of a pair with the curvatures of both; a field that was not written is empty.
+/// The fine state of a pair with the curvatures of both; missing fields are empty.
 struct PairFields {
   TriangleMesh mesh;
   Eigen::VectorXd H_difference, principal, principal_other;
@@ -33,7 +33,7 @@ std::string file_part(std::string name) {
   return name;
 }
 
-/// A mesh whose triangles may be drawn without looking again.
+/// A mesh with validated indices.
 TriangleMesh checked_mesh(const std::filesystem::path& path) {
   TriangleMesh mesh = read_mesh(path);
   const bool inside = mesh.triangles.size() == 0 ||
@@ -42,7 +42,7 @@ TriangleMesh checked_mesh(const std::filesystem::path& path) {
   return mesh;
 }
 
-/// The points of an obstacle that a picture of the cloth should show too: not the far ends of a floor.
+/// The points of an obstacle that a picture of the cloth includes: not the far ends of a floor.
 Positions near_cloth(const Positions& obstacle, const std::vector<const Positions*>& states) {
   Eigen::AlignedBox3d box;
   for (const Positions* x : states)
@@ -175,7 +175,7 @@ class PictureMaker {
     }
   }
 
-  /// The curvature of the finest state a method has, and the mesh it lies on.
+  /// The curvature of a method's finest state, and its mesh.
   const PairFields* finest_fields(const MethodRecord& method) const {
     const PairFields* best = nullptr;
     int finest = -1;
@@ -209,8 +209,8 @@ class PictureMaker {
     }
   }
 
-  /// As a coarse level its curvature is known on the finer connectivity, so its state is carried there;
-  /// the finest level carries its own.
+  /// A coarse level's curvature is given on the finer mesh, so its state is prolonged; the finest level has
+  /// its own.
   void draw_fold(const MethodRecord& method, int level) {
     const std::string name = fold_picture(method, level);
     for (auto pair = method.consistency.rbegin(); pair != method.consistency.rend(); ++pair) {

@@ -20,10 +20,10 @@ struct Picture {
 struct PictureSet {
   /// By file name in DIR/pictures, as the *_picture functions below give it.
   std::map<std::string, Picture> pictures;
-  double H_difference_scale = 0;   ///< [1/m], the colour map's end, one for all methods
+  double H_difference_scale = 0;   ///< [1/m], end of the colour map, equal for all methods
   bool maps_on_rest = false;       ///< whether differences are drawn on the flat rest shape
   double fold_threshold = 0;       ///< [1/m], of |principal curvature|
-  std::vector<std::string> notes;  ///< what could not be drawn, one line each
+  std::vector<std::string> notes;  ///< pictures that could not be drawn, one line each
 
   const Picture* find(const std::string& name) const;
 };
@@ -37,12 +37,12 @@ std::string state_picture(const MethodRecord& method, int level);
 std::string fold_picture(const MethodRecord& method, int level);
 std::string H_difference_picture(const MethodRecord& method, const ConsistencyRecord& pair);
 
-/// The pair whose curvature difference is shown: the coarsest level there is against the finest.
+/// The pair whose curvature difference is shown: the coarsest against the finest level.
 const ConsistencyRecord* widest_pair(const MethodRecord& method);
 
-/// Draws everything there is data for and writes it to DIR/pictures. A mesh that is missing or cannot be
-/// read becomes a note. Once `leave` (it may be empty) says so, what is left is not drawn, and a note says
-/// how to draw it. Throws std::runtime_error if the folder cannot be written.
+/// Draws all pictures of a run and writes them to DIR/pictures. A missing or unreadable mesh becomes a note.
+/// Once `leave` (may be empty) returns true, it skips the remaining pictures, with a note. Throws
+/// std::runtime_error if the folder is not writable.
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave = {});
 
 }  // namespace drape

@@ -13,7 +13,7 @@ namespace drape {
 namespace {
 
 using html::escape;
-using html::figure;
+using html::number_text;
 
 constexpr std::size_t most_picture_bytes =
     11'000'000;  // as PNG; a third more in the page, beside the 3D data
@@ -64,9 +64,9 @@ std::string state_grid(const RunData& run, const Gallery& gallery) {
   for (const int level : run.level_indices()) {
     for (const MethodRecord& method : run.methods) {
       const LevelRecord* r = method.level(level);
-      const std::string caption = label(method, level) + ": " + html::count(r ? r->vertices : Figure()) +
-                                  " vertices, " + figure(r ? r->energy_on_finest : Figure()) +
-                                  "&nbsp;J on finest";
+      const std::string caption =
+          label(method, level) + ": " + html::count(r ? r->vertices : OptionalNumber()) + " vertices, " +
+          number_text(r ? r->energy_on_finest : OptionalNumber()) + "&nbsp;J on finest";
       text += gallery.shown(state_picture(method, level),
                             method.name + ": the cloth at level " + std::to_string(level), caption);
     }
@@ -78,7 +78,7 @@ std::string H_difference_grid(const RunData& run, const Gallery& gallery, const 
   if (!(set.H_difference_scale > 0)) {
     return "<p class=\"absent\">No curvature differences were stored in this run.</p>";
   }
-  const std::string end = figure(set.H_difference_scale);
+  const std::string end = number_text(set.H_difference_scale);
   std::string text = "<p class=\"legend\"><span>−" + end + "</span><i class=\"diverging\"></i><span>+" + end +
                      " 1/m</span></p>\n" + grid_open(run.methods.size());
   for (const MethodRecord& method : run.methods) {
@@ -86,9 +86,10 @@ std::string H_difference_grid(const RunData& run, const Gallery& gallery, const 
     const std::string levels =
         pair ? "level " + std::to_string(pair->coarse) + " to " + std::to_string(pair->fine) : "no pair";
     const std::string name = pair ? H_difference_picture(method, *pair) : "";
-    text += gallery.shown(name, method.name + ": difference in mean curvature, " + levels,
-                          "<b>" + escape(method.name) + "</b>, " + levels +
-                              ": d<sub>H</sub><sup>fit</sup> = " + figure(pair ? pair->d_H_fit : Figure()));
+    text += gallery.shown(
+        name, method.name + ": difference in mean curvature, " + levels,
+        "<b>" + escape(method.name) + "</b>, " + levels +
+            ": d<sub>H</sub><sup>fit</sup> = " + number_text(pair ? pair->d_H_fit : OptionalNumber()));
   }
   return text + "</div>\n";
 }
@@ -97,7 +98,7 @@ std::string fold_grid(const RunData& run, const Gallery& gallery, const PictureS
   if (!(set.fold_threshold > 0)) {
     return "<p class=\"absent\">No principal curvatures were stored in this run.</p>";
   }
-  const std::string threshold = figure(set.fold_threshold);
+  const std::string threshold = number_text(set.fold_threshold);
   std::string text = "<p class=\"legend\"><i class=\"below\"></i><span>below −" + threshold +
                      "</span><i class=\"flat\"></i><span>between</span><i class=\"above\"></i><span>above +" +
                      threshold + " 1/m</span></p>\n" + grid_open(run.methods.size()) + grid_head(run);
@@ -113,7 +114,7 @@ std::string fold_grid(const RunData& run, const Gallery& gallery, const PictureS
 std::string verdict_line(const RunData& run) {
   const std::optional<Verdict> verdict = intersection_verdict(run);
   if (!verdict) return "";
-  return "<p class=\"outcome " + std::string(verdict->sound ? "good" : "poor") + "\">" +
+  return "<p class=\"outcome " + std::string(verdict->intersection_free ? "good" : "poor") + "\">" +
          escape(verdict->text) + "</p>\n";
 }
 
@@ -130,7 +131,7 @@ std::string machine_line(const RunData& run) {
   return text;
 }
 
-/// A word of caution beside the paper's columns.
+/// Caveats beside the paper's columns.
 constexpr const char* of_libigl =
     "Its d<sub>K</sub><sup>fit</sup> may be of libigl's Gaussian curvature, which is not quite the fitted "
     "quadric's.";
@@ -151,12 +152,12 @@ std::string published_section(const RunData& run) {
 }
 
 std::string reference_sentence(const RunData& run) {
-  if (run.errors.empty()) return "No states were kept in this run (<code>frames: 0</code>).";
+  if (run.errors.empty()) return "No states were recorded in this run (<code>snapshots: 0</code>).";
   if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
   std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
   if (run.reference_is_lowest) text += ", the lowest in energy of all that have converged";
   if (run.reference_tolerance)
-    text += ", solved on to a force residual of " + figure(run.reference_tolerance);
+    text += ", solved on to a force residual of " + number_text(run.reference_tolerance);
   return text + ".";
 }
 

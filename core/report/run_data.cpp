@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* remedy = "run the experiment anew";
+constexpr const char* remedy = "run the experiment again";
 
 const Json& at(const Json& json, const char* key) {
   static const Json absent;
@@ -28,18 +28,18 @@ const Json& at(const Json& json, const char* key) {
   return json.is_object() && found != json.end() ? *found : absent;
 }
 
-Figure figure(const Json& json) {
+OptionalNumber number(const Json& json) {
   if (!json.is_number() || !std::isfinite(json.get<double>())) return {};
   return json.get<double>();
 }
 
 std::string text(const Json& json) { return json.is_string() ? json.get<std::string>() : std::string(); }
 
-NamedFigures named_figures(const Json& json) {
-  NamedFigures figures;
-  if (!json.is_object()) return figures;
-  for (const auto& [name, value] : json.items()) figures.emplace_back(name, figure(value));
-  return figures;
+NamedNumbers named_numbers(const Json& json) {
+  NamedNumbers numbers;
+  if (!json.is_object()) return numbers;
+  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
+  return numbers;
 }
 
 LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
@@ -47,23 +47,23 @@ LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
   r.level = file.find<int>(json, "level").value_or(position);
   r.status = text(at(json, "status"));
   r.message = text(at(json, "message"));
-  r.vertices = figure(at(json, "vertices"));
-  r.triangles = figure(at(json, "triangles"));
-  r.steps = figure(at(json, "steps"));
-  r.newton_iterations = figure(at(json, "newton_iterations"));
-  r.flops = figure(at(json, "flops"));
+  r.vertices = number(at(json, "vertices"));
+  r.triangles = number(at(json, "triangles"));
+  r.steps = number(at(json, "steps"));
+  r.newton_iterations = number(at(json, "newton_iterations"));
+  r.flops = number(at(json, "flops"));
   r.from_initial_state =
       at(json, "from_initial_state").is_boolean() && at(json, "from_initial_state").get<bool>();
-  r.seconds = figure(at(json, "seconds"));
-  r.energy = figure(at(json, "energy"));
-  r.energy_on_finest = figure(at(json, "energy_on_finest"));
-  r.decrement = figure(at(json, "decrement"));
-  r.force_residual = figure(at(json, "force_residual"));
-  r.largest_stretch = figure(at(json, "largest_stretch"));
-  r.intersections = figure(at(json, "intersections"));
-  r.smallest_gap = figure(at(json, "smallest_gap"));
-  r.seconds_by_phase = named_figures(at(json, "seconds_by_phase"));
-  r.energy_parts = named_figures(at(json, "energy_parts"));
+  r.seconds = number(at(json, "seconds"));
+  r.energy = number(at(json, "energy"));
+  r.energy_on_finest = number(at(json, "energy_on_finest"));
+  r.decrement = number(at(json, "decrement"));
+  r.force_residual = number(at(json, "force_residual"));
+  r.largest_stretch = number(at(json, "largest_stretch"));
+  r.intersections = number(at(json, "intersections"));
+  r.smallest_gap = number(at(json, "smallest_gap"));
+  r.seconds_by_phase = named_numbers(at(json, "seconds_by_phase"));
+  r.energy_parts = named_numbers(at(json, "energy_parts"));
   r.mesh = text(at(json, "mesh"));
   return r;
 }
@@ -73,8 +73,8 @@ ConsistencyRecord consistency_record(const JsonFile& file, const Json& json) {
   r.coarse = file.find<int>(json, "coarse").value_or(-1);
   r.fine = file.find<int>(json, "fine").value_or(-1);
   for (const PairMeasure& measure : pair_measures) {
-    r.*measure.value = figure(at(json, measure.name));
-    r.of_start.*measure.value = figure(at(at(json, "of_start"), measure.name));
+    r.*measure.value = number(at(json, measure.name));
+    r.of_start.*measure.value = number(at(at(json, "of_start"), measure.name));
   }
   r.fields = text(at(json, "fields"));
   return r;
@@ -84,8 +84,8 @@ MethodRecord method_record(const JsonFile& file, const std::string& name, const 
   MethodRecord method;
   method.name = name;
   method.status = text(at(json, "status"));
-  method.seconds = figure(at(json, "seconds"));
-  method.peak_memory_bytes = figure(at(json, "peak_memory_bytes"));
+  method.seconds = number(at(json, "seconds"));
+  method.peak_memory_bytes = number(at(json, "peak_memory_bytes"));
   const Json& levels = at(json, "levels");
   const Json& pairs = at(json, "consistency");
   if (levels.is_array()) {
@@ -105,22 +105,22 @@ MethodRecord method_record(const JsonFile& file, const std::string& name, const 
 }
 
 ConditionRow change_row(const Json& json) {
-  return {figure(at(json, "time")), figure(at(json, "steps")), figure(at(json, "energy"))};
+  return {number(at(json, "time")), number(at(json, "steps")), number(at(json, "energy"))};
 }
 
 std::string file_if_there(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
 }
 
-/// The level of a row; the coarsest where the cell is empty.
+/// The level of a row; the coarsest if the cell is empty.
 int level_of(const Csv& csv, std::size_t row, const std::filesystem::path& path) {
-  const double level = csv.figure(row, "level").value_or(0);
+  const double level = csv.number(row, "level").value_or(0);
   if (const std::optional<int> whole = whole_number(level)) return *whole;
   throw std::runtime_error(path.string() + ": \"level\" of row " + std::to_string(row + 1) +
                            " must be a whole number, not " + excerpt(csv.text(row, "level")) + "; " + remedy);
 }
 
-/// The rows of one level of one method, which are made if they are not there yet.
+/// The rows of one level of one method; added if new.
 template <class Series>
 Series& series_of(std::vector<Series>& all, const std::string& method, int level) {
   const auto found = std::find_if(all.begin(), all.end(),
@@ -134,7 +134,7 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
   const Csv csv(path);
   if (!csv.has("method") || !csv.has("level")) return all;
   for (std::size_t k = 0; k < csv.size(); ++k) {
-    const auto cell = [&](const char* name) { return csv.figure(k, name); };
+    const auto cell = [&](const char* name) { return csv.number(k, name); };
     series_of(all, csv.text(k, "method"), level_of(csv, k, path))
         .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
                          cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
@@ -149,10 +149,10 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
   if (!csv.has("method") || !csv.has("level")) return all;
   for (std::size_t k = 0; k < csv.size(); ++k) {
     ErrorRow row;
-    for (std::size_t w = 0; w < error_works.size(); ++w) row.work[w] = csv.figure(k, error_works[w]);
+    for (std::size_t w = 0; w < error_costs.size(); ++w) row.cost[w] = csv.number(k, error_costs[w]);
     for (std::size_t t = 0; t < error_targets.size(); ++t)
       for (std::size_t m = 0; m < error_measures.size(); ++m)
-        row.error[t][m] = csv.figure(k, std::string(error_targets[t]) + "_" + error_measures[m]);
+        row.error[t][m] = csv.number(k, std::string(error_targets[t]) + "_" + error_measures[m]);
     series_of(all, csv.text(k, "method"), level_of(csv, k, path)).rows.push_back(row);
   }
   return all;
@@ -181,7 +181,7 @@ void add_step_sizes(RunData& run) {
   for (MethodRecord& method : run.methods) {
     const ConfigNode* node = config.find("methods");
     for (const char* key : {method.name.c_str(), "newton", "step_size"}) node = node ? node->find(key) : node;
-    if (node) method.step_size = figure_of(node->scalar);
+    if (node) method.step_size = number_of(node->scalar);
   }
 }
 
@@ -201,8 +201,8 @@ const ConsistencyRecord* MethodRecord::pair(int coarse, int fine) const {
   return nullptr;
 }
 
-Figure MethodRecord::cost(Figure LevelRecord::*member) const {
-  Figure sum;
+OptionalNumber MethodRecord::cost(OptionalNumber LevelRecord::*member) const {
+  OptionalNumber sum;
   for (const LevelRecord& level : levels) {
     if (level.from_initial_state) sum.reset();
     if (level.*member) sum = sum.value_or(0) + *(level.*member);
@@ -263,17 +263,17 @@ RunData read_run(const std::filesystem::path& folder) {
   if (const Json& obstacles = at(json, "obstacles"); obstacles.is_array())
     for (const Json& name : obstacles) run.obstacles.push_back(text(name));
   run.complete = at(json, "complete").is_boolean() && at(json, "complete").get<bool>();
-  run.broken_off = text(at(json, "broken_off"));
+  run.aborted = text(at(json, "aborted"));
   const Json& machine = at(json, "machine");
   run.cpu = text(at(machine, "cpu"));
-  run.cores = figure(at(machine, "cores"));
-  run.threads = figure(at(machine, "threads"));
+  run.cores = number(at(machine, "cores"));
+  run.threads = number(at(machine, "threads"));
   const Json& reference = at(json, "reference");
   for (const char* key : {"method", "file"})
     if (!text(at(reference, key)).empty()) run.reference = text(at(reference, key));
   run.reference_is_lowest = text(at(reference, "chosen")) == ReferenceParameters::lowest;
-  run.reference_tolerance = figure(at(reference, "force_tolerance"));
-  run.force_tolerance = figure(at(at(json, "tolerance"), "force_residual"));
+  run.reference_tolerance = number(at(reference, "force_tolerance"));
+  run.force_tolerance = number(at(at(json, "tolerance"), "force_residual"));
   const Json& methods = at(json, "methods");
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
@@ -282,7 +282,7 @@ RunData read_run(const std::filesystem::path& folder) {
       run.changes.insert(run.changes.end(), changes.begin(), changes.end());
     }
   }
-  // The progressive method leads, whatever the order in the file; the others keep theirs.
+  // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });
   run.iterations = read_steps(folder / "steps.csv");

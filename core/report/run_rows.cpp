@@ -23,16 +23,18 @@ const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool 
 }
 
 template <bool preview, std::size_t target, std::size_t measure>
-Figure error_of(const RunData& run, const MethodRecord& method) {
+OptionalNumber error_of(const RunData& run, const MethodRecord& method) {
   const ErrorRow* row = last_error(run, method, preview);
-  return row ? row->error[target][measure] : Figure();
+  return row ? row->error[target][measure] : OptionalNumber();
 }
 
-Figure seconds(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::seconds); }
-Figure iterations(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::newton_iterations); }
-Figure flops(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::flops); }
-Figure preview_seconds(const RunData&, const MethodRecord& m) {
-  return m.levels.size() > 1 ? m.levels.front().seconds : Figure();
+OptionalNumber seconds(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::seconds); }
+OptionalNumber iterations(const RunData&, const MethodRecord& m) {
+  return m.cost(&LevelRecord::newton_iterations);
+}
+OptionalNumber flops(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::flops); }
+OptionalNumber preview_seconds(const RunData&, const MethodRecord& m) {
+  return m.levels.size() > 1 ? m.levels.front().seconds : OptionalNumber();
 }
 
 }  // namespace
@@ -41,8 +43,8 @@ std::string RunRow::title(bool several_variations) const {
   return several_variations ? variation + ", " + method : method;
 }
 
-const std::vector<RowFigure>& row_figures() {
-  static const std::vector<RowFigure> all = {
+const std::vector<RowQuantity>& row_quantities() {
+  static const std::vector<RowQuantity> all = {
       {"seconds", "time [s]", seconds},
       {"iterations", "iterations", iterations},
       {"flops", "flops", flops},
@@ -57,12 +59,12 @@ const std::vector<RowFigure>& row_figures() {
   return all;
 }
 
-std::vector<RunRow> rows_of(const RunSet& set) {
+std::vector<RunRow> rows_of(const RunCollection& collection) {
   std::vector<RunRow> rows;
-  for (const std::string& variation : set.variations())
-    for (const std::string& method : set.methods()) {
+  for (const std::string& variation : collection.variations())
+    for (const std::string& method : collection.methods()) {
       RunRow row{variation, method, {}, 0};
-      for (const SetRun* run : set.of(variation)) {
+      for (const RunRecord* run : collection.of(variation)) {
         if (!run->data) continue;
         for (const MethodRecord& m : run->data->methods)
           if (m.name == method) {
@@ -75,15 +77,16 @@ std::vector<RunRow> rows_of(const RunSet& set) {
   return rows;
 }
 
-std::optional<Spread> spread_of(const RunRow& row, const RowFigure& figure) {
+std::optional<Spread> spread_of(const RunRow& row, const RowQuantity& quantity) {
   std::vector<double> values;
   for (const Repeat& repeat : row.repeats)
     if (has_converged(repeat.method->status))
-      if (const Figure value = figure.of(*repeat.run->data, *repeat.method)) values.push_back(*value);
+      if (const OptionalNumber value = quantity.of(*repeat.run->data, *repeat.method))
+        values.push_back(*value);
   return spread_of(std::move(values));
 }
 
-std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t work,
+std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t cost,
                                    std::size_t target, std::size_t measure) {
   int begin = 0;
   for (const MethodRecord& m : run.methods)
@@ -94,15 +97,15 @@ std::vector<CostPoint> error_curve(const RunData& run, const std::string& method
   for (const ErrorSeries& series : run.errors) {
     if (series.method != method || series.level < begin) continue;
     for (const ErrorRow& row : series.rows)
-      if (row.work[work] && row.error[target][measure])
-        curve.push_back({*row.work[work], *row.error[target][measure]});
+      if (row.cost[cost] && row.error[target][measure])
+        curve.push_back({*row.cost[cost], *row.error[target][measure]});
   }
   return curve;
 }
 
-RunData median_consistency(const RunSet& set, const std::string& variation) {
+RunData median_consistency(const RunCollection& collection, const std::string& variation) {
   RunData medians;
-  for (const RunRow& row : rows_of(set)) {
+  for (const RunRow& row : rows_of(collection)) {
     if (row.variation != variation) continue;
     MethodRecord& method = medians.methods.emplace_back();
     method.name = row.method;
@@ -116,8 +119,8 @@ RunData median_consistency(const RunSet& set, const std::string& variation) {
       for (const PairMeasure& measure : pair_measures) {
         std::vector<double> values, of_start;
         for (const ConsistencyRecord* r : records) {
-          if (const Figure& value = r->*measure.value) values.push_back(*value);
-          if (const Figure& value = r->of_start.*measure.value) of_start.push_back(*value);
+          if (const OptionalNumber& value = r->*measure.value) values.push_back(*value);
+          if (const OptionalNumber& value = r->of_start.*measure.value) of_start.push_back(*value);
         }
         if (const auto spread = spread_of(values)) pair.*measure.value = spread->median;
         if (const auto spread = spread_of(of_start)) pair.of_start.*measure.value = spread->median;

@@ -13,39 +13,39 @@ namespace {
 
 using html::Cell;
 using html::escape;
-using html::figure;
+using html::number_text;
 using Row = std::vector<Cell>;
 using Json = nlohmann::ordered_json;
 
 constexpr int curve_points = 40;
-constexpr double noticeable = 0.05;  // differences of medians below this part go unsaid
+constexpr double noticeable = 0.05;  // smaller relative differences of medians are not mentioned
 
 Cell words(const std::string& content) { return {content, false}; }
 
-/// Rounded for the eye; in full for the table's files.
+/// Rounded for display; in full precision for exported tables.
 std::string shown(const std::optional<Spread>& spread) {
-  if (!spread) return figure({});
-  const std::string low = figure(spread->low), high = figure(spread->high);
+  if (!spread) return number_text({});
+  const std::string low = number_text(spread->low), high = number_text(spread->high);
   std::string full;
   for (const double value : {spread->median, spread->low, spread->high})
     full += (full.empty() ? "" : " ") + ConfigNode::of(value).scalar;
-  return "<span data-spread=\"" + full + "\">" + figure(spread->median) + "</span>" +
+  return "<span data-spread=\"" + full + "\">" + number_text(spread->median) + "</span>" +
          (low == high ? "" : "<span class=\"range\">" + low + " … " + high + "</span>");
 }
 
-const RowFigure& figure_named(const std::string& name) {
-  return *std::find_if(row_figures().begin(), row_figures().end(),
-                       [&](const RowFigure& f) { return f.name == name; });
+const RowQuantity& quantity_named(const std::string& name) {
+  return *std::find_if(row_quantities().begin(), row_quantities().end(),
+                       [&](const RowQuantity& f) { return f.name == name; });
 }
 
-/// "1.4× faster" and the like; nothing where the two are about the same or one is not known.
+/// "1.4× faster" and the like; empty if both are about equal or one is unknown.
 std::string ratio_words(const RunRow& row, const RunRow& base, const char* name, const char* less,
                         const char* more) {
-  const auto mine = spread_of(row, figure_named(name)), other = spread_of(base, figure_named(name));
+  const auto mine = spread_of(row, quantity_named(name)), other = spread_of(base, quantity_named(name));
   if (!mine || !other || !(mine->median > 0) || !(other->median > 0)) return "";
   const double ratio = mine->median / other->median;
-  if (ratio < 1 - noticeable) return figure(1 / ratio) + "× " + less;
-  if (ratio > 1 + noticeable) return figure(ratio) + "× " + more;
+  if (ratio < 1 - noticeable) return number_text(1 / ratio) + "× " + less;
+  if (ratio > 1 + noticeable) return number_text(ratio) + "× " + more;
   return "";
 }
 
@@ -71,23 +71,23 @@ std::string lowest(const std::vector<RunRow>& rows, bool several, const char* na
   const RunRow* best = nullptr;
   std::optional<Spread> least;
   for (const RunRow& row : rows) {
-    const auto spread = spread_of(row, figure_named(name));
+    const auto spread = spread_of(row, quantity_named(name));
     if (spread && (!least || spread->median < least->median)) best = &row, least = spread;
   }
-  return best ? "<b>" + escape(best->title(several)) + "</b> (" + figure(least->median) + ")" : "";
+  return best ? "<b>" + escape(best->title(several)) + "</b> (" + number_text(least->median) + ")" : "";
 }
 
 }  // namespace
 
-std::string rows_table(const RunSet& set) {
-  const std::vector<RunRow> rows = rows_of(set);
+std::string rows_table(const RunCollection& collection) {
+  const std::vector<RunRow> rows = rows_of(collection);
   if (rows.empty()) return "<p class=\"absent\">No run has written results yet.</p>";
-  std::vector<const RowFigure*> figures;
-  for (const RowFigure& f : row_figures())
+  std::vector<const RowQuantity*> quantities;
+  for (const RowQuantity& f : row_quantities())
     if (std::any_of(rows.begin(), rows.end(), [&](const RunRow& r) { return spread_of(r, f).has_value(); }))
-      figures.push_back(&f);
+      quantities.push_back(&f);
   Row head = {words("variation"), words("method"), words("verdict"), {"converged"}};
-  for (const RowFigure* f : figures) head.push_back({f->title});
+  for (const RowQuantity* f : quantities) head.push_back({f->title});
   std::vector<Row> body;
   for (const RunRow& row : rows) {
     Row cells;
@@ -99,16 +99,16 @@ std::string rows_table(const RunSet& set) {
     cells.push_back(words(escape(row.method)));
     cells.push_back(words("<span class=\"verdict\">" + verdict(row, base_of(row, rows)) + "</span>"));
     cells.push_back({std::to_string(row.converged) + " of " + std::to_string(row.repeats.size())});
-    for (const RowFigure* f : figures) cells.push_back({shown(spread_of(row, *f))});
+    for (const RowQuantity* f : quantities) cells.push_back({shown(spread_of(row, *f))});
     body.push_back(cells);
   }
   return html::table({head}, body);
 }
 
-std::string failures_table(const RunSet& set) {
+std::string failures_table(const RunCollection& collection) {
   std::vector<Row> body;
-  for (const SetRun& run : set.runs) {
-    if (run.status == "converged" || (run.status == "ended" && run.error.empty())) continue;
+  for (const RunRecord& run : collection.runs) {
+    if (run.status == "converged" || (run.status == "not_converged" && run.error.empty())) continue;
     body.push_back({words(escape(run.variation)),
                     {html::count(run.seed)},
                     words(escape(run.status.empty() ? "unknown" : run.status)),
@@ -118,22 +118,22 @@ std::string failures_table(const RunSet& set) {
                       : html::table({{words("variation"), {"seed"}, words("status"), words("error")}}, body);
 }
 
-std::string set_summary(const RunSet& set) {
-  const std::vector<RunRow> rows = rows_of(set);
+std::string collection_summary(const RunCollection& collection) {
+  const std::vector<RunRow> rows = rows_of(collection);
   const auto with = [&](const std::string& status) {
-    return std::count_if(set.runs.begin(), set.runs.end(),
-                         [&](const SetRun& r) { return r.status == status; });
+    return std::count_if(collection.runs.begin(), collection.runs.end(),
+                         [&](const RunRecord& r) { return r.status == status; });
   };
-  const std::size_t variations = set.variations().size();
-  std::string text = set.complete ? "" : "Not all runs are done; these are the figures so far. ";
-  text += std::to_string(set.runs.size()) + " runs of " + std::to_string(variations) +
+  const std::size_t variations = collection.variations().size();
+  std::string text = collection.complete ? "" : "Not all runs are done; these are the figures so far. ";
+  text += std::to_string(collection.runs.size()) + " runs of " + std::to_string(variations) +
           (variations == 1 ? " variation" : " variations") + ": " + std::to_string(with("converged")) +
           " converged";
-  for (const char* status : {"ended", "failed", "cancelled", "running", "waiting"})
+  for (const char* status : {"not_converged", "failed", "cancelled", "running", "pending"})
     if (const auto n = with(status))
       text += ", " + std::to_string(n) +
-              (std::string(status) == "ended" ? " ended without converging everywhere"
-                                              : " " + std::string(status));
+              (std::string(status) == "not_converged" ? " finished without converging everywhere"
+                                                      : " " + std::string(status));
   text += ".";
   const bool several = variations > 1;
   for (const auto& [name, what] : std::initializer_list<std::pair<const char*, const char*>>{
@@ -145,14 +145,15 @@ std::string set_summary(const RunSet& set) {
   return text;
 }
 
-std::string rows_chart_data(const RunSet& set) {
-  const std::vector<RunRow> rows = rows_of(set);
-  const bool several = set.variations().size() > 1;
-  Json data = {{"variations", set.variations()}, {"methods", set.methods()}, {"rows", Json::array()}};
+std::string rows_chart_data(const RunCollection& collection) {
+  const std::vector<RunRow> rows = rows_of(collection);
+  const bool several = collection.variations().size() > 1;
+  Json data = {
+      {"variations", collection.variations()}, {"methods", collection.methods()}, {"rows", Json::array()}};
   for (const RunRow& row : rows)
     data["rows"].push_back(
         {{"title", row.title(several)}, {"variation", row.variation}, {"method", row.method}});
-  for (std::size_t w = 0; w < error_works.size(); ++w)
+  for (std::size_t w = 0; w < error_costs.size(); ++w)
     for (std::size_t t = 0; t < error_targets.size(); ++t)
       for (std::size_t m = 0; m < error_measures.size(); ++m) {
         Json plot = {{"curves", Json::array()}, {"front", Json::array()}};
@@ -173,11 +174,11 @@ std::string rows_chart_data(const RunSet& set) {
         }
         for (const std::size_t k : pareto_front(all))
           plot["front"].push_back({rounded(all[k].cost), rounded(all[k].error), row_of[k]});
-        data["errors"][error_works[w]][error_targets[t]][error_measures[m]] = plot;
+        data["errors"][error_costs[w]][error_targets[t]][error_measures[m]] = plot;
       }
   for (const char* name : {"seconds", "iterations", "flops"})
     for (const RunRow& row : rows) {
-      const auto s = spread_of(row, figure_named(name));
+      const auto s = spread_of(row, quantity_named(name));
       data["costs"][name].push_back(s ? Json{rounded(s->median), rounded(s->low), rounded(s->high)} : Json());
     }
   return script_json(data);

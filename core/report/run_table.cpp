@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/cli/exit_codes.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/tables.h"
 
@@ -13,25 +13,25 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const Figure& figure) { return figure ? Json(*figure) : Json(); }
+Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
 
-Json sum_of(const MethodRecord& method, Figure LevelRecord::*member) {
-  Figure sum;
+Json sum_of(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
+  OptionalNumber sum;
   for (const LevelRecord& level : method.levels)
     if (level.*member) sum = sum.value_or(0) + *(level.*member);
   return json_of(sum);
 }
 
-/// What the iterations of a method add to what its levels say.
-struct OnTheWay {
-  int cuts = 0;
-  Figure smallest_gap, intersections;
+/// What the iterations of a method tell beyond its levels.
+struct IterationSummary {
+  int shortened_steps = 0;
+  OptionalNumber smallest_gap, intersections;
 
-  OnTheWay(const RunData& run, const std::string& method) {
+  IterationSummary(const RunData& run, const std::string& method) {
     for (const IterationSeries& series : run.iterations) {
       if (series.method != method) continue;
       for (const StepRow& row : series.rows) {
-        cuts += row.step_length.value_or(1) < 1;
+        shortened_steps += row.step_length.value_or(1) < 1;
         if (row.smallest_gap)
           smallest_gap = std::min(smallest_gap.value_or(*row.smallest_gap), *row.smallest_gap);
         if (row.intersections) intersections = intersections.value_or(0) + *row.intersections;
@@ -52,13 +52,15 @@ std::string outcomes(const MethodRecord& method) {
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 Json row_of(const RunData& run, const MethodRecord& method) {
-  OnTheWay way(run, method.name);
-  Figure stretch;
+  IterationSummary iterations(run, method.name);
+  OptionalNumber stretch;
   std::string fault, remark;
   for (const LevelRecord& level : method.levels) {
     if (level.smallest_gap)
-      way.smallest_gap = std::min(way.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
-    if (level.intersections) way.intersections = way.intersections.value_or(0) + *level.intersections;
+      iterations.smallest_gap =
+          std::min(iterations.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
+    if (level.intersections)
+      iterations.intersections = iterations.intersections.value_or(0) + *level.intersections;
     if (level.largest_stretch) stretch = std::max(stretch.value_or(0), *level.largest_stretch);
     if (level.message.empty()) continue;
     (succeeded(level.status) ? remark : fault) +=
@@ -72,26 +74,26 @@ Json row_of(const RunData& run, const MethodRecord& method) {
   row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
   row["steps"] = sum_of(method, &LevelRecord::steps);
   row["iterations"] = sum_of(method, &LevelRecord::newton_iterations);
-  row["cuts"] = way.cuts;
+  row["shortened_steps"] = iterations.shortened_steps;
   row["seconds"] = sum_of(method, &LevelRecord::seconds);
   row["energy"] = json_of(final_energy(run, method));
-  row["smallest_gap"] = json_of(way.smallest_gap);
+  row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["largest_stretch"] = json_of(stretch);
-  row["intersections"] = json_of(way.intersections);
+  row["intersections"] = json_of(iterations.intersections);
   row["d_H_fit"] = pair ? json_of(pair->d_H_fit) : Json();
   row["message"] = first_line(fault + remark);
   return row;
 }
 
-std::string outcome_without_results(const SetRun& run) {
+std::string outcome_without_results(const RunRecord& run) {
   if (run.status != "failed") return run.status;
   return run.refused()                    ? "refused"
-         : run.exit_code == exit_too_slow ? "hang"
+         : run.exit_code == exit_too_slow ? "timeout"
          : run.exit_code > exit_by_signal ? "crash"
                                           : "failed";
 }
 
-bool passes(const SetRun& run, const std::string& outcome, const TableRow& row) {
+bool passes(const RunRecord& run, const std::string& outcome, const TableRow& row) {
   const Json energy = row.value("energy", Json()), crossing = row.value("intersections", Json());
   if (run.data && (energy.is_null() || (crossing.is_number() && crossing > 0))) return false;
   const bool expected = outcome == run.expected || (run.expected == "converged" && has_converged(outcome));
@@ -100,10 +102,10 @@ bool passes(const SetRun& run, const std::string& outcome, const TableRow& row) 
 
 }  // namespace
 
-std::vector<TableRow> table_rows(const RunSet& set) {
+std::vector<TableRow> table_rows(const RunCollection& collection) {
   std::vector<TableRow> rows;
-  for (const SetRun& run : set.runs) {
-    const bool repeated = set.of(run.variation).size() > 1 && run.seed;
+  for (const RunRecord& run : collection.runs) {
+    const bool repeated = collection.of(run.variation).size() > 1 && run.seed;
     const Json name = {{"sweep", run.sweep},
                        {"run", run.variation + (repeated ? ", seed " + html::fixed(run.seed, 0) : "")}};
     const auto add = [&](const std::string& outcome, const Json& cells) {

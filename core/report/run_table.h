@@ -2,29 +2,28 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/report/run_set.h"
+#include "core/report/run_collection.h"
 
 namespace drape {
 
-/// One method of one run, its cells by the names of the columns: numbers, words, or null for what is not
+/// One method of one run, its cells by the names of the columns: numbers, words, or null if not
 /// known. A run without results is one row.
 using TableRow = nlohmann::ordered_json;
 
-/// A run's outcome beside those of its levels: `refused` before anything was computed, `hang` when it was
-/// ended for its time, `crash` by a signal, else `failed` or as its status says. A row passes when it has
-/// ended as its run is expected to, for the reason expected, every figure of its energy finite and no
-/// intersection anywhere.
-std::vector<TableRow> table_rows(const RunSet& set);
+/// One row per method and run. The outcome of a run without results is `refused` before any computation,
+/// `timeout` at the time limit, `crash` by a signal, otherwise `failed` or its status. A row passes with the
+/// expected outcome and message, finite energies and no intersection.
+std::vector<TableRow> table_rows(const RunCollection& collection);
 
 bool all_pass(const std::vector<TableRow>& rows);
 
-/// What rows can have, in order.
+/// All columns, in order.
 std::vector<std::string> table_columns();
 
 enum class TableFormat { markdown, csv, json };
 
-/// The chosen columns; without a choice all that any row has. Throws std::runtime_error for one that there is
-/// not, naming the nearest.
+/// A table of the chosen columns, by default of all non-empty ones. Throws std::runtime_error for an unknown
+/// column, with its new or the nearest name.
 std::string table_text(const std::vector<TableRow>& rows, std::vector<std::string> columns,
                        TableFormat format);
 

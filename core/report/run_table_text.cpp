@@ -4,7 +4,7 @@
 
 #include "core/mesh/message_text.h"
 #include "core/plugin/config_node.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/html.h"
 #include "core/report/run_table.h"
 
@@ -18,7 +18,7 @@ std::string cell_text(const Json& value, bool rounded) {
   if (value.is_null()) return "";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "NO";
   if (value.is_string()) return value.get<std::string>();
-  return rounded ? html::figure(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
+  return rounded ? html::number_text(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
@@ -48,6 +48,7 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
   const std::vector<std::string> known = table_columns();
   for (const std::string& column : chosen) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    if (column == "cuts") throw std::runtime_error("column \"cuts\" is now called \"shortened_steps\"");
     const std::string near = nearest_word(column, known);
     throw std::runtime_error(
         "there is no column \"" + excerpt(column) + "\"; " +
@@ -67,9 +68,9 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
 }  // namespace
 
 std::vector<std::string> table_columns() {
-  return {"sweep",           "run",           "method",  "pass",    "outcome", "vertices",
-          "steps",           "iterations",    "cuts",    "seconds", "energy",  "smallest_gap",
-          "largest_stretch", "intersections", "d_H_fit", "message"};
+  return {"sweep",           "run",           "method",          "pass",    "outcome", "vertices",
+          "steps",           "iterations",    "shortened_steps", "seconds", "energy",  "smallest_gap",
+          "largest_stretch", "intersections", "d_H_fit",         "message"};
 }
 
 std::string table_text(const std::vector<TableRow>& rows, std::vector<std::string> columns,

@@ -16,7 +16,7 @@ namespace {
 
 using html::escape;
 
-/// A path as a link writes it: whatever means something there as %XX.
+/// A path as a URL, reserved characters as %XX.
 std::string as_link(const std::filesystem::path& path) {
   static const char digits[] = "0123456789ABCDEF";
   std::string link;
@@ -30,13 +30,13 @@ std::string as_link(const std::filesystem::path& path) {
   return link;
 }
 
-std::string consistency(const RunSet& set) {
+std::string consistency(const RunCollection& collection) {
   std::string text;
-  const std::vector<std::string> variations = set.variations();
+  const std::vector<std::string> variations = collection.variations();
   for (const std::string& variation : variations) {
-    const RunData medians = median_consistency(set, variation);
+    const RunData medians = median_consistency(collection, variation);
     const Table1Block* published = nullptr;
-    for (const SetRun* run : set.of(variation))
+    for (const RunRecord* run : collection.of(variation))
       if (run->data) published = table1_block(run->data->table1_scene);
     const std::string table = consistency_table(medians, published);
     text += variations.size() == 1 ? table
@@ -46,12 +46,12 @@ std::string consistency(const RunSet& set) {
   return text;
 }
 
-std::string run_list(const RunSet& set, const std::filesystem::path& page) {
+std::string run_list(const RunCollection& collection, const std::filesystem::path& page) {
   using html::Cell;
   std::vector<std::vector<Cell>> body;
   const auto from = std::filesystem::absolute(page).parent_path();
-  for (const SetRun& run : set.runs) {
-    Figure seconds;
+  for (const RunRecord& run : collection.runs) {
+    OptionalNumber seconds;
     if (run.data)
       for (const MethodRecord& m : run.data->methods)
         if (m.seconds) seconds = seconds.value_or(0) + *m.seconds;
@@ -60,7 +60,7 @@ std::string run_list(const RunSet& set, const std::filesystem::path& page) {
     body.push_back({{escape(run.variation), false},
                     {html::count(run.seed)},
                     {escape(run.status), false},
-                    {html::figure(seconds)},
+                    {html::number_text(seconds)},
                     {std::filesystem::is_regular_file(report)
                          ? "<a href=\"" + as_link(report.lexically_relative(from)) + "\">" + name + "</a>"
                          : name,
@@ -70,9 +70,9 @@ std::string run_list(const RunSet& set, const std::filesystem::path& page) {
                      body);
 }
 
-std::string machines(const RunSet& set) {
+std::string machines(const RunCollection& collection) {
   std::vector<std::string> lines;
-  for (const SetRun& run : set.runs) {
+  for (const RunRecord& run : collection.runs) {
     if (!run.data) continue;
     std::string line = escape(run.data->version) + " · " + escape(run.data->cpu);
     if (run.data->threads) line += " · threads a run: " + html::count(run.data->threads);
@@ -87,19 +87,19 @@ std::string machines(const RunSet& set) {
 }  // namespace
 
 void write_runs_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& page) {
-  const RunSet set = read_runs(folders);
-  const std::string failures = failures_table(set);
+  const RunCollection collection = read_runs(folders);
+  const std::string failures = failures_table(collection);
   write_file(page,
              html::fill(Embedded::runs_html(),
                         {{"style", std::string(Embedded::page_css())},
-                         {"title", escape(set.name.empty() ? "Several runs" : set.name)},
-                         {"summary", set_summary(set)},
-                         {"machine", machines(set)},
-                         {"rows", rows_table(set)},
+                         {"title", escape(collection.name.empty() ? "Several runs" : collection.name)},
+                         {"summary", collection_summary(collection)},
+                         {"machine", machines(collection)},
+                         {"rows", rows_table(collection)},
                          {"failures", failures.empty() ? "" : "<h3>What did not finish</h3>\n" + failures},
-                         {"consistency", consistency(set)},
-                         {"runs", run_list(set, page)},
-                         {"data", rows_chart_data(set)},
+                         {"consistency", consistency(collection)},
+                         {"runs", run_list(collection, page)},
+                         {"data", rows_chart_data(collection)},
                          {"chart_library", std::string(Embedded::chart_js())},
                          {"charts", std::string(Embedded::charts_js())},
                          {"script", std::string(Embedded::runs_js())}}));

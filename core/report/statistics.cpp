@@ -42,7 +42,7 @@ std::vector<CurvePoint> median_curve(const std::vector<std::vector<CostPoint>>& 
   if (curves.empty()) return points;
   for (int k = 0; k < count; ++k) {
     const double part = count > 1 ? double(k) / (count - 1) : 1;
-    // Not by a power alone, which may miss the ends by its rounding.
+    // Not by a power alone: round-off may miss the ends.
     const double cost = k == 0 ? begin : k + 1 == count ? end : begin * std::pow(end / begin, part);
     std::vector<double> errors;
     for (const auto& curve : curves) {

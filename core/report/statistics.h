@@ -12,7 +12,8 @@ struct Spread {
   int count = 0;
 };
 
-/// Of the values, in any order; of an even number, the median is the mean of the middle two. Nothing of none.
+/// Median and extremes of values in any order; the median of an even number is the mean of the middle two.
+/// Empty without values.
 std::optional<Spread> spread_of(std::vector<double> values);
 
 /// A point of a plot of error against cost.
@@ -20,8 +21,7 @@ struct CostPoint {
   double cost = 0, error = 0;
 };
 
-/// Which points no other one beats, that is none that costs no more and errs no more, and less in one of
-/// both; ascending in cost. Of equal points the first one.
+/// Indices of the Pareto-optimal points, ascending in cost; of equal points the first one.
 std::vector<std::size_t> pareto_front(const std::vector<CostPoint>& points);
 
 /// A curve's repeats at one cost.
@@ -30,10 +30,9 @@ struct CurvePoint {
   Spread error;
 };
 
-/// Repeats of a curve of the error a state has once so much has been spent: median and extremes on `count`
-/// costs in equal ratios, from where all have a state to where the last one ends. A curve's points ascend in
-/// cost; between two, the state is that of the first, and after the last one its. Errors that are not
-/// positive, and costs, are left out, as logarithmic axes do.
+/// Median and extremes over repeats of a curve of error over cost, at `count` costs in geometric progression
+/// from the cost at which all have a state to the largest one. A curve's points ascend in cost; it is a step
+/// function. Points with an error or cost that is not positive are skipped, as on logarithmic axes.
 std::vector<CurvePoint> median_curve(const std::vector<std::vector<CostPoint>>& repeats, int count);
 
 }  // namespace drape

@@ -10,7 +10,7 @@ namespace {
 
 using html::Cell;
 using html::escape;
-using html::figure;
+using html::number_text;
 
 using Row = std::vector<Cell>;
 
@@ -21,7 +21,7 @@ std::string status_badge(const std::string& status) {
   return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
 }
 
-/// What contact has done to a state; nothing in a run without.
+/// Contact quantities of a state; empty without contact.
 void add_contact_head(Row& head, const RunData& run) {
   if (!run.has_contact()) return;
   for (const char* title : {"contacts", "smallest gap [m]", "intersections"}) head.push_back({title});
@@ -30,13 +30,13 @@ void add_contact_head(Row& head, const RunData& run) {
 void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
   if (!run.has_contact()) return;
   row.push_back({html::count(r.contacts)});
-  row.push_back({figure(r.smallest_gap)});
+  row.push_back({number_text(r.smallest_gap)});
   row.push_back({html::count(r.intersections), true, r.intersections.value_or(0) > 0});
 }
 
-/// The sum over levels of those that are known.
-Figure sum_of_levels(const MethodRecord& method, Figure LevelRecord::*member) {
-  Figure sum;
+/// The sum of the known values over levels.
+OptionalNumber sum_of_levels(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
+  OptionalNumber sum;
   for (const LevelRecord& level : method.levels) {
     if (level.*member) sum = sum.value_or(0) + *(level.*member);
   }
@@ -64,27 +64,28 @@ std::string summary_table(const RunData& run) {
               {"above lowest [J]"}, {"force residual"}, {"decrement [m/s]"},   {"largest stretch"}};
   add_contact_head(head, run);
   head.push_back({"peak memory"});
-  Figure lowest;
+  OptionalNumber lowest;
   for (const MethodRecord& method : run.methods) {
-    const Figure energy = final_energy(run, method);
+    const OptionalNumber energy = final_energy(run, method);
     if (energy) lowest = std::min(lowest.value_or(*energy), *energy);
   }
   std::vector<Row> body;
   for (const MethodRecord& method : run.methods) {
-    const Figure energy = final_energy(run, method);
+    const OptionalNumber energy = final_energy(run, method);
     const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
-    const Figure seconds = method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
+    const OptionalNumber seconds =
+        method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
     Row row = {words(escape(method.name)),
                words(status_badge(method.status)),
                words("<span class=\"verdict\">" + method_verdict(run, method) + "</span>"),
                {std::to_string(method.levels.size())},
-               {figure(seconds)},
+               {number_text(seconds)},
                {html::count(sum_of_levels(method, &LevelRecord::steps))},
                {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
-               {figure(energy)},
-               {figure(energy ? Figure(*energy - *lowest) : energy)},
-               {figure(last.force_residual)},
-               {figure(last.decrement)},
+               {number_text(energy)},
+               {number_text(energy ? OptionalNumber(*energy - *lowest) : energy)},
+               {number_text(last.force_residual)},
+               {number_text(last.decrement)},
                {html::fixed(last.largest_stretch, 4)}};
     add_contact_cells(row, run, last);
     row.push_back({html::bytes(method.peak_memory_bytes)});
@@ -108,10 +109,10 @@ std::string level_table(const RunData& run) {
         row.back().rows = static_cast<int>(method.levels.size());
       }
       const Row rest = {
-          {std::to_string(r.level)},     {html::count(r.vertices)}, {html::count(r.triangles)},
-          words(status_badge(r.status)), {html::count(r.steps)},    {html::count(r.newton_iterations)},
-          {figure(r.seconds)},           {figure(r.energy)},        {figure(r.energy_on_finest)},
-          {figure(r.force_residual)},    {figure(r.decrement)},     {html::fixed(r.largest_stretch, 4)}};
+          {std::to_string(r.level)},       {html::count(r.vertices)},  {html::count(r.triangles)},
+          words(status_badge(r.status)),   {html::count(r.steps)},     {html::count(r.newton_iterations)},
+          {number_text(r.seconds)},        {number_text(r.energy)},    {number_text(r.energy_on_finest)},
+          {number_text(r.force_residual)}, {number_text(r.decrement)}, {html::fixed(r.largest_stretch, 4)}};
       row.insert(row.end(), rest.begin(), rest.end());
       add_contact_cells(row, run, r);
       body.push_back(row);
@@ -138,9 +139,9 @@ std::string energy_table(const RunData& run) {
       for (const std::string& name : names) {
         const auto part = std::find_if(level.energy_parts.begin(), level.energy_parts.end(),
                                        [&](const auto& p) { return p.first == name; });
-        row.push_back({figure(part == level.energy_parts.end() ? Figure() : part->second)});
+        row.push_back({number_text(part == level.energy_parts.end() ? OptionalNumber() : part->second)});
       }
-      row.push_back({figure(level.energy)});
+      row.push_back({number_text(level.energy)});
       body.push_back(row);
     }
   }

@@ -8,36 +8,36 @@
 
 namespace drape {
 
-/// How the run ended and who did best, as one sentence or two of HTML.
+/// How the run ended and which method is best, in one or two sentences of HTML.
 std::string outcome_sentence(const RunData& run);
 
-/// Whether the states that were looked at keep apart, in one or two sentences of plain text.
+/// Whether the checked states are free of intersections, in one or two sentences of plain text.
 struct Verdict {
-  bool sound = true;
+  bool intersection_free = true;
   std::string text;
 };
 
-/// Of all recorded states together; nothing where a run has no contact.
+/// The verdict on all recorded states; empty without contact.
 std::optional<Verdict> intersection_verdict(const RunData& run);
 
-/// What the levels say that did not converge, as a list of HTML; empty without any.
+/// HTML list of the messages of levels that did not converge; empty without any.
 std::string troubles(const RunData& run);
 
 /// The energy of the finest model in the last state of a method [J].
-Figure final_energy(const RunData& run, const MethodRecord& method);
+OptionalNumber final_energy(const RunData& run, const MethodRecord& method);
 
-/// In a few words what a method has done beside the others that converged.
+/// A method compared with the others that converged, in a few words.
 std::string method_verdict(const RunData& run, const MethodRecord& method);
 
-/// One row a method: status, cost and quality of what it ended with.
+/// One row per method: status, cost and quality of its final state.
 std::string summary_table(const RunData& run);
 
-/// One row a level of each method.
+/// One row per level and method.
 std::string level_table(const RunData& run);
 
-/// One row a pair of levels and measure, one column a method and one for the scene's start in the coarse
-/// state's place; the best of a row in bold, unless that start scores as well. The published columns are
-/// beside if `published` is not null.
+/// One row per pair of levels and measure, one column per method and one for the scene's initial state in
+/// place of the coarse one. The best of a row is bold, unless the initial state scores as well. Has the
+/// published columns if `published` is not null.
 std::string consistency_table(const RunData& run, const Table1Block* published);
 
 /// The same as plain text for a terminal, with the verdict on intersections below.
@@ -46,7 +46,7 @@ std::string table1_text(const RunData& run);
 /// The published block alone, in the same layout.
 std::string published_table(const Table1Block& block);
 
-/// Parts of the energy, one row a level of each method [J].
+/// Parts of the energy, one row per level and method [J].
 std::string energy_table(const RunData& run);
 
 }  // namespace drape

@@ -6,7 +6,7 @@ namespace drape {
 
 namespace {
 
-/// Columns of a terminal: bytes that continue a character take none.
+/// Width on a terminal: UTF-8 continuation bytes count zero.
 std::size_t columns_of(const std::string& text) {
   return std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0) != 0x80; });
 }

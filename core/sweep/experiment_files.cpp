@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files that a pattern names, sorted. One without a wildcard names its file, there or not.
+/// The files that match a pattern, sorted. A name without wildcard is returned whether it exists or not.
 std::vector<fs::path> files_of(const fs::path& pattern) {
   glob_t found{};
   const int flags = pattern.string().find_first_of("*?[") == std::string::npos ? GLOB_NOCHECK : 0;
@@ -33,12 +33,12 @@ void read_one(const fs::path& file, const std::string& key, const Location& wher
     all.push_back({std::move(root), "", where});
 }
 
-/// Experiments of one name would share their folders.
+/// Refuses equal names of experiments, whose folders would coincide.
 void label(std::vector<ExperimentSource>& all, ConfigErrors& errors) {
-  std::map<std::string, Location> places;
+  std::map<std::string, Location> locations;
   for (ExperimentSource& one : all) {
     if (const ConfigNode* name = one.root.find("name")) one.label = name->scalar;
-    const auto [first, is_first] = places.emplace(one.label, one.root.where);
+    const auto [first, is_first] = locations.emplace(one.label, one.root.where);
     if (!is_first)
       errors.push_back({one.where, "experiments " + first->second.file + " and " + one.root.where.file +
                                        " have the same name, \"" + one.label +

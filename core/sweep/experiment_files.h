@@ -7,12 +7,12 @@ namespace drape {
 /// One of the experiments that a sweep varies, as written.
 struct ExperimentSource {
   ConfigNode root;
-  std::string label;  ///< its name, where the sweep has several; else empty
+  std::string label;  ///< its name if the sweep has several; otherwise empty
   Location where;     ///< where the sweep names it
 };
 
-/// Reads the experiments that a sweep names by `base` or by `experiments`, `source` being the sweep's own
-/// file. What cannot be read is appended to `errors`, with where the sweep names it.
+/// Reads the experiments that a sweep's `base` or `experiments` names; `source` is the sweep's own file.
+/// Appends an error, located in the sweep, for every one that cannot be read.
 std::vector<ExperimentSource> experiment_sources(const SweepParameters& p, const ConfigNode& source,
                                                  ConfigErrors& errors);
 

@@ -49,8 +49,7 @@ class LocalEngine {
       std::fprintf(stderr, "stopping: %zu running save what they have\n", running_.size());
   }
 
-  /// What is left to a new run [bytes]: of what is available, what the running ones have not taken yet is
-  /// theirs.
+  /// Memory for a new run [bytes]: the available memory less what the running ones may still allocate.
   double left() const {
     double promised = 0, growth = 0;
     for (const Running& r : running_) {

@@ -6,16 +6,15 @@
 
 namespace drape {
 
-/// How much memory runs will take at their peak: as much as the largest finished one with as many vertices
-/// and levels, before there is one estimated_memory.
+/// Estimates the peak memory of runs: that of the largest finished run with as many vertices and levels, or
+/// estimated_memory without one.
 class MemoryEstimate {
  public:
   /// Learns from every run of the sweep that has finished.
   MemoryEstimate(const Sweep& sweep, const SweepFolder& folder);
   void learn(const SweepRun& run, const RunFiles& files);  ///< from a finished run's results
   double bytes(const SweepRun& run) const;
-  /// Throws std::runtime_error where one of the sweep's runs without results may take more than so many
-  /// bytes.
+  /// Throws std::runtime_error if one of the sweep's runs without results may need more than so many bytes.
   void require(const Sweep& sweep, const SweepFolder& folder, double machine) const;
 
  private:

@@ -24,7 +24,7 @@ namespace {
     const int from = open(file, flags | O_CLOEXEC, 0644);
     return from >= 0 && dup2(from, to) == to;
   };
-  const bool alone = getppid() != parent;  // it died before it could be watched
+  const bool alone = getppid() != parent;  // the parent died before it could be watched
   if (!alone && redirect("/dev/null", O_RDONLY, 0) && redirect(out, O_WRONLY | O_CREAT | O_APPEND, 1) &&
       redirect(err, O_WRONLY | O_CREAT | O_APPEND, 2))
     execvp(words[0], words);
@@ -47,7 +47,7 @@ Process::Process(const std::vector<std::string>& words, const std::filesystem::p
   pid_ = fork();
   if (pid_ == 0) become(arguments.data(), out.c_str(), err.c_str(), parent);
   if (pid_ < 0) throw std::runtime_error(words[0] + ": cannot be started (" + std::strerror(errno) + ")");
-  setpgid(pid_, pid_);  // whoever of the two comes first
+  setpgid(pid_, pid_);  // parent or child, whichever is first
 }
 
 std::optional<Exit> Process::poll() const {
@@ -71,11 +71,11 @@ std::int64_t Process::resident_bytes() const {
   return in ? resident * sysconf(_SC_PAGESIZE) : 0;
 }
 
-Said run_program(const std::vector<std::string>& words) {
+ProgramOutput run_program(const std::vector<std::string>& words) {
   std::string folder = (std::filesystem::temp_directory_path() / "drape_XXXXXX").string();
   if (!mkdtemp(folder.data())) throw std::runtime_error(folder + ": cannot make a temporary folder");
   const std::filesystem::path out = folder + "/out", err = folder + "/err";
-  Said said;
+  ProgramOutput said;
   said.exit = Process(words, out, err).wait();
   said.out = text_of_file(out);
   said.err = text_of_file(err);

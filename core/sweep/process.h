@@ -13,41 +13,41 @@ namespace drape {
 /// How a process ended: its exit code, or 128 + the signal that ended it.
 struct Exit {
   int code = 0;
-  int signal = 0;  ///< 0 if it ended by itself
+  int signal = 0;  ///< 0 if it exited by itself
 };
 
-/// A child in a process group of its own, so that a terminal's Ctrl-C does not reach it, which the kernel
-/// kills should this process die.
+/// A child in its own process group: a terminal's Ctrl-C does not reach it. The kernel kills it if this
+/// process dies.
 class Process {
  public:
   /// Runs a program (found on PATH if it has no slash), standard output and error into the files. Throws
-  /// std::runtime_error where that cannot be.
+  /// std::runtime_error if that fails.
   Process(const std::vector<std::string>& words, const std::filesystem::path& out,
           const std::filesystem::path& err);
 
-  /// How it ended, or nothing while it runs; not asked again after that.
+  /// How it ended, or empty while it runs; not to be called again after that.
   std::optional<Exit> poll() const;
   Exit wait() const;
   void signal(int number) const;
-  std::int64_t resident_bytes() const;  ///< 0 where the kernel does not tell
+  std::int64_t resident_bytes() const;  ///< 0 if unknown
 
  private:
   pid_t pid_ = -1;
 };
 
-/// What a program said, once it has ended.
-struct Said {
+/// The exit status and output of a program.
+struct ProgramOutput {
   Exit exit;
   std::string out, err;
 };
 
-/// Runs a program to its end. One that is not there ends with 127.
-Said run_program(const std::vector<std::string>& words);
+/// Runs a program to its end; 127 if it does not exist.
+ProgramOutput run_program(const std::vector<std::string>& words);
 
-/// The file of the running program.
+/// The executable file of this process.
 std::filesystem::path own_program();
 
-/// A whole file's text; empty where there is none.
+/// A file's text; empty without the file.
 std::string text_of_file(const std::filesystem::path& file);
 
 }  // namespace drape

@@ -22,7 +22,7 @@ std::string list_of_runs(const nlohmann::ordered_json& sweep) {
                         const std::string& seconds) {
     return name + std::string(widest - width(name) + 2, ' ') + seed +
            std::string(8 - std::min<std::size_t>(7, seed.size()), ' ') + status +
-           std::string(11 - status.size(), ' ') + seconds + "\n";
+           std::string(15 - status.size(), ' ') + seconds + "\n";
   };
   std::string text = line("variation", "seed", "status", "time");
   for (const auto& run : sweep["runs"]) {

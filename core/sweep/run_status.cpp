@@ -17,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* words[] = {"waiting", "running", "converged", "ended", "failed", "cancelled"};
+constexpr const char* words[] = {"pending", "running", "converged", "not_converged", "failed", "cancelled"};
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The last few lines of what a run said.
+/// The last few lines of a run's output.
 std::string last_lines(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -33,7 +33,7 @@ std::string last_lines(const std::filesystem::path& file) {
   return from == std::string::npos || from == 0 ? text : text.substr(from + 1);
 }
 
-/// Marks the run as begun, and removes what an earlier start of it has left.
+/// Marks the run as running and removes the files of an earlier start.
 RunStatus begin(const RunFiles& files, int threads) {
   const int starts = read_status(files).starts;
   RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
@@ -46,7 +46,7 @@ RunStatus begin(const RunFiles& files, int threads) {
 std::vector<std::string> command(const RunFiles& files, int threads, bool report) {
   std::vector<std::string> all = {own_program(),   "run",     files.config(), "--out",
                                   files.folder,    "--quiet", "--threads",    std::to_string(threads),
-                                  "--allow-memory"};  // the sweep has seen to it
+                                  "--allow-memory"};  // the sweep has checked it
   if (!report) all.emplace_back("--no-report");
   return all;
 }
@@ -68,6 +68,8 @@ RunStatus read_status(const RunFiles& files) {
   if (!json.is_object()) file.refuse("is not a run's status");
   RunStatus status;
   const auto word = file.at<std::string>(json, "status");
+  if (word == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
+  if (word == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
   const auto* found = std::find(std::begin(words), std::end(words), word);
   if (found == std::end(words)) file.refuse("no status is called \"" + excerpt(word) + "\"");
   status.state = RunState(found - words);
@@ -84,7 +86,7 @@ void write_status(const RunFiles& files, const RunStatus& status) {
   write_file(files.status(), status.json().dump(1) + "\n");
 }
 
-RunStatus settled(const RunFiles& files, RunStatus status) {
+RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   if (status.state != RunState::running) return status;
   status.state = RunState::cancelled;
   const std::filesystem::path path = files.folder / "results.json";
@@ -95,7 +97,8 @@ RunStatus settled(const RunFiles& files, RunStatus status) {
   status.state = RunState::converged;
   status.seconds = 0;
   for (const auto& [name, method] : results["methods"].items()) {
-    if (!has_converged(file.find<std::string>(method, "status").value_or(""))) status.state = RunState::ended;
+    if (!has_converged(file.find<std::string>(method, "status").value_or("")))
+      status.state = RunState::not_converged;
     status.seconds += file.find<double>(method, "seconds").value_or(0);
   }
   status.exit_code = status.state == RunState::converged ? exit_done : exit_not_converged;
@@ -120,7 +123,7 @@ bool RunProcess::ended() {
     }
     return false;
   }
-  status_ = settled(files_, status_);
+  status_ = resolve_interrupted(files_, status_);
   status_.seconds = seconds;
   status_.exit_code = exit->code;
   const bool stopped =
@@ -130,7 +133,7 @@ bool RunProcess::ended() {
     const std::string said = last_lines(files_.log());
     if (too_slow_) {
       status_.exit_code = exit_too_slow;
-      status_.error = "was ended since it took longer than the sweep's time_limit";
+      status_.error = "exceeded the sweep's time_limit";
     } else if (exit->signal)
       status_.error =
           "ended by signal " + std::to_string(exit->signal) + " (" + strsignal(exit->signal) + ")";

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// "0-3,7": the way that sbatch takes indices.
+/// "0-3,7", as sbatch expects indices.
 std::string ranges(const std::vector<std::size_t>& sorted) {
   std::string text;
   for (std::size_t k = 0; k < sorted.size();) {
@@ -52,22 +52,22 @@ std::string directives(const std::vector<std::string>& options) {
 std::string submit_script(const fs::path& script, std::vector<std::string> words) {
   words.insert(words.begin(), {"sbatch", "--parsable"});
   words.push_back(script.string());
-  const Said said = run_program(words);
+  const ProgramOutput said = run_program(words);
   if (said.exit.code == 127)
     throw std::runtime_error(
         "sbatch: not found; install Slurm's client (slurm-client), or use --engine local");
   if (said.exit.code != 0)
     throw std::runtime_error("sbatch refused " + script.string() + ": " + one_line(said.err));
-  return one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" where there are several
+  return one_line(said.out.substr(0, said.out.find(';')));  // "id;cluster" with several clusters
 }
 
 /// Whether any of the jobs is queued, running or ending.
 bool in_queue(const SlurmJobs& jobs) {
   std::string ids = jobs.array;
   if (!jobs.collector.empty()) ids += "," + jobs.collector;
-  const Said said = run_program({"squeue", "--noheader", "--format=%i", "--jobs=" + ids});
+  const ProgramOutput said = run_program({"squeue", "--noheader", "--format=%i", "--jobs=" + ids});
   if (said.exit.code == 0) return !said.out.empty();
-  if (said.err.find("Invalid job id") != std::string::npos) return false;  // ended, and forgotten since
+  if (said.err.find("Invalid job id") != std::string::npos) return false;  // finished, and no longer known
   throw std::runtime_error("cannot ask Slurm for the jobs " + ids + ": " +
                            (said.exit.code == 127 ? "squeue is not installed here" : one_line(said.err)));
 }
@@ -123,7 +123,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
     write_file(folder.jobs(), Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
   };
   jobs.array = submit_script(slurm / "job.sh", options.sbatch);
-  remember();  // before anything else can fail, so that they can be cancelled
+  remember();  // before anything else can fail: they must stay cancellable
   std::vector<std::string> after = options.sbatch;
   after.push_back("--dependency=afterany:" + jobs.array);
   jobs.collector = submit_script(slurm / "collect.sh", after);
@@ -133,7 +133,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
 namespace {
 
-/// As `in_queue`, through the minutes in which Slurm's controller does not answer.
+/// As `in_queue`, but tolerates minutes without an answer of Slurm's controller.
 bool still_in_queue(const SlurmJobs& jobs, int& silent) {
   try {
     const bool queued = in_queue(jobs);
@@ -155,7 +155,7 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
     const Json sweep = folder.read();
     for (const Json& run : sweep["runs"]) {
       const RunState state = read_status(folder.files(run["folder"])).state;
-      done += state == RunState::converged || state == RunState::ended || state == RunState::failed;
+      done += state == RunState::converged || state == RunState::not_converged || state == RunState::failed;
       failed += state == RunState::failed;
     }
     if (done != told)
@@ -176,7 +176,7 @@ void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop) {
                              ": has no jobs in Slurm's queue; there is nothing to cancel");
   std::vector<std::string> words = {"scancel", jobs->array};
   if (!jobs->collector.empty()) words.push_back(jobs->collector);
-  const Said said = run_program(words);
+  const ProgramOutput said = run_program(words);
   if (said.exit.code != 0) throw std::runtime_error("scancel: " + one_line(said.err));
   if (wait_for(folder, *jobs, stop)) collect_tasks(folder);
 }

@@ -1,4 +1,4 @@
-// What the jobs do that slurm_engine.cpp submits.
+// The jobs that slurm_engine.cpp submits.
 
 #include <chrono>
 #include <thread>
@@ -13,11 +13,11 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
   if (sweep.is_null() || index < 0 || index >= int(sweep["runs"].size()))
     throw std::runtime_error(folder.path().string() + ": sweep.json has no run " + std::to_string(index));
   const RunFiles files = folder.files(sweep["runs"][index]["folder"]);
-  // A node that Slurm takes for dead may still be at it while the task is begun again elsewhere.
+  // A node that Slurm considers dead may still execute the task that is restarted elsewhere.
   FileLock lock(files.lock());
   while (!lock.acquire(1))
     if (stop()) return exit_by_signal + SIGINT;
-  if (const RunStatus before = settled(files, read_status(files)); before.has_results()) {
+  if (const RunStatus before = resolve_interrupted(files, read_status(files)); before.has_results()) {
     write_status(files, before);
     return before.exit_code;
   }
@@ -30,7 +30,7 @@ int run_task(const SweepFolder& folder, int index, int threads, bool report,
 }
 
 void collect_tasks(const SweepFolder& folder) {
-  folder.settle();
+  folder.finalize();
   std::error_code ignored;
   std::filesystem::remove(folder.jobs(), ignored);
 }

@@ -9,7 +9,7 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/message_text.h"
 #include "core/plugin/describe.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/sweep/experiment_files.h"
 #include "core/sweep/variations.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-/// Takes the methods that are not chosen out of a resolved experiment, and the reference if it is of one of
+/// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
 /// them.
 void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
   const auto kept = [&](const std::string& name) {
@@ -51,7 +51,7 @@ class Reader {
     if (!errors_.empty()) return sweep_;
     SweepParameters& p = sweep_.parameters;
     schema_of<SweepParameters>().read(&p, source_, errors_);
-    if (source_.find("name")) check_name("name", p.name, place_of("name"), errors_);
+    if (source_.find("name")) check_name("name", p.name, location_of("name"), errors_);
     check_seeds();
     const std::vector<Setting> common = settings_of(p.set, errors_);
     const std::vector<Variation> variations = variations_of(p.ablation, errors_);
@@ -66,7 +66,7 @@ class Reader {
   }
 
  private:
-  Location place_of(const std::string& key) const {
+  Location location_of(const std::string& key) const {
     const ConfigNode* node = source_.find(key);
     return node ? node->where : source_.where;
   }
@@ -74,12 +74,13 @@ class Reader {
   void check_seeds() {
     SweepParameters& p = sweep_.parameters;
     if (p.repeats && !p.seeds.empty()) {
-      errors_.push_back({place_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
+      errors_.push_back(
+          {location_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
       p.seeds.clear();
     }
     for (int k = 1; p.repeats && k <= *p.repeats; ++k) p.seeds.push_back(k);
     if (std::set<int>(p.seeds.begin(), p.seeds.end()).size() != p.seeds.size())
-      errors_.push_back({place_of("seeds"), "\"seeds\" names one of them twice"});
+      errors_.push_back({location_of("seeds"), "\"seeds\" names one of them twice"});
   }
 
   Variation labelled(Variation variation, const std::string& experiment) const {
@@ -114,9 +115,9 @@ class Reader {
       experiment = read_experiment(std::move(source), registry_, faults);
     }
     if (experiment) {
-      check_methods(*experiment, methods, own ? variation.methods_where : place_of("methods"), faults);
+      check_methods(*experiment, methods, own ? variation.methods_where : location_of("methods"), faults);
       if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
-        faults.push_back({place_of(p.repeats ? "repeats" : "seeds"),
+        faults.push_back({location_of(p.repeats ? "repeats" : "seeds"),
                           "every seed gives the same run where \"start.perturbation\" is 0; set it, as in "
                           "\"set: {start.perturbation: 1e-3}\""});
     }
@@ -163,7 +164,7 @@ class Reader {
     names.push_back(variation);
   }
 
-  /// Each fault once, with the variations that have it, in the order of the file.
+  /// Every error once, with the variations that have it, in file order.
   void list_faults(std::size_t variations) {
     for (ConfigError& fault : faults_) {
       const auto& names = faulty_[fault.text()];

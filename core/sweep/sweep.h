@@ -6,10 +6,10 @@
 
 namespace drape {
 
-/// How a run is to end: a case made to fail passes when it fails as it should, saying why.
+/// The expected outcome of a run: a case that is made to fail passes if it fails as expected.
 struct Expectation {
   std::string outcome = "converged";
-  std::string message;  ///< a part of what it says
+  std::string message;  ///< a part of the message
   static void declare(Declaration<Expectation>& d);
 };
 
@@ -23,8 +23,8 @@ struct VariationParameters {
   static void declare(Declaration<VariationParameters>& d);
 };
 
-/// A whole sweep file: the variations of one experiment, `base`, or of each of several. `ablation` is a list
-/// of variations, or a map with a `grid`.
+/// A sweep file: variations of one experiment, `base`, or of each of several. `ablation` is a list of
+/// variations, or a map with a `grid`.
 struct SweepParameters {
   std::string name;
   std::string description;
@@ -40,31 +40,31 @@ struct SweepParameters {
   static void declare(Declaration<SweepParameters>& d);
 };
 
-/// One experiment to be run, with everything decided.
+/// One run: a resolved experiment.
 struct SweepRun {
-  std::string name;                 ///< of the variation, behind its experiment's where there are several
-  nlohmann::ordered_json settings;  ///< what the variation sets, by path of keys
+  std::string name;                 ///< of the variation, after its experiment's if there are several
+  nlohmann::ordered_json settings;  ///< values that the variation sets, by path of keys
   int seed = 1;
   std::string folder;  ///< "runs/NAME/seed_1", unique in the sweep
-  std::string config;  ///< the resolved experiment as YAML, with the chosen methods alone
+  std::string config;  ///< the resolved experiment as YAML, with the chosen methods only
   int levels = 1;
-  double vertices = 0;  ///< about how many the finest level has
+  double vertices = 0;  ///< estimate for the finest level
   Expectation expect;
 };
 
-/// A sweep file that has been read, every variation of it checked.
+/// A validated sweep file.
 struct Sweep {
   SweepParameters parameters;
   std::filesystem::path file;
   std::vector<SweepRun> runs;  ///< the seeds of the first variation, then of the next
 };
 
-/// Reads a sweep and every experiment in it, collecting all that is wrong; empty if anything is. Experiments
-/// of more than `most_levels` levels are made to have so many.
+/// Reads and validates a sweep with every experiment in it; empty, with every error appended, if it is not
+/// valid. Experiments get at most `most_levels` levels.
 std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
                                 ConfigErrors& errors, std::optional<int> most_levels = std::nullopt);
 
-/// The schema of sweeps for `drape describe`, and as JSON for editors, what `ablation` takes included.
+/// The schema of sweeps, `ablation` included, for `drape describe` and as JSON Schema for editors.
 std::string describe_sweep();
 std::string describe_sweep_markdown();
 nlohmann::ordered_json sweep_json_schema();

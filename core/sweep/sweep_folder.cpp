@@ -72,7 +72,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
       throw std::runtime_error(files.folder.string() +
                                ": is there already, and not from this sweep; move it away, or name another "
                                "folder with --out");
-    if (!settled(files, status).has_results()) continue;
+    if (!resolve_interrupted(files, status).has_results()) continue;
     if (text_of_file(files.config()) != run.config)
       throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
                                " are of another experiment than the sweep now says" + ways_out +
@@ -103,16 +103,16 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     make_folder(files.folder.parent_path());
     RunStatus status = read_status(files);
     if (text_of_file(files.config()) != run.config) {
-      if (status.state == RunState::failed) {  // at what was another experiment
-        status.state = RunState::waiting;
+      if (status.state == RunState::failed) {  // with a different config
+        status.state = RunState::pending;
         write_status(files, status);
       }
       write_file(files.config(), run.config);
     }
-    json["runs"].back().update(status.json());  // others read sweep.json from the moment it is written
+    json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
   }
   write_file(path_ / "sweep.json", json.dump(1) + "\n");
-  settle();
+  finalize();
 }
 
 std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_failed) const {
@@ -139,12 +139,12 @@ Json SweepFolder::refresh() const {
   return json;
 }
 
-Json SweepFolder::settle() const {
+Json SweepFolder::finalize() const {
   const Json json = read();
   for (const Json& run : json["runs"]) {
     const RunFiles files = this->files(run["folder"]);
     const RunStatus status = read_status(files);
-    if (status.state == RunState::running) write_status(files, settled(files, status));
+    if (status.state == RunState::running) write_status(files, resolve_interrupted(files, status));
   }
   return refresh();
 }
@@ -163,9 +163,9 @@ fs::path lock_in(const fs::path& folder) {
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
-  // A moment's patience for the runs of a sweep that has just been killed.
+  // Wait a moment for the runs of a sweep that has just been killed.
   if (!lock_.acquire(1))
-    throw std::runtime_error(folder.string() + ": another `drape sweep` is at work here (" + lock_.holder() +
+    throw std::runtime_error(folder.string() + ": another `drape sweep` uses this folder (" + lock_.holder() +
                              "); wait for it, or name another folder with --out");
 }
 

@@ -6,28 +6,28 @@
 
 namespace drape {
 
-/// A sweep's results folder: sweep.json, and under runs/ each run's folder and files. What is true of a run
-/// stands in its own status; sweep.json is made of those.
+/// A sweep's results folder: sweep.json, and under runs/ each run's folder and files. sweep.json is derived
+/// from the runs' own status files.
 class SweepFolder {
  public:
   explicit SweepFolder(std::filesystem::path path) : path_(std::move(path)) {}
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path slurm() const { return path_ / "slurm"; }
-  std::filesystem::path jobs() const { return slurm() / "jobs.json"; }  ///< those in Slurm's queue
+  std::filesystem::path jobs() const { return slurm() / "jobs.json"; }  ///< the submitted ones
   RunFiles files(const std::string& folder) const { return {path_ / folder}; }
 
-  /// Makes the folder ready for a sweep: refuses, by std::runtime_error, one that holds something else, runs
-  /// of an experiment that the sweep no longer has, or with other threads; settles what was running;
-  /// writes every run's config and sweep.json. Only under a FolderLock.
+  /// Prepares the folder for a sweep: updates the statuses of interrupted runs and writes every run's config
+  /// and sweep.json. Throws std::runtime_error for a folder with other contents, with runs of a different
+  /// experiment or number of threads. Only under a FolderLock.
   void prepare(const Sweep& sweep, int threads) const;
-  /// Which of the sweep's runs have no results; a failed one only if it is to be tried again.
+  /// Indices of the runs without results; failed ones only with `retry_failed`.
   std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
   /// Writes sweep.json again with every run's status, and returns it.
   nlohmann::ordered_json refresh() const;
-  /// As `refresh`, once nothing of the sweep runs any more: what is still marked as running is settled.
-  nlohmann::ordered_json settle() const;
-  /// sweep.json; null if there is none. Throws std::runtime_error where it lacks what names a run.
+  /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
+  nlohmann::ordered_json finalize() const;
+  /// sweep.json; null if there is none. Throws std::runtime_error if a run has no name.
   nlohmann::ordered_json read() const;
 
  private:
@@ -35,17 +35,18 @@ class SweepFolder {
   std::filesystem::path path_;
 };
 
-/// Holds a sweep's folder for one process and the runs it starts.
+/// Locks a sweep's folder for one process and its runs.
 class FolderLock {
  public:
-  /// Makes the folder if need be. Throws std::runtime_error, naming the process, if another one holds it.
+  /// Creates the folder if necessary. Throws std::runtime_error, naming the process, if another one holds it.
   explicit FolderLock(const std::filesystem::path& folder);
 
  private:
   FileLock lock_;
 };
 
-/// The runs of sweep.json for the terminal: variation, seed, status, seconds, and what failed ones said.
+/// The runs of sweep.json for the terminal: variation, seed, status, seconds, and the messages of failed
+/// ones.
 std::string list_of_runs(const nlohmann::ordered_json& sweep);
 
 }  // namespace drape

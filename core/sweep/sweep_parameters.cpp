@@ -8,59 +8,59 @@ void Expectation::declare(Declaration<Expectation>& d) {
   d.add("outcome", &Expectation::outcome)
       .choices(
           {"converged", "converged_to_rounding", "infeasible", "stalled", "max_steps_reached", "refused"})
-      .meaning("of every method's worst level; refused: before anything was computed");
+      .description("expected outcome of every method's worst level; refused: before any computation");
   d.add("message", &Expectation::message)
-      .meaning("a part of what it says then; required where it is not to converge");
+      .description("expected part of the message; required unless the outcome is converged");
 }
 
 void VariationParameters::declare(Declaration<VariationParameters>& d) {
-  d.add("name", &VariationParameters::name).required().meaning("names its runs, and their folder");
+  d.add("name", &VariationParameters::name)
+      .required()
+      .description("name of the variation and of its runs' folder");
   d.add_node("set", &VariationParameters::set)
-      .meaning("a map: a path of keys in the experiment (methods.pcs.hessian, energies.0), then its value");
+      .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
   d.add("levels", &VariationParameters::levels)
       .at_least(1)
       .at_most(10)
-      .meaning("in place of the experiment's");
+      .description("number of levels, in place of the experiment's");
   d.add("methods", &VariationParameters::methods)
-      .meaning("which methods to run; those of the sweep if not given");
+      .description("methods to run; by default those of the sweep");
   d.add_section("expect", &VariationParameters::expect)
-      .meaning("how its runs are to end; `drape table` and the exit code say whether they did");
+      .description("expected outcome of its runs, checked by `drape table` and the exit code");
 }
 
 void SweepParameters::declare(Declaration<SweepParameters>& d) {
-  d.add("name", &SweepParameters::name).required().meaning("names the sweep's folder");
-  d.add("description", &SweepParameters::description).meaning("one sentence");
+  d.add("name", &SweepParameters::name).required().description("name of the sweep and of its folder");
+  d.add("description", &SweepParameters::description).description("one sentence");
   d.add("base", &SweepParameters::base)
       .path()
-      .meaning("the experiment that is varied, relative to this file; required without experiments");
+      .description("experiment to vary, relative to this file; required without `experiments`");
   d.add("experiments", &SweepParameters::experiments)
-      .meaning(
-          "several that are varied alike, in place of base; * in a file's name stands for anything, in the "
-          "order of the alphabet");
+      .description(
+          "several experiments to vary alike, in place of `base`; * in a file name matches anything, in "
+          "alphabetical order");
   d.add_node("set", &SweepParameters::set)
-      .meaning("a map: a path of keys in the experiment, then its value, for every variation");
+      .description("map from paths of keys in the experiment to values, for every variation");
   d.add("seeds", &SweepParameters::seeds)
       .at_least(0)
       .at_most(bounds::largest_int)
-      .meaning(
+      .description(
           "every variation is run with each of these as start.seed; the experiment's alone if not given");
   d.add("repeats", &SweepParameters::repeats)
       .at_least(1)
       .at_most(10000)
-      .meaning("short for the seeds 1, 2, … up to this");
-  d.add("methods", &SweepParameters::methods)
-      .meaning("which of the experiment's methods to run; all if not given");
-  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).meaning("of each run");
+      .description("shorthand for seeds 1, 2, … up to this");
+  d.add("methods", &SweepParameters::methods).description("methods of the experiment to run; all by default");
+  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("threads of each run");
   d.add("time_limit", &SweepParameters::time_limit)
       .unit("s")
       .above(0)
       .at_most(1e9)
-      .meaning("a run that takes longer is ended, and has failed; none if not given");
+      .description("a run that takes longer is stopped and counts as failed; no limit by default");
   d.add_node("ablation", &SweepParameters::ablation)
-      .meaning(
-          "a list of variations, or {grid: {path: [values], …}}: every combination; the experiments as they "
-          "are if not "
-          "given");
+      .description(
+          "list of variations, or {grid: {path: [values], …}} for every combination; by default the "
+          "unchanged experiments");
 }
 
 std::string describe_sweep() {

@@ -17,16 +17,16 @@ using NodeKind = ConfigNode::Kind;
 constexpr std::size_t most_variations = 10000;
 
 void refuse_repeated_keys(const ConfigNode& map, const std::string& name, ConfigErrors& errors) {
-  std::map<std::string, Location> places;
+  std::map<std::string, Location> locations;
   for (std::size_t k = 0; k < map.entries.size(); ++k) {
-    const auto [first, is_first] = places.emplace(map.entries[k].first, map.key_places[k]);
+    const auto [first, is_first] = locations.emplace(map.entries[k].first, map.key_locations[k]);
     if (!is_first)
-      errors.push_back({map.key_places[k], "repeated key \"" + first->first + "\" in " + name +
-                                               "; it is first set at " + first->second.text()});
+      errors.push_back({map.key_locations[k], "repeated key \"" + first->first + "\" in " + name +
+                                                  "; it is first set at " + first->second.text()});
   }
 }
 
-/// Under which key each path of the grid goes into names: its last word, where that says which.
+/// The name of each path of the grid: its last key, if that is unambiguous.
 std::vector<std::string> short_keys(const ConfigNode& grid) {
   const auto last = [](const std::string& path) { return path.substr(path.rfind('.') + 1); };
   std::map<std::string, int> times;
@@ -44,9 +44,9 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
   for (std::size_t k = 0; k < grid.entries.size(); ++k) {
     const auto& [path, values] = grid.entries[k];
     if (values.kind != NodeKind::list || values.items.empty()) {
-      errors.push_back({grid.key_places[k], "\"" + path +
-                                                "\" in grid must be a list of at least one value, as in "
-                                                "\"refiner: [loop, midpoint]\""});
+      errors.push_back({grid.key_locations[k], "\"" + path +
+                                                   "\" in grid must be a list of at least one value, as in "
+                                                   "\"refiner: [loop, midpoint]\""});
       return {};
     }
     count = std::min(count * values.items.size(), most_variations + 1);
@@ -67,10 +67,10 @@ std::vector<Variation> product(const ConfigNode& grid, ConfigErrors& errors) {
       const std::size_t at = rest % values.items.size();
       rest /= values.items.size();
       const ConfigNode& value = values.items[at];
-      v.settings.insert(v.settings.begin(), {path, value, grid.key_places[k]});
+      v.settings.insert(v.settings.begin(), {path, value, grid.key_locations[k]});
       const std::string shown = value.kind == NodeKind::scalar
                                     ? value.scalar
-                                    : std::to_string(at + 1);  // a map's place in the list
+                                    : std::to_string(at + 1);  // a map's index in the list
       v.name = keys[k] + "=" + shown + (v.name.empty() ? "" : "," + v.name);
     }
     all.push_back(v);
@@ -84,8 +84,8 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
   Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
   if (!has_converged(p.expect.outcome) && p.expect.message.empty())
     errors.push_back({node.find("expect")->where,
-                      "\"expect\" of what is not to converge needs a \"message\": a part of what it "
-                      "says then"});
+                      "\"expect\" of an outcome other than converged needs a \"message\": a part of the "
+                      "expected message then"});
   if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
   for (Setting& setting : settings_of(p.set, errors)) {
     if (p.levels && setting.path == "levels")
@@ -143,7 +143,7 @@ std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors) {
                       "0.2}\""});
   refuse_repeated_keys(set, "set", errors);
   for (std::size_t k = 0; k < set.entries.size(); ++k)
-    settings.push_back({set.entries[k].first, set.entries[k].second, set.key_places[k]});
+    settings.push_back({set.entries[k].first, set.entries[k].second, set.key_locations[k]});
   return settings;
 }
 

@@ -4,17 +4,17 @@
 
 namespace drape {
 
-/// One value that a variation gives to a path of keys, with the path's place.
+/// A value that a variation sets at a path of keys, with the path's location.
 struct Setting {
   std::string path;
   ConfigNode value;
   Location where;
 };
 
-/// A variation of a sweep, before it is set on the base.
+/// A variation of a sweep, before it is applied to an experiment.
 struct Variation {
   std::string name;
-  std::string folder;  ///< the name as a folder is called
+  std::string folder;  ///< the name as a folder name
   Location where;
   std::vector<Setting> settings;
   std::vector<std::string> methods;  ///< empty for all
@@ -22,14 +22,14 @@ struct Variation {
   Expectation expect;
 };
 
-/// A name as a folder is called.
+/// A name as a folder name.
 std::string folder_name(std::string name);
 
-/// The entries of a `set` map; anything else is an error.
+/// The entries of a `set` map; appends an error for anything else.
 std::vector<Setting> settings_of(const ConfigNode& set, ConfigErrors& errors);
 
-/// Every variation that `ablation` lists, or that its grid multiplies to; one called "base" without any.
-/// Names that are given twice, or would share a folder, are errors.
+/// The variations that `ablation` lists, or the product of its grid; a single one named "base" without any.
+/// Appends an error for names that occur twice or share a folder.
 std::vector<Variation> variations_of(const ConfigNode& ablation, ConfigErrors& errors);
 
 }  // namespace drape

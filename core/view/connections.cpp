@@ -13,7 +13,7 @@
 
 namespace drape {
 
-/// A connection's bytes, which come and go within the limits.
+/// A connection's stream with time limits.
 class Peer final : public httplib::Stream {
  public:
   Peer(const Connections& all, int socket) : all_(all), socket_(socket) {}
@@ -44,7 +44,7 @@ class Peer final : public httplib::Stream {
   void get_local_ip_and_port(std::string& ip, int& port) const override { ip = "127.0.0.1", port = 0; }
 
  private:
-  static constexpr int poll_pause = 20;  // [ms]; how late a limit or the end may be noticed
+  static constexpr int poll_pause = 20;  // [ms]; latency of limits and shutdown
 
   static bool would_block() { return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR; }
 
@@ -53,7 +53,7 @@ class Peer final : public httplib::Stream {
     return poll(&one, 1, milliseconds) > 0;
   }
 
-  /// The limit is on the whole request: one that sends a byte now and then gets no more time.
+  /// The limit applies to the whole request: a byte now and then does not extend it.
   bool fill() {
     while (taken_ < all_.limits_.request && !all_.is_too_late(since_.seconds())) {
       if (!waits_for(POLLIN, poll_pause)) continue;
@@ -77,7 +77,7 @@ class Peer final : public httplib::Stream {
 
 namespace {
 
-/// Closes the connection so that the peer gets the last answer even where it sent more than was read.
+/// Closes the connection such that the peer receives the last answer even if it sent more than was read.
 void close_gently(int socket) {
   shutdown(socket, SHUT_WR);
   std::array<char, 4096> ignored;
@@ -124,7 +124,7 @@ void Connections::work() {
     try {
       serve_(peer);
     } catch (const std::exception&) {
-      // This peer gets no answer, which is no reason to end the run.
+      // This peer gets no answer; the run continues.
     }
     close_gently(socket);
   }

@@ -12,9 +12,9 @@
 
 namespace drape {
 
-/// How long peers may take, and how many are served at a time.
+/// Time limits for peers and the number of concurrent connections.
 struct ConnectionLimits {
-  int threads = 16;              ///< connections that are served at a time
+  int threads = 16;              ///< concurrent connections
   std::size_t waiting = 64;      ///< connections that may wait for a thread; further ones are closed at once
   double reading = 5;            ///< for a request to arrive [s]
   double reading_in_queue = .2;  ///< the same while others wait [s]
@@ -22,16 +22,16 @@ struct ConnectionLimits {
   std::size_t request = 32768;   ///< largest request, with its headers [bytes]
 };
 
-/// Serves connections, one request each, on threads of its own. No peer holds a thread for longer than the
-/// limits say, and none holds up the end.
+/// Serves connections, one request each, on its own threads. No peer occupies a thread for longer than the
+/// limits, and none delays the shutdown.
 class Connections {
  public:
   /// `serve` reads a request from the stream and writes its answer there.
   Connections(const ConnectionLimits& limits, std::function<void(httplib::Stream&)> serve);
   ~Connections() { end(); }
 
-  void take(int socket);  ///< the connection is served and closed
-  void end();             ///< closes all connections, and waits for the threads alone
+  void take(int socket);  ///< serves and closes the connection
+  void end();             ///< closes all connections and joins the threads
 
  private:
   friend class Peer;

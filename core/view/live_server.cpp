@@ -31,7 +31,7 @@ std::string random_token() {
   return token;
 }
 
-/// By a provider, as the library would compress a plain body at length.
+/// Through a content provider: the library would compress a plain body slowly.
 void send(Response& response, const std::shared_ptr<const std::string>& body, const char* type) {
   const std::size_t size = body->size();
   response.set_content_provider(size, type,
@@ -51,12 +51,12 @@ void refuse(Response& response, int status, const std::string& why) {
 
 constexpr std::size_t largest_body = 1024;  // [bytes]; no request of the page has one
 
-/// The library's server, with connections of our own: its limits are on a single read, so that a peer that
-/// sends a byte now and then holds a thread, and the end, for ever.
+/// The library's server with our own connections: its limits apply to a single read, and a peer that sends a
+/// byte now and then would block a thread and the shutdown for ever.
 class BoundedServer final : public httplib::Server {
  public:
   BoundedServer() {
-    // The listening thread only hands connections over.
+    // The listening thread only passes connections on.
     struct AtOnce final : httplib::TaskQueue {
       void enqueue(std::function<void()> task) override { task(); }
       void shutdown() override {}
@@ -64,7 +64,7 @@ class BoundedServer final : public httplib::Server {
     new_task_queue = [] { return new AtOnce; };
   }
 
-  /// The library lets five connections wait to be accepted: of a burst, the others come again after a second.
+  /// The library's backlog is five connections: of a burst, the others would retry after a second.
   void lengthen_queue() { ::listen(svr_sock_, SOMAXCONN); }
   void end_connections() { connections_.end(); }
 
@@ -80,10 +80,10 @@ class BoundedServer final : public httplib::Server {
                            }};
 };
 
-/// Why the request's body is refused; empty where it is not. The library takes "-1" for a length.
+/// Why the request's body is refused; empty if it is not. The library accepts "-1" as a length.
 std::string fault_of_body(const Request& request) {
   if (request.has_header("Transfer-Encoding")) return "the live view takes no body in parts";
-  // Of these the library would wait for a body until the connection ends.
+  // For these the library would wait for a body until the connection closes.
   if (request.method != "GET" && request.method != "HEAD" && !request.has_header("Content-Length"))
     return "Content-Length is missing";
   for (std::size_t k = 0; k < request.get_header_value_count("Content-Length"); ++k) {
@@ -105,8 +105,7 @@ struct LiveServer::Impl {
   std::atomic<bool> ended = false;
   std::string origin, same_origin;  // http://127.0.0.1:port, and by name
 
-  /// Only what was asked for under the address that was printed: another site's page that makes its own name
-  /// point here, or that posts here, does not get through.
+  /// Whether the request is for the printed address. This stops DNS rebinding and cross-site requests.
   bool is_ours(const Request& request) const {
     const std::string host = "http://" + request.get_header_value("Host");
     if (host != origin && host != same_origin) return false;
@@ -117,7 +116,7 @@ struct LiveServer::Impl {
 
 LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_unique<Impl>()) {
   httplib::Server& server = impl_->server;
-  // The library's own choice would let two programs listen on one port.
+  // The library's default would let two programs listen on one port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -190,7 +189,7 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_u
 }
 
 LiveServer::~LiveServer() {
-  // One that has not begun to listen would not see the stop.
+  // A server that does not listen yet would miss the stop.
   while (!impl_->server.is_running() && !impl_->ended) std::this_thread::yield();
   impl_->server.stop();
   impl_->thread.join();

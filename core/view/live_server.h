@@ -9,20 +9,19 @@ namespace drape {
 /// The live view's answers. Called on the server's threads, several at a time.
 struct LiveAnswers {
   std::function<std::string()> page;  ///< HTML
-  /// JSON of what is newer than that version and that number of rows; empty where nothing is.
+  /// JSON of everything newer than that version and that number of rows; empty if there is nothing.
   std::function<std::string(long version, std::size_t rows)> news;
   std::function<std::shared_ptr<const std::string>(const std::string& name)> block;  ///< null if unknown
   std::function<void()> stop;
-  std::function<std::string()> refine;  ///< empty, or why that cannot be
+  std::function<std::string()> refine;  ///< empty, or why it is not possible
 };
 
-/// Serves the live view on 127.0.0.1 alone, under a path that nobody can guess. Requests for another host
-/// name, and actions from another site's pages, are refused. Whatever peers do, the page is served and the
-/// end comes (see ConnectionLimits).
+/// Serves the live view on 127.0.0.1 only, under an unguessable path. Refuses requests for another host name
+/// and actions from other sites' pages. Peers can neither block the page nor the shutdown (see
+/// ConnectionLimits).
 class LiveServer {
  public:
-  /// Listens from now on; port 0 takes any that is free. Throws std::runtime_error where the port cannot be
-  /// had.
+  /// Starts to listen; port 0 takes any free one. Throws std::runtime_error if the port is not available.
   LiveServer(int port, const LiveAnswers& answers);
   ~LiveServer();
 

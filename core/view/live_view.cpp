@@ -13,7 +13,7 @@ namespace drape {
 namespace {
 
 constexpr double shortest_pause = 0.25;  // between two copies of the running state [s]
-constexpr double share_of_time = 0.05;   // that encoding may take
+constexpr double share_of_time = 0.05;   // largest share of time for encoding
 constexpr double looked_lately = 5;      // since a page last asked [s]
 
 std::vector<TriangleMesh> obstacles_of(const Scene& scene) {
@@ -51,7 +51,7 @@ void LiveView::method_started(const std::string& method) {
 
 void LiveView::level_started(int level) {
   const std::lock_guard lock(mutex_);
-  refine_ = false;  // it was the last level that was meant
+  refine_ = false;  // the request was for the last level
   level_ = level;
   last_copy_ = -1e9;
   ++version_;
@@ -118,7 +118,7 @@ void LiveView::forget_blocks(const std::string& state) {
     at = blocks_.erase(at);
 }
 
-/// Encodes states that came since the last time. The lock is not held while that goes on.
+/// Encodes the states that are new since the last call, without holding the lock.
 void LiveView::encode_fresh() {
   while (true) {
     std::unique_lock lock(mutex_);
@@ -161,7 +161,7 @@ std::string LiveView::news(long version, std::size_t rows) {
   encode_fresh();
   const std::lock_guard lock(mutex_);
   if (version == version_) {
-    heard_version_ = version;  // it has come back for more, so that is what it shows
+    heard_version_ = version;  // a further request: the page shows that version
     heard_.notify_all();
     return "";
   }

@@ -12,12 +12,12 @@
 
 namespace drape {
 
-/// Shows a run in a browser while it goes, and passes on its "stop" and "refine now". The run only copies a
-/// state now and then, while somebody looks; all else happens on the server's threads, so that results do not
-/// depend on it.
+/// Shows a run in a browser while it proceeds, and forwards the page's "stop" and "refine now". The run only
+/// copies a state now and then while a page is open; the server's threads do the rest. Results do not depend
+/// on it.
 class LiveView : public Observer {
  public:
-  /// Serves from now on (see LiveServer) the chosen methods of the experiment, all if none is named. `scene`
+  /// Starts to serve (see LiveServer) the chosen methods of the experiment, all if none is named. `scene`
   /// must outlive the view.
   LiveView(const Experiment& experiment, const Scene& scene, const std::vector<std::string>& methods,
            int port);
@@ -28,7 +28,7 @@ class LiveView : public Observer {
   void level_started(int level) override;
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
-  /// Says so on the page, and gives one that is open a moment to hear it.
+  /// Shows the outcome on the page, and waits a moment for an open page to read it.
   void run_finished(const std::string& outcome);
 
   bool stop_requested() override { return stop_; }
@@ -43,7 +43,7 @@ class LiveView : public Observer {
     double seconds = 0;
     bool fresh = false;        // not encoded yet
     Json entry;                // of the state, once encoded
-    std::string name, before;  // of its blocks, and of those it replaced, which a page may still ask for
+    std::string name, before;  // of its blocks and the replaced ones, which a page may still request
   };
 
   std::string page() const;

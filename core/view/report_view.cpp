@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_frame_bytes = 4'000'000;  // of the whole page, before they are compressed
+constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
 
 constexpr const char* section_open =
     "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
@@ -27,35 +27,36 @@ constexpr const char* section_open =
     "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
     "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
 
-/// States on the way within a level: float32 positions, one frame after the other.
-struct Frames {
+/// The snapshots of a level: float32 positions, one after the other.
+struct Snapshots {
   std::string bytes;
   Json iterations, seconds;
   std::size_t count = 0;
 
-  Positions positions(std::size_t frame, Eigen::Index n) const {
+  Positions positions(std::size_t snapshot, Eigen::Index n) const {
     using Floats = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
-    const auto* first = reinterpret_cast<const float*>(bytes.data()) + frame * 3 * n;
+    const auto* first = reinterpret_cast<const float*>(bytes.data()) + snapshot * 3 * n;
     return Eigen::Map<const Floats>(first, n, 3).cast<double>();
   }
 };
 
-Frames recorded_frames(const RunData& run, const Json& level, Eigen::Index n) {
-  if (!level.contains("frames") || !level["frames"].is_object()) return {};
-  const Json& entry = level["frames"];
-  Frames frames{read_file(run.folder / entry.at("file").get<std::string>()), entry.at("iterations"),
-                entry.at("seconds")};
-  frames.count = frames.iterations.size();
-  if (frames.seconds.size() != frames.count || frames.bytes.size() != frames.count * n * 12)
+Snapshots recorded_snapshots(const RunData& run, const Json& level, Eigen::Index n) {
+  if (!level.contains("snapshots") || !level["snapshots"].is_object()) return {};
+  const Json& entry = level["snapshots"];
+  Snapshots snapshots{read_file(run.folder / entry.at("file").get<std::string>()), entry.at("iterations"),
+                      entry.at("seconds")};
+  snapshots.count = snapshots.iterations.size();
+  if (snapshots.seconds.size() != snapshots.count || snapshots.bytes.size() != snapshots.count * n * 12)
     throw std::runtime_error((run.folder / entry["file"].get<std::string>()).string() + ": holds " +
-                             std::to_string(frames.bytes.size()) + " bytes, not " +
-                             std::to_string(frames.count) + " frames of " + std::to_string(n) + " vertices");
-  return frames;
+                             std::to_string(snapshots.bytes.size()) + " bytes, not " +
+                             std::to_string(snapshots.count) + " snapshots of " + std::to_string(n) +
+                             " vertices");
+  return snapshots;
 }
 
-/// At most `most` of them: the first, and others evenly; the last is the level's state, which is shown
-/// anyway.
-std::vector<std::size_t> chosen_frames(std::size_t count, std::size_t most) {
+/// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
+/// state, which is always shown.
+std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
   std::vector<std::size_t> chosen;
   if (count < 2) return chosen;
   const std::size_t shown = std::min(count - 1, most);
@@ -131,10 +132,10 @@ class ReportViewMaker {
         state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
   }
 
-  /// None, and a note, where they cannot be read.
-  Frames frames_of(const Json& level, Eigen::Index n) {
+  /// The recorded snapshots; empty, with a note, if they cannot be read.
+  Snapshots snapshots_of(const Json& level, Eigen::Index n) {
     try {
-      return recorded_frames(run_, level, n);
+      return recorded_snapshots(run_, level, n);
     } catch (const std::exception& error) {
       notes_.push_back("3D viewer: " + reason_of(error));
       return {};
@@ -144,8 +145,8 @@ class ReportViewMaker {
   Json method_entry(std::size_t m) {
     const MethodRecord& method = run_.methods[m];
     Json levels = Json::array();
-    // What a coarse level leaves of its share, finer ones may use.
-    std::size_t left = most_frame_bytes / run_.methods.size();
+    // Finer levels may use the rest of a coarse level's share.
+    std::size_t left = most_snapshot_bytes / run_.methods.size();
     for (std::size_t k = 0; k < method.levels.size(); ++k) {
       const LevelRecord& level = method.levels[k];
       const auto state = states_.find({m, level.level});
@@ -153,15 +154,16 @@ class ReportViewMaker {
       const std::string name = "m" + std::to_string(m) + "l" + std::to_string(level.level);
       Json states = Json::array();
       const Eigen::Index n = state->second.x.rows();
-      const Frames frames = frames_of(results_.at("methods").at(method.name).at("levels").at(k), n);
+      const Snapshots snapshots = snapshots_of(results_.at("methods").at(method.name).at("levels").at(k), n);
       const std::size_t bytes = document_->state_bytes(level.level),
                         share = left / (method.levels.size() - k);
-      for (const std::size_t f : chosen_frames(frames.count, share / bytes)) {
-        const Positions x = frames.positions(f, n);
-        Json frame = document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
-        frame["iteration"] = frames.iterations[f];
-        frame["seconds"] = frames.seconds[f];
-        states.push_back(frame);
+      for (const std::size_t f : chosen_snapshots(snapshots.count, share / bytes)) {
+        const Positions x = snapshots.positions(f, n);
+        Json snapshot =
+            document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
+        snapshot["iteration"] = snapshots.iterations[f];
+        snapshot["seconds"] = snapshots.seconds[f];
+        states.push_back(snapshot);
         left -= bytes;
       }
       Json last = document_->state(name, state->second.x, state->second.fields);

@@ -7,15 +7,14 @@
 
 namespace drape {
 
-/// The report's 3D viewer: what goes into the page where it is shown, and the data and scripts at the page's
-/// end.
+/// The report's 3D viewer: its section of the page, and the data and scripts at the page's end.
 struct ReportView {
-  std::string section, scripts;    ///< HTML; both empty where the run has nothing to show
-  std::vector<std::string> notes;  ///< what cannot be shown and why, one line each
+  std::string section, scripts;    ///< HTML; both empty if there is nothing to show
+  std::vector<std::string> notes;  ///< what cannot be shown, with reasons, one line each
 };
 
-/// Made of the meshes in the run's folder: every level's last state, and recorded frames, spread evenly, as
-/// far as a few megabytes go.
+/// The viewer of the meshes in the run's folder: every level's last state and, up to a few megabytes, evenly
+/// chosen snapshots.
 ReportView report_view(const RunData& run);
 
 /// three.js and the viewer's own scripts, as <script> elements.

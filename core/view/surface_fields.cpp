@@ -17,7 +17,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double shown_part_of_diagonal = 2e-3;
 constexpr double quantile = 0.98;  // of the values inside the colours' range
 
-/// Of triangle (a, b, c), as long as twice its area.
+/// The normal of triangle (a, b, c), of length twice its area.
 Eigen::Vector3d twice_normal(const Positions& x, int a, int b, int c) {
   const Eigen::Vector3d e1 = x.row(b) - x.row(a), e2 = x.row(c) - x.row(a);
   return e1.cross(e2);
@@ -94,7 +94,7 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
   for (const TriangleMesh& obstacle : obstacles)
     lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
                       [](int, int) { return true; });
-  // Along the cloth its own neighbourhood is always near, and is no contact.
+  // A vertex's neighbourhood along the cloth is always near and is no contact.
   const Positions& rest = level.rest.vertices;
   const Triangles& triangles = level.rest.triangles;
   lower_to_distance(gap, points, x, x, triangles, range, [&](int i, int t) {

@@ -9,7 +9,7 @@
 
 namespace drape {
 
-/// What the viewer can colour a cloth by.
+/// Scalar fields that the viewer can show.
 struct FieldKind {
   const char *name, *label, *unit;
   const char* map;  ///< "diverging" about 0, "sequential" upwards, "near" for what is close to 0
@@ -31,15 +31,15 @@ Eigen::VectorXd mean_curvature(const Level& level, const Positions& x);
 Eigen::VectorXd largest_stretch(const Level& level, const Positions& x);
 
 /// n distances to the nearest triangle of the obstacles, or of the cloth itself farther away than three
-/// ranges at rest [m]; NaN beyond `range`. Of an obstacle in closed form it is the distance to the mesh
-/// drawn.
+/// ranges at rest [m]; NaN beyond `range`. For an obstacle in closed form, the distance to its displayed
+/// mesh.
 Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
                             const std::vector<TriangleMesh>& obstacles, double range);
 
-/// The range in which gaps are shown: a part of the rest shape's diagonal [m].
+/// The range of displayed gaps: a fraction of the rest shape's diagonal [m].
 double shown_gap(const Level& level);
 
-/// How far a kind's colours go: such that nearly all of the values lie inside.
+/// The colour range of a kind: nearly all values lie inside.
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range);
 

@@ -9,7 +9,7 @@ namespace drape {
 
 namespace {
 
-constexpr std::size_t derived_fields = 3;  // bytes a vertex: mean curvature, stretch and gap
+constexpr std::size_t derived_fields = 3;  // bytes per vertex: mean curvature, stretch and gap
 
 const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name) {
   const auto found =
@@ -55,7 +55,7 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
     std::vector<const Eigen::VectorXd*> values;
     for (const SurfaceFields* state : states)
       if (const Eigen::VectorXd* field = find(*state, field_kinds[k].name); field && !field->isZero(0))
-        values.push_back(field);  // the finest level's difference from itself says nothing
+        values.push_back(field);  // the finest level's difference from itself is zero
     if (!values.empty()) ranges_[k] = field_range(field_kinds[k], values, shown_gap(levels_.front()));
   }
 }

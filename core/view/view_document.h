@@ -9,25 +9,25 @@
 
 namespace drape {
 
-/// Puts a cloth's levels, obstacles and states into what the page's viewer reads: a JSON document, and blocks
-/// of bytes under names that the document refers to. The report embeds them, the live view serves them.
+/// Converts a cloth's levels, obstacles and states to the viewer's format: a JSON document and named blocks
+/// of bytes that it refers to. The report embeds them, the live view serves them.
 class ViewDocument {
  public:
   using Json = nlohmann::ordered_json;
-  /// Takes a block, named.
+  /// Receives a named block.
   using Keep = std::function<void(const std::string& name, std::string bytes)>;
 
   /// `levels`, coarse to fine, and `obstacles` must outlive the document; gaps are shown `with_gaps`.
   ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles, bool with_gaps,
                Keep keep);
 
-  /// What can be derived from the positions alone.
+  /// The fields that depend on positions only.
   SurfaceFields fields(int level, const Positions& x) const;
-  /// Sets how far the colours go from states that are typical, usually the last of each level.
+  /// Sets the colour ranges from typical states, usually the last of each level.
   void set_ranges(const std::vector<const SurfaceFields*>& states);
   /// Encodes a state; its blocks are named after `name`.
   Json state(const std::string& name, const Positions& x, const SurfaceFields& fields);
-  /// Bytes that a state of so many vertices takes before it is compressed.
+  /// Uncompressed size of a state of that level [bytes].
   std::size_t state_bytes(int level) const;
 
   /// The document, with `methods` as {"name", "levels": [{"level", "status", "states": [...]}]}.

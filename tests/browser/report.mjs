@@ -10,7 +10,7 @@ const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.h
 let chrome;
 
 before(async () => {
-  run(folder, 'run', contactConfig, '--out', 'out', '--quiet', '--threads', '1', '--set', 'frames=0');
+  run(folder, 'run', contactConfig, '--out', 'out', '--quiet', '--threads', '1', '--set', 'snapshots=0');
   chrome = await browser();
 });
 after(() => chrome.close());
@@ -55,8 +55,8 @@ test('the level slider changes the mesh, the colours and the legend follow the c
 });
 
 test('a schedule has plots of its own', async () => {
-  const schedule = '{steps: 4, keys: [{set: material.bending_modulus, at: [0, 1], to: [8e4, 8e5]}]}';
-  run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--threads', '1', '--set', 'frames=0', '--method', 'newton',
+  const schedule = '{steps: 4, keys: [{parameter: material.bending_modulus, times: [0, 1], values: [8e4, 8e5]}]}';
+  run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--threads', '1', '--set', 'snapshots=0', '--method', 'newton',
     '--set', 'schedule=' + schedule);
   const {page, heard} = await openPage(chrome, pathToFileURL(path.join(folder, 'changing/report.html')).href);
   for (const plot of ['#change-energy', '#change-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
@@ -64,7 +64,7 @@ test('a schedule has plots of its own', async () => {
   await page.context().close();
 });
 
-test('the progression plays, frames between the levels included', async () => {
+test('the progression plays, snapshots between the levels included', async () => {
   addFrames();
   run(folder, 'report', 'out');
   const {page, heard, state} = await openPage(chrome, report);
@@ -83,7 +83,7 @@ test('the progression plays, frames between the levels included', async () => {
   assert.deepEqual(shown.map(text => text.split(' ')[0]), ['0', '1', '2', '3', '4']);
   assert.equal(new Set(shown.map(text => text.split(' ')[1])).size, 5);
   await page.locator('#viewer-stop').fill('1');
-  await until('a frame', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
+  await until('a snapshot', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
   assert.match(await page.locator('#viewer-labels').textContent(), /7 iterations, 0.700 s/);
   assert.deepEqual(heard.errors, []);
   await page.context().close();
@@ -139,19 +139,19 @@ test('dark, narrow, printed, and without WebGL', async () => {
   await bare.context().close();
 });
 
-/// Writes four frames of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.
+/// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.
 function addFrames() {
   const ply = fs.readFileSync(path.join(folder, 'out/levels/pcs_l0.ply')), marker = 'end_header\n';
-  const begin = ply.indexOf(marker) + marker.length, count = 81, frames = Buffer.alloc(4 * count * 12);
+  const begin = ply.indexOf(marker) + marker.length, count = 81, snapshots = Buffer.alloc(4 * count * 12);
   for (let k = 0; k < 4; ++k) {
     for (let i = 0; i < 3 * count; ++i) {
       const lift = i % 3 === 2 ? .03 * (3 - k) : 0;
-      frames.writeFloatLE(ply.readDoubleLE(begin + 8 * i) + lift, 4 * (3 * count * k + i));
+      snapshots.writeFloatLE(ply.readDoubleLE(begin + 8 * i) + lift, 4 * (3 * count * k + i));
     }
   }
-  fs.mkdirSync(path.join(folder, 'out/frames'), {recursive: true});
-  fs.writeFileSync(path.join(folder, 'out/frames/pcs_l0.bin'), frames);
+  fs.mkdirSync(path.join(folder, 'out/snapshots'), {recursive: true});
+  fs.writeFileSync(path.join(folder, 'out/snapshots/pcs_l0.bin'), snapshots);
   const file = path.join(folder, 'out/results.json'), results = JSON.parse(fs.readFileSync(file));
-  results.methods.pcs.levels[0].frames = {file: 'frames/pcs_l0.bin', iterations: [1, 7, 15, 22], seconds: [.1, .7, 1.5, 2.2]};
+  results.methods.pcs.levels[0].snapshots = {file: 'snapshots/pcs_l0.bin', iterations: [1, 7, 15, 22], seconds: [.1, .7, 1.5, 2.2]};
   fs.writeFileSync(file, JSON.stringify(results));
 }

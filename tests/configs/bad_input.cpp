@@ -51,18 +51,18 @@ const std::string top_keys =
     "name, description, table1_scene, cloth, levels, material, start, pins, handles, schedule, energies, "
     "refiner, contact, "
     "newton, "
-    "methods, metrics, reference, frames, verify";
+    "methods, metrics, reference, snapshots, check_intersections";
 
 }  // namespace
 
-TEST_CASE("the file of these cases is sound, so that each has one fault alone") {
+TEST_CASE("the base file of these cases is valid: each case has exactly one fault") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Ended ended = drape_with("check e.yaml", folder.path);
   CHECK(ended.exit_code == 0);
   CHECK(ended.err == "");
   CHECK_THAT(ended.out,
-             Catch::Matches("e\\.yaml: sound\\. Vertices by level: 36, 121\n"
+             Catch::Matches("e\\.yaml: valid\\. Vertices by level: 36, 121\n"
                             "Memory to solve them, at most about: 0\\.1 GB, 0\\.1 GB; this machine has "
                             "[0-9.]+ GB\n"));
 }
@@ -78,7 +78,7 @@ TEST_CASE("a config that is missing, a folder, empty or no YAML") {
         "error: e.yaml:4:48: not valid YAML: illegal flow end\n");
 }
 
-TEST_CASE("a config that is no regular file is refused, not waited for") {
+TEST_CASE("a config that is not a regular file is refused without blocking") {
   const Scratch folder;
   REQUIRE(mkfifo((folder / "pipe.yaml").c_str(), 0600) == 0);
   for (const std::string command :
@@ -138,7 +138,7 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
                                        "1e+09 m can be computed with\n"));
 }
 
-TEST_CASE("however many errors there are, and however long, little is printed") {
+TEST_CASE("output is short for any number and length of errors") {
   std::string text = small_experiment();
   for (int k = 0; k < 20000; ++k) text += "key_" + std::to_string(k) + ": 1\n";
   const std::string said = said_of(text);
@@ -157,7 +157,7 @@ TEST_CASE("however many errors there are, and however long, little is printed") 
     CHECK(said_of(edited).size() < 3000);
 }
 
-TEST_CASE("what would act on the terminal is shown escaped") {
+TEST_CASE("terminal control characters are printed escaped") {
   CHECK(said_of_edit("levels: 2", "levels: \"\\e[2J\\x07\"") ==
         "error: e.yaml:3:9: \"levels\" must be an integer, not the text \"\\x1b[2J\\x07\"\n");
   CHECK(said_of_edit("levels: 2", "\"\\e[2J\\n\": 2")
@@ -188,7 +188,7 @@ TEST_CASE("errors of the file system are sentences") {
   }
 }
 
-TEST_CASE("keys that are unknown, misspelt, repeated or missing") {
+TEST_CASE("unknown, misspelt, repeated and missing keys") {
   CHECK(said_of_edit("levels: 2", "wind: 2") ==
         "error: e.yaml:3:1: unknown key \"wind\"; known keys are " + top_keys + "\n");
   CHECK(said_of_edit("levels: 2", "lvels: 2") ==
@@ -231,7 +231,7 @@ TEST_CASE("values out of range or of the wrong type") {
         "beginning with \".\"\n");
 }
 
-TEST_CASE("a plugin that is unknown, of every kind") {
+TEST_CASE("unknown plugins of every kind") {
   CHECK(said_of_edit("hinge,", "springs,") ==
         "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, "
         "midedge_bending, "
@@ -293,15 +293,15 @@ TEST_CASE("energies, methods and their names") {
   CHECK(said_of_edit("reference: newton", "reference: {file: .}") ==
         "error: e.yaml:14:12: \"reference\": . holds no reference.ply; name a mesh, as in "
         "./levels/newton_l3.ply, or run that experiment with a reference of its own\n");
-  CHECK(said_of_set("frames=-1") == "error: --set frames: \"frames\" must be at least 0, not -1\n");
+  CHECK(said_of_set("snapshots=-1") == "error: --set snapshots: \"snapshots\" must be at least 0, not -1\n");
 }
 
-TEST_CASE("pins that hold nothing, or what is not there") {
+TEST_CASE("pins that select no vertex, or one that does not exist") {
   const std::string corner = "{region: nearest, point: [1, 0, 0]}";
   CHECK(said_of_edit(corner, "{region: ball, point: [5, 5, 5]}") ==
-        "error: e.yaml:7:5: pin 1 (ball) holds no vertex of the coarsest level; widen its region\n");
+        "error: e.yaml:7:5: pin 1 (ball) selects no vertex of the coarsest level; widen its region\n");
   CHECK(said_of_edit(corner, "{region: vertices}") ==
-        "error: e.yaml:7:5: pin 1 (vertices) holds no vertex of the coarsest level; list some under "
+        "error: e.yaml:7:5: pin 1 (vertices) selects no vertex of the coarsest level; list some under "
         "\"vertices\"\n");
   CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, 36]}") ==
         "error: e.yaml:7:5: pin 1 (vertices) names vertex 36, but those of the coarsest level go from 0 to "
@@ -310,7 +310,7 @@ TEST_CASE("pins that hold nothing, or what is not there") {
         "error: e.yaml:7:38: item 2 of \"vertices\" must be at least 0, not -1\n");
 }
 
-TEST_CASE("every fault of a config is named at once, in the order of the file, then what was --set") {
+TEST_CASE("all errors of a config are listed in file order, those of --set last") {
   std::string text = small_experiment();
   text = replaced(text, "shape: square", "shape: sqare");
   text = replaced(text, "levels: 2", "levels: 2.5");
@@ -332,6 +332,20 @@ TEST_CASE("every fault of a config is named at once, in the order of the file, t
         "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
+}
+
+TEST_CASE("keys of earlier versions are refused with the new ones") {
+  CHECK(said_of_set("frames=3") == "error: --set frames: \"frames\" is now called \"snapshots\"\n");
+  CHECK(said_of_set("verify=every_step") ==
+        "error: --set verify: \"verify\" is now called \"check_intersections\"\n");
+  CHECK(said_of_set("pins.0.move=[0, 0, 0]") ==
+        "error: --set pins.0.move: \"move\" in pins is now called \"translate\"\n");
+  CHECK(said_of(small_experiment() +
+                "schedule: {keys: [{set: material.density, at: [0, 1], to: [1, 2], between: jump}]}\n") ==
+        "error: e.yaml:15:20: \"set\" in keys is now called \"parameter\"\n"
+        "error: e.yaml:15:43: \"at\" in keys is now called \"times\"\n"
+        "error: e.yaml:15:55: \"to\" in keys is now called \"values\"\n"
+        "error: e.yaml:15:67: \"between\" in keys is now called \"interpolation\"\n");
 }
 
 TEST_CASE("a --set or --method that does not fit") {
@@ -374,7 +388,7 @@ struct TakenPort {
   ~TakenPort() { close(socket); }
 };
 
-TEST_CASE("a live view that cannot be had") {
+TEST_CASE("a live view that is not available") {
   const TakenPort taken;
   const std::string port = std::to_string(taken.number);
   CHECK(said_of(small_experiment(), "--view --port " + port) ==
@@ -410,7 +424,7 @@ TEST_CASE("a results folder that cannot be used") {
           "--out\n");
 }
 
-TEST_CASE("earlier results stay unless --overwrite is given, and then only the run's own files go") {
+TEST_CASE("earlier results stay without --overwrite, which removes only a run's own files") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
@@ -426,7 +440,7 @@ TEST_CASE("earlier results stay unless --overwrite is given, and then only the r
   CHECK(text_of(folder / "out/notes.txt") == "mine");
 }
 
-TEST_CASE("a run that was killed before it had written anything is in nobody's way") {
+TEST_CASE("a run that was killed before its first write blocks no other run") {
   for (int made = 1; made <= 3; ++made) {  // what it makes, in its order
     const Scratch folder;
     folder.write("e.yaml", small_experiment());
@@ -439,7 +453,7 @@ TEST_CASE("a run that was killed before it had written anything is in nobody's w
   }
 }
 
-TEST_CASE("what a run has left is lost by --overwrite alone, also where its results.json is gone") {
+TEST_CASE("only --overwrite removes a run's files, even without results.json") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
@@ -453,7 +467,7 @@ TEST_CASE("what a run has left is lost by --overwrite alone, also where its resu
   CHECK_FALSE(fs::exists(folder / "out/levels/pcs_l0.ply"));
 }
 
-TEST_CASE("a run may be overwritten by one of its own config.yaml") {
+TEST_CASE("a run may be overwritten by a run of its own config.yaml") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string options = " --quiet --no-report --levels 1 --method pcs --out ";

@@ -37,7 +37,7 @@ std::string said_of(const std::string& mesh, const std::string& mesh_name = "clo
 
 }  // namespace
 
-TEST_CASE("a sound mesh file runs, and its results can be run again from their own config") {
+TEST_CASE("a valid mesh file runs, and its results can be run again from their own config") {
   const Scratch folder;
   folder.write("cloth.obj", sheet);
   folder.write("e.yaml", experiment_with("cloth.obj"));
@@ -49,7 +49,7 @@ TEST_CASE("a sound mesh file runs, and its results can be run again from their o
     CHECK((text_of(folder / ("first/" + file)) == text_of(folder / ("second/" + file))));
 }
 
-TEST_CASE("a mesh file that is not there or cannot be read") {
+TEST_CASE("a missing or unreadable mesh file") {
   const Scratch folder;
   folder.write("e.yaml", experiment_with("cloth.obj"));
   const Ended ended = drape_with("run e.yaml --out out", folder.path);
@@ -119,7 +119,7 @@ TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
         "the edge of vertices 1 and 4); use hinge\n");
 }
 
-TEST_CASE("however many faults a mesh has, few are listed") {
+TEST_CASE("few faults are listed for any number in a mesh") {
   std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
   for (int k = 0; k < 200000; ++k) mesh += " 1 2 3";
   const std::string said = said_of(mesh + "\n");
@@ -140,7 +140,7 @@ TEST_CASE("a mesh whose squares overflow is not said to have no area") {
         "be computed with\n");
 }
 
-TEST_CASE("a pipe or a device in a mesh's place is refused, not waited for") {
+TEST_CASE("a pipe or a device in place of a mesh is refused without blocking") {
   const Scratch folder;
   REQUIRE(mkfifo((folder / "cloth.obj").c_str(), 0600) == 0);
   folder.write("e.yaml", experiment_with("cloth.obj"));

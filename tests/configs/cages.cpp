@@ -20,7 +20,7 @@ contact:
     obstacles:
       - {name: ball, shape: sphere, radius: 0.1, subdivisions: 2, cages: {count: 2, alpha: 0.05, offset: 0.03}}
 newton: {force_tolerance: 1e-2, step_size: 0.05}
-verify: every_step
+check_intersections: every_step
 methods: {pcs: {}, cascadic: {}}
 )";
 
@@ -30,7 +30,7 @@ double nearest_to_centre(const std::filesystem::path& ply) {
 
 }  // namespace
 
-TEST_CASE("a cloth goes from cage to cage without an intersection, and ends on the obstacle itself") {
+TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
   const Scratch folder;
   folder.write("e.yaml", experiment);
   const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);

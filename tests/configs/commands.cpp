@@ -37,7 +37,7 @@ std::string refused_by(const std::string& arguments) {
 
 }  // namespace
 
-TEST_CASE("the command alone shows how it is used; a misspelt one names the nearest") {
+TEST_CASE("the bare command shows its usage; a misspelt command names the nearest one") {
   CHECK(refused_by("") == shown_by("--help"));
   CHECK_THAT(shown_by("--help"),
              StartsWith("drape: progressive cloth quasistatics\nUsage: drape [OPTIONS] SUBCOMMAND\n"));
@@ -116,7 +116,7 @@ TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and 
   CHECK((solvers == std::set<std::string>{"cascadic", "newton", "pcs"}));
 }
 
-TEST_CASE("schema sweep and describe sweep say what a sweep file takes, variations and grids included") {
+TEST_CASE("schema sweep and describe sweep cover sweep files, variations and grids included") {
   const auto schema = nlohmann::json::parse(shown_by("schema sweep"));
   CHECK(schema["additionalProperties"] == false);
   CHECK((schema["required"] == nlohmann::json{"name"}));  // and either base or experiments
@@ -163,7 +163,7 @@ TEST_CASE("every plugin has a page of its own, with its parameters up to date") 
         "error: --readmes nowhere: no KIND/NAME/README.md of a plugin there; give the folder `plugins`\n");
 }
 
-TEST_CASE("report makes a run's page again, and says what it needs") {
+TEST_CASE("report rewrites a run's page, or names what is missing") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   REQUIRE(drape_with("run e.yaml --out out --levels 1 --method newton --quiet --no-report", folder.path)
@@ -185,5 +185,5 @@ TEST_CASE("a --set takes one value, so that the config may follow it") {
   folder.write("e.yaml", small_experiment());
   const Ended ended = drape_with("check --set levels=1 --set cloth.rows=7 e.yaml", folder.path);
   CHECK(ended.err == "");
-  CHECK_THAT(ended.out, StartsWith("e.yaml: sound. Vertices by level: 42\n"));
+  CHECK_THAT(ended.out, StartsWith("e.yaml: valid. Vertices by level: 42\n"));
 }

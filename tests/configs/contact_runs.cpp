@@ -48,13 +48,13 @@ const std::string quiet = " --quiet --no-report --threads 1 ";
 
 }  // namespace
 
-TEST_CASE("a start that touches an obstacle is refused, with what touches, and where") {
+TEST_CASE("a start that touches an obstacle is refused, with the pairs and the location") {
   const std::string text = contact_experiment(), place = "error: e.yaml:4:8: the start of level 0 touches: ";
   CHECK(said_of(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
             "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
-            "error: e.yaml:4:8: … and 3 more pairs; move the start or the obstacle so that they are apart\n");
+            "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart\n");
   const std::string table =
       "{type: ipc, obstacles: [{name: table, shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, "
       "0.02]}]}";
@@ -62,7 +62,7 @@ TEST_CASE("a start that touches an obstacle is refused, with what touches, and w
              Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
 }
 
-TEST_CASE("a start is looked at on every level") {
+TEST_CASE("a start is checked on every level") {
   // Noise whose valleys only the finer level is fine enough for.
   const std::string said =
       said_of(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
@@ -97,7 +97,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   const Scratch folder;
   folder.write("e.yaml", contact_experiment());
   const Ended ended = drape_with(
-      "run e.yaml --out out --set verify=every_step --set start.translate=[-0.2,-0.2,0.12] "
+      "run e.yaml --out out --set check_intersections=every_step --set start.translate=[-0.2,-0.2,0.12] "
       "--set newton.step_size=0.02" +
           quiet,
       folder.path);
@@ -133,7 +133,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   CHECK(far > 0);  // the first steps, in the air
 }
 
-TEST_CASE("intersections are counted at the end of each level unless every step is asked for") {
+TEST_CASE("intersections are counted at the end of each level, or after every step on request") {
   const Scratch folder;
   folder.write("e.yaml", contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
@@ -177,8 +177,9 @@ TEST_CASE("obstacle files are found beside the config, and results run again fro
 
 TEST_CASE("a result with intersections is infeasible, and the run did not succeed") {
   const Scratch folder;
-  folder.write("e.yaml", replaced(small_experiment(), "levels: 2",
-                                  "levels: 2\ncontact: {type: blind, height: -0.05}\nverify: every_step"));
+  folder.write("e.yaml",
+               replaced(small_experiment(), "levels: 2",
+                        "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
   const Ended ended = drape_with("run e.yaml --out out --set newton.step_size=0.02" + quiet, folder.path,
                                  std::string("DRAPE_PLUGIN_PATH=") + folders::test_plugins() + "/blind");
   CHECK(ended.exit_code == 1);

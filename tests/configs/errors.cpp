@@ -77,7 +77,7 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
   CHECK(error[4].value() == Approx(lifted / std::abs(small.energy(x))).epsilon(1e-6));
 }
 
-TEST_CASE("measures that no metric of the experiment gives stay out") {
+TEST_CASE("measures without a metric in the experiment stay empty") {
   const Loaded small(Overrides{{"metrics", "[distance]"}});
   const Positions& x = small.scene->starts.back();
   const StateError error = small.error(x, x);
@@ -87,7 +87,7 @@ TEST_CASE("measures that no metric of the experiment gives stay out") {
   CHECK(error[4].has_value());
 }
 
-TEST_CASE("a run writes frames and errors, against its own end and a tighter reference") {
+TEST_CASE("a run writes snapshots and errors, against its own end and a tighter reference") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string reference = " --set reference.force_tolerance=1e-7";
@@ -106,16 +106,16 @@ TEST_CASE("a run writes frames and errors, against its own end and a tighter ref
     for (int l = 0; l < 2; ++l) {
       const Json& level = all["methods"][method]["levels"][l];
       INFO(method << " level " << l);
-      const Json& frames = level["frames"];
+      const Json& snapshots = level["snapshots"];
       const int vertices = level["vertices"];
       const std::vector<Positions> states =
-          read_frames(folder / ("out/" + frames["file"].get<std::string>()), vertices);
-      REQUIRE(states.size() == frames["iterations"].size());
-      REQUIRE(states.size() == frames["seconds"].size());
+          read_snapshots(folder / ("out/" + snapshots["file"].get<std::string>()), vertices);
+      REQUIRE(states.size() == snapshots["iterations"].size());
+      REQUIRE(states.size() == snapshots["seconds"].size());
       CHECK(states.size() <= 8);
       const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
       CHECK((states.back() - last.vertices).norm() < 1e-5);
-      CHECK(frames["iterations"].back() == level["newton_iterations"]);
+      CHECK(snapshots["iterations"].back() == level["newton_iterations"]);
       if (method == "newton") flops = 0, iterations = 0;  // every level begins afresh
       flops += level["flops"].get<double>();
       iterations += level["newton_iterations"].get<int>();
@@ -125,7 +125,7 @@ TEST_CASE("a run writes frames and errors, against its own end and a tighter ref
         const Row& r = rows[row];
         CHECK(r.at("method") == method);
         CHECK(r.at("level") == std::to_string(l));
-        CHECK(r.at("iteration") == frames["iterations"][k].dump());
+        CHECK(r.at("iteration") == snapshots["iterations"][k].dump());
         CHECK(r.at("vertices") == std::to_string(vertices));
         CHECK(std::stod(r.at("seconds")) >= seconds);
         seconds = std::stod(r.at("seconds"));
@@ -161,11 +161,11 @@ TEST_CASE("a run writes frames and errors, against its own end and a tighter ref
   }
 }
 
-TEST_CASE("every method's states are carried up by its own interpolation") {
+TEST_CASE("every method's own interpolation prolongs its states") {
   const Overrides changed = {{"levels", "3"},
                              {"methods.smooth", "{type: cascadic, prolongation: refiner}"},
                              {"methods.smooth_pcs", "{type: pcs, interpolation: {state: refiner}}"},
-                             {"frames", "1"}};
+                             {"snapshots", "1"}};
   const Loaded small(changed);
   const Hierarchy& hierarchy = small.scene->hierarchy;
   const Scratch folder;
@@ -249,14 +249,15 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   CHECK_FALSE(run("--set newton.max_steps=1").contains("reference"));
 }
 
-TEST_CASE("without frames there are no errors and no files of them") {
+TEST_CASE("without snapshots there are no errors and no files of them") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
-  REQUIRE(drape_with("run e.yaml --out out --quiet --no-report --set frames=0", folder.path).exit_code == 0);
-  CHECK(!fs::exists(folder / "out/frames"));
+  REQUIRE(drape_with("run e.yaml --out out --quiet --no-report --set snapshots=0", folder.path).exit_code ==
+          0);
+  CHECK(!fs::exists(folder / "out/snapshots"));
   CHECK(!fs::exists(folder / "out/errors.csv"));
   const Json all = Json::parse(text_of(folder / "out/results.json"));
-  CHECK(!all["methods"]["pcs"]["levels"][0].contains("frames"));
+  CHECK(!all["methods"]["pcs"]["levels"][0].contains("snapshots"));
 }
 
 TEST_CASE("a method that does not converge has errors against the reference alone") {

@@ -78,7 +78,9 @@ TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
   CHECK(levels[1]["largest_stretch"] < 1.0608);
 }
 
-TEST_CASE("where Loop moves the rest shape too far the next level begins anew, and says so") {
+TEST_CASE(
+    "a rest shape that Loop moves too far makes the next level begin from the initial state, with a "
+    "message") {
   const Json levels = huge_beside_tiny("pcs", "");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
@@ -86,7 +88,7 @@ TEST_CASE("where Loop moves the rest shape too far the next level begins anew, a
              Catch::Contains("begun from the scene's start instead"));
 }
 
-TEST_CASE("a triangle that is a hair from its strain limit is drawn back from it, not slid along it") {
+TEST_CASE("a triangle close to its strain limit moves away from it instead of along it") {
   const Json levels = huge_beside_tiny("cascadic", " --set refiner=midpoint --set newton.max_steps=1000");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");

@@ -28,7 +28,7 @@ void wait_for_lines(Command& command, const fs::path& file, int lines) {
 
 }  // namespace
 
-TEST_CASE("SIGINT ends a run after the step, with everything so far and the report") {
+TEST_CASE("SIGINT ends a run after the step, with all results so far and the report") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
@@ -50,7 +50,7 @@ TEST_CASE("SIGINT ends a run after the step, with everything so far and the repo
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
 }
 
-TEST_CASE("SIGKILL at any moment leaves whole files, that a report can be made of") {
+TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report") {
   int levels_read = 0;
   // Few steps on few vertices, so that levels, metrics and methods follow fast on each other.
   const std::string fast = " --set newton.max_steps=3 --set cloth.columns=16 --set cloth.rows=16";
@@ -120,13 +120,13 @@ TEST_CASE("a second signal ends a run at once while metrics and the report are m
       "exec " + drape_command +
           " run e.yaml --out out --method newton --threads 1 --levels 2 --set cloth.columns=75 --set "
           "cloth.rows=75 --set 'metrics=[{type: curvature_consistency, rings: 50}]' "
-          "--set frames=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
+          "--set snapshots=0 --set newton.max_steps=2 --set newton.force_tolerance=1e9",
       folder.path);
   wait_for_lines(command, folder / "out/log.jsonl", 6);  // both levels have ended
   CHECK(ended_by_two_signals(command).exit_code == 128 + SIGTERM);
 }
 
-TEST_CASE("what has begun nothing yet ends with the first signal") {
+TEST_CASE("before a run has begun the first signal ends the process") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   for (const std::string line : {"check e.yaml", "run e.yaml --out out"}) {

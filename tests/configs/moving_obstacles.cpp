@@ -35,7 +35,7 @@ pins:
   - {region: ball, point: [0.4, 0.4, 0], radius: 0.01}
 energies: [neo_hookean, hinge, gravity]
 newton: {force_tolerance: 1e-2, step_size: 0.05}
-verify: every_step
+check_intersections: every_step
 methods: {pcs: {}}
 )";
 
@@ -48,18 +48,18 @@ levels: 1
 start: {translate: [-0.1, -0.1, 0.0009]}
 energies: [neo_hookean, hinge, gravity]
 newton: {force_tolerance: 1e-2, step_size: 0.1, iterations_per_step: 30}
-verify: every_step
+check_intersections: every_step
 methods: {pcs: {}}
 )";
   const std::string ipc = R"(contact: {type: ipc, self_contact: false, friction: 0.3, obstacles: [
   {name: plate, shape: box, size: [0.5, 0.5, 0.1], translate: [0.06, 0.07, -0.05]}]}
-schedule: {steps: 10, settle: true, keys: [
-  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0.06, 0.07, -0.05], [0.12, 0.04, -0.05]]}]}
+schedule: {steps: 10, equilibrate: true, keys: [
+  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0.06, 0.07, -0.05], [0.12, 0.04, -0.05]]}]}
 )";
   const std::string shapes = R"(contact: {type: shapes, friction: 0.3, shapes: [
   {name: plate, shape: box, size: [0.5, 0.5, 0.1], centre: [0, 0, -0.05]}]}
-schedule: {steps: 10, settle: true, keys: [
-  {set: contact.shapes.0.centre, at: [0, 1], to: [[0, 0, -0.05], [0.06, -0.03, -0.05]]}]}
+schedule: {steps: 10, equilibrate: true, keys: [
+  {parameter: contact.shapes.0.centre, times: [0, 1], values: [[0, 0, -0.05], [0.06, -0.03, -0.05]]}]}
 )";
   const Eigen::RowVector3d way(0.06, -0.03, 0);
   for (const std::string& contact : {ipc, shapes}) {
@@ -76,14 +76,14 @@ TEST_CASE("a plate that rises under a pinned cloth and turns there pushes it, an
        {R"(contact: {type: ipc, friction: 0.1, obstacles: [
   {name: plate, shape: box, size: [0.2, 0.1, 0.004], translate: [0, 0, -0.1]}]}
 schedule: {steps: 10, keys: [
-  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0, 0, -0.1], [0, 0, -0.02]]},
-  {set: contact.obstacles.0.rotate, at: [0, 1], to: [[0, 0, 0], [20, 0, 200]]}]}
+  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {parameter: contact.obstacles.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
 )",
         R"(contact: [{type: ipc, friction: 0.1}, {type: shapes, friction: 0.1, shapes: [
   {name: plate, shape: box, size: [0.2, 0.1, 0.004], centre: [0, 0, -0.1]}]}]
 schedule: {steps: 10, keys: [
-  {set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, -0.1], [0, 0, -0.02]]},
-  {set: contact.1.shapes.0.rotate, at: [0, 1], to: [[0, 0, 0], [20, 0, 200]]}]}
+  {parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {parameter: contact.1.shapes.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
 )"}) {
     INFO(contact);
     const Scratch folder;
@@ -101,7 +101,7 @@ levels: 1
 start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.0608}, gravity]
 newton: {force_tolerance: 1e-3}
-verify: every_step
+check_intersections: every_step
 methods: {pcs: {}}
 )";
   const std::string shapes = R"(contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
@@ -111,7 +111,8 @@ methods: {pcs: {}}
   {name: ball, shape: sphere, radius: 0.1, subdivisions: 3, translate: [0, 0, 0]}]}
 )";
   const auto schedule = [](const std::string& key, const std::string& to) {
-    return "schedule: {steps: 2, settle: true, keys: [{set: " + key + ", at: [0, 1], to: " + to + "}]}\n";
+    return "schedule: {steps: 2, equilibrate: true, keys: [{parameter: " + key +
+           ", times: [0, 1], values: " + to + "}]}\n";
   };
   const Scratch folder;
   const auto iterations = [&](const std::string& more) {
@@ -138,14 +139,14 @@ TEST_CASE("a wing that flaps under a pinned cloth, and a ball with cages that ri
   }
   end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
   {name: wing, animation: [wing0.ply, wing1.ply, wing2.ply]}]}
-schedule: {steps: 12, keys: [{set: contact.obstacles.0.frame, at: [0, 1], to: [0, 2]}]}
+schedule: {steps: 12, keys: [{parameter: contact.obstacles.0.frame, times: [0, 1], values: [0, 2]}]}
 )",
          folder, 1);
   const Positions x = end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
   {name: ball, shape: sphere, radius: 0.05, subdivisions: 2, translate: [0, 0, -0.2],
    cages: {count: 1, alpha: 0.1, offset: 0.03}}]}
 schedule: {steps: 10, keys: [
-  {set: contact.obstacles.0.translate, at: [0, 1], to: [[0, 0, -0.2], [0, 0, -0.05]]}]}
+  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.2], [0, 0, -0.05]]}]}
 )",
                              folder, 1);
   CHECK(x.col(2).maxCoeff() > 5e-4);  // on the ball's top, at 0, and not its cage's, at 5 mm

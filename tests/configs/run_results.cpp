@@ -197,7 +197,7 @@ TEST_CASE("log.jsonl is one JSON object a line, from start to end") {
                                               {"run_finished", 1}}));
 }
 
-TEST_CASE("the report is there, and nothing half-written is") {
+TEST_CASE("the report exists, and no incomplete file") {
   const std::string page = text_of(finished_run() / "report.html");
   CHECK(page.ends_with("</html>\n"));
   for (const std::string& method : methods) CHECK(page.find(method) != std::string::npos);
@@ -210,7 +210,7 @@ TEST_CASE("the report is there, and nothing half-written is") {
   CHECK(files > 30);
 }
 
-TEST_CASE("the saved config gives itself again, and the same meshes bit for bit") {
+TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
   const Scratch folder;
   const std::string config = (finished_run() / "config.yaml").string();
   REQUIRE(drape_with("run " + config + " --out out --threads 1 --quiet --no-report", folder.path).exit_code ==
@@ -224,14 +224,14 @@ TEST_CASE("the saved config gives itself again, and the same meshes bit for bit"
     }
 }
 
-TEST_CASE("the saved config has what the file leaves out, with its default") {
+TEST_CASE("the saved config has the defaults of omitted parameters") {
   const std::string config = text_of(finished_run() / "config.yaml");
   for (const char* line : {"\n  density: 472.6\n", "\n  type: none\n", "\n  corner_angle: 30\n",
                            "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
     CHECK_THAT(config, Catch::Matchers::Contains(line));
 }
 
-TEST_CASE("a metric that cannot measure a state leaves a note, and the run goes on") {
+TEST_CASE("a metric that throws leaves a note, and the run continues") {
   const Scratch folder;
   folder.write("e.yaml", replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
   const Ended ended = drape_with("run e.yaml --out out --threads 1 --quiet --no-report", folder.path);

@@ -77,10 +77,11 @@ struct Edited {
 }  // namespace
 
 TEST_CASE("a sweep's rows hold the medians over its seeds") {
-  const RunSet set = read_runs({sweep()});
-  CHECK(set.name == "matrices");
-  CHECK((set.variations() == std::vector<std::string>{"matrix=galerkin", "matrix=coarse", "matrix=wrong"}));
-  const std::vector<RunRow> rows = rows_of(set);
+  const RunCollection collection = read_runs({sweep()});
+  CHECK(collection.name == "matrices");
+  CHECK((collection.variations() ==
+         std::vector<std::string>{"matrix=galerkin", "matrix=coarse", "matrix=wrong"}));
+  const std::vector<RunRow> rows = rows_of(collection);
   REQUIRE(rows.size() == 6);
   CHECK(rows[0].title(true) == "matrix=galerkin, pcs");
   CHECK(rows[0].converged == 3);
@@ -93,7 +94,7 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
     iterations.push_back(sum);
   }
   std::sort(iterations.begin(), iterations.end());
-  for (const RowFigure& f : row_figures()) {
+  for (const RowQuantity& f : row_quantities()) {
     if (std::string(f.name) != "iterations") continue;
     const auto spread = spread_of(rows[0], f);
     REQUIRE(spread);
@@ -101,17 +102,18 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
     CHECK(spread->median == iterations[1]);
     CHECK(spread->high == iterations[2]);
   }
-  const RunData medians = median_consistency(set, "matrix=coarse");
+  const RunData medians = median_consistency(collection, "matrix=coarse");
   REQUIRE(medians.methods.size() == 3);
   CHECK(medians.methods[0].pair(0, 1)->d_H_fit.value() > 0);
 }
 
 TEST_CASE("a direct method's cost is that of the level it ends with") {
-  const RunSet set = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
-  for (const MethodRecord& m : set.runs[0].data->methods) {
+  const RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
+  for (const MethodRecord& m : collection.runs[0].data->methods) {
     const double all = *m.levels[0].flops + *m.levels[1].flops;
     CHECK(m.cost(&LevelRecord::flops).value() == (m.name == "newton" ? *m.levels[1].flops : all));
-    for (const CostPoint& p : error_curve(*set.runs[0].data, m.name, 2, 1, 0)) CHECK(p.cost <= all * 1.0001);
+    for (const CostPoint& p : error_curve(*collection.runs[0].data, m.name, 2, 1, 0))
+      CHECK(p.cost <= all * 1.0001);
   }
 }
 
@@ -159,16 +161,17 @@ TEST_CASE("report of several folders takes a page's name, and groups runs by all
                                  sweep());
   CHECK(ended.exit_code == 0);
   CHECK_THAT(text_of(folder / "two.html"), Contains("2 runs of 1 variation: 2 converged."));
-  const RunSet set =
+  const RunCollection collection =
       read_runs({sweep() / "runs/matrix=galerkin/seed_1", sweep() / "runs/matrix=coarse/seed_1",
                  sweep() / "runs/matrix=coarse/seed_3"});
   // Both folders are called seed_1.
-  CHECK((set.variations() == std::vector<std::string>{(sweep() / "runs/matrix=galerkin/seed_1").string(),
-                                                      (sweep() / "runs/matrix=coarse/seed_1").string()}));
-  CHECK(set.runs[2].seed.value() == 3);
+  CHECK((collection.variations() ==
+         std::vector<std::string>{(sweep() / "runs/matrix=galerkin/seed_1").string(),
+                                  (sweep() / "runs/matrix=coarse/seed_1").string()}));
+  CHECK(collection.runs[2].seed.value() == 3);
 }
 
-TEST_CASE("a sweep cut short is read as far as it went") {
+TEST_CASE("an incomplete sweep is read as far as it got") {
   const Scratch folder;
   folder.write(
       "sweep.json",
@@ -191,7 +194,7 @@ TEST_CASE("compare finds nothing between a run and itself") {
   }
 }
 
-TEST_CASE("compare says what changed, and exits with 1 where a bound is broken") {
+TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
   const Edited run([](Json& all) {
     Json& pcs = all["methods"]["pcs"];
     pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
@@ -211,18 +214,18 @@ TEST_CASE("compare says what changed, and exits with 1 where a bound is broken")
              Contains("broken: pcs, level 1: seconds went from ") && Contains("slower (bound broken)"));
 }
 
-TEST_CASE("a bound does not hold where a method has stopped converging, or has gone") {
+TEST_CASE("a bound is broken if a method no longer converges or exists") {
   const Edited stalled([](Json& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);
   const Ended ended = stalled.compare(" --bound seconds=2");
   CHECK(ended.exit_code == 1);
-  CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now, so that no bound holds\n"));
+  CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now; no bound holds\n"));
   const Edited gone([](Json& all) { all["methods"].erase("pcs"); });
   CHECK_THAT(gone.compare().out, Contains("only in the first: pcs\n"));
   CHECK(gone.compare(" --bound seconds=2").exit_code == 1);
 }
 
-TEST_CASE("bounds on negative energies and on counts that were nought") {
+TEST_CASE("bounds on negative energies and on counts that were zero") {
   const Edited run([](Json& all) {
     Json& level = all["methods"]["pcs"]["levels"][1];
     level["energy_on_finest"] = level["energy_on_finest"].get<double>() + 0.1;
@@ -231,17 +234,17 @@ TEST_CASE("bounds on negative energies and on counts that were nought") {
   CHECK(run.compare(" --bound energy=2").exit_code == 0);
 }
 
-TEST_CASE("compare refuses bounds that say nothing") {
+TEST_CASE("compare refuses meaningless bounds") {
   CHECK(refused("compare . . --bound seconds") ==
         "error: --bound seconds: write it as KEY=RATIO, as in --bound seconds=1.1\n");
   CHECK(refused("compare . . --bound second=1") ==
-        "error: --bound second=1: there is no figure \"second\"; did you mean \"seconds\"?\n");
+        "error: --bound second=1: there is no quantity \"second\"; did you mean \"seconds\"?\n");
   CHECK(refused("compare . . --bound seconds=fast") ==
         "error: --bound seconds=fast: the ratio must be a number above 0, as in --bound seconds=1.1\n");
   CHECK(refused("compare . . --bound seconds=-1") ==
         "error: --bound seconds=-1: the ratio must be a number above 0, as in --bound seconds=1.1\n");
   CHECK(refused("compare . . --bound smallest_gap=2") ==
-        "error: --bound smallest_gap: no match has this figure on both sides\n");
+        "error: --bound smallest_gap: no match has this quantity on both sides\n");
   CHECK(refused("compare . nowhere") ==
         "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
 }

@@ -34,8 +34,8 @@ Eigen::Vector3d moved(const std::string& text) {
   Eigen::Vector3d way;
   char end = 0;
   const int read =
-      std::sscanf(ended.err.c_str(), "start moved by (%lf, %lf, %lf) m so that it touches nothing%c",
-                  &way.x(), &way.y(), &way.z(), &end);
+      std::sscanf(ended.err.c_str(), "start moved by (%lf, %lf, %lf) m; it touches nothing now%c", &way.x(),
+                  &way.y(), &way.z(), &end);
   REQUIRE(read == 4);
   CHECK(end == '\n');
   CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
@@ -63,7 +63,7 @@ TEST_CASE("a start in a ball is moved up, no further than needed, and recorded s
   const Ended first = drape_with("run e.yaml --allow-start-repair" + options + "first", folder.path);
   CHECK(first.exit_code == 1);  // two steps are no equilibrium
   CHECK_THAT(first.err,
-             Catch::Matches("start moved by \\(0, 0, 0\\.04[0-9]*\\) m so that it touches nothing\n"));
+             Catch::Matches("start moved by \\(0, 0, 0\\.04[0-9]*\\) m; it touches nothing now\n"));
   const std::string config = text_of(folder / "first/config.yaml");
   CHECK_THAT(config, Catch::Contains("translate: [-0.2, -0.2, 0.10"));
 
@@ -129,19 +129,18 @@ TEST_CASE("a start is not moved into a closed mesh") {
   CHECK(way.head<2>().norm() > 0.1);
 }
 
-TEST_CASE("a start with pins is not moved") {
+TEST_CASE("a start with pins is not translated") {
   const std::string pinned =
       experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]") + "pins: [{point: [0, 0, 0]}]\n";
   const std::string said = refused(pinned);
   CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 0 touches: cloth triangle ") &&
                        Catch::Contains(" and ball: sphere at (") &&
-                       Catch::EndsWith(
-                           "; a cloth with pins is not moved, for they say where it is: move the pins or "
-                           "the obstacle\n"));
+                       Catch::EndsWith("; a cloth with pins is not moved: move the pins or "
+                                       "the obstacle\n"));
   CHECK(moved(replaced(pinned, "0.06]", "0.12]")).isZero(0));
 }
 
-TEST_CASE("a start for which there is no place is refused, with what touches") {
+TEST_CASE("a start without a free position is refused, with the pairs") {
   const auto between = [](const std::string& top) {
     return "{type: shapes, shapes: [{name: top, shape: half_space, normal: [0, 0, -1], centre: [0, 0, " +
            top + "]}, {name: bottom, shape: half_space, centre: [0, 0, 0]}]}";
@@ -153,8 +152,9 @@ TEST_CASE("a start for which there is no place is refused, with what touches") {
                  Catch::Contains(" and top: half_space at (") &&
                  Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
   // No gap: low down the bottom is met, high up the top.
-  CHECK_THAT(refused(experiment(between("-0.005"), "[0, 0, -0.02]")),
-             Catch::StartsWith(ways + "finds no place where it touches nothing; where it is, these do: cloth "
-                                      "triangle 0 and bottom: half_space at (") &&
-                 Catch::EndsWith(" on level 0\n"));
+  CHECK_THAT(
+      refused(experiment(between("-0.005"), "[0, 0, -0.02]")),
+      Catch::StartsWith(ways + "finds no position without intersections; at the start these intersect: cloth "
+                               "triangle 0 and bottom: half_space at (") &&
+          Catch::EndsWith(" on level 0\n"));
 }

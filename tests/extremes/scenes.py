@@ -16,7 +16,7 @@ FALLING = {"cloth": {"shape": "square", "side": 0.3, "columns": 6, "rows": 6},
                                       {"shape": "box", "size": [0.4, 0.4, 0.1], "translate": [0, 0, -0.2]}]}]}
 HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "random", "vertices": 40},
         "pins": [{"region": "ball", "point": [0, 0, 0], "radius": 0.03},
-                 {"region": "nearest", "point": [0.3, 0, 0], "move": [0, 0, -0.02]}],
+                 {"region": "nearest", "point": [0.3, 0, 0], "translate": [0, 0, -0.02]}],
         "energies": ["stvk", "quadratic_bending", {"type": "gravity", "acceleration": [0, 5, -8]}],
         "contact": [{"type": "ipc"},
                     {"type": "shapes", "friction": 0.3,
@@ -25,16 +25,16 @@ HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "ra
                                 {"shape": "capsule", "radius": 0.02, "height": 0.2, "centre": [0, 0.3, -0.1]}]}]}
 DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
            "start": {"translate": [0, 0, 0.06]},
-           "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "move": [0, 0, 0.06]}],
+           "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "translate": [0, 0, 0.06]}],
            "energies": ["neo_hookean", "hinge", "gravity"],
            "contact": [{"type": "shapes",
                         "shapes": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
                                    {"shape": "cylinder", "radius": 0.03, "height": 0.08, "centre": [-0.1, 0, 0]}]}],
-           "schedule": {"steps": 2, "keys": [{"set": "pins.0.move", "at": [0, 1], "to": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
+           "schedule": {"steps": 2, "keys": [{"parameter": "pins.0.translate", "times": [0, 1], "values": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
 PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
                     "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
                               {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
-          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "move": [0, 0, 0.05], "stiffness": 1e3}],
+          "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "translate": [0, 0, 0.05], "stiffness": 1e3}],
           "energies": ["neo_hookean", "hinge", {"type": "pressure", "pressure": 5}, "gravity"],
           "contact": [{"type": "ipc", "obstacles": [{"shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}]}
 SCENES = [FALLING, HUNG, DRAGGED, PULLED]
@@ -214,7 +214,7 @@ class Case:
         there = [sum(steps_there(s, p) for p, _ in chosen) for s in SCENES]
         suited = [s for s, n in zip(SCENES, there) if n == max(there)]
         self.config = {"name": f"extreme_{number}", "levels": 2, **copy.deepcopy(rng.choice(suited)),
-                       "newton": {"force_tolerance": 1e-2, "max_steps": 25}, "methods": {}, "frames": 2}
+                       "newton": {"force_tolerance": 1e-2, "max_steps": 25}, "methods": {}, "snapshots": 2}
         for p, value in chosen:
             put(self.config, schema, p, value, rng)
         if not self.config["methods"]:

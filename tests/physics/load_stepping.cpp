@@ -41,11 +41,11 @@ TEST_CASE("A strip that is lifted by its end while its weight grows follows the 
 newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-4, max_steps: 500}
 schedule:
   steps: 6
-  settle: true
+  equilibrate: true
   keys:
-    - {set: energies.gravity.acceleration, at: [0, 3, 4, 5, 6], between: linear,
-       to: [[0, 0, -0.981], [0, 0, -9.81], [0, 0, -49.05], [0, 0, -196.2], [0, 0, -981]]}
-    - {set: pins.0.move, at: [0, 6], to: [[0, 0, 0], [0.3, -0.2, 0.9]]}
+    - {parameter: energies.gravity.acceleration, times: [0, 3, 4, 5, 6], interpolation: linear,
+       values: [[0, 0, -0.981], [0, 0, -9.81], [0, 0, -49.05], [0, 0, -196.2], [0, 0, -981]]}
+    - {parameter: pins.0.translate, times: [0, 6], values: [[0, 0, 0], [0.3, -0.2, 0.9]]}
 )"));
   Increments increments(s);
   run(s, increments);
@@ -75,15 +75,15 @@ levels: 1
 material: {density: 400, thickness: 4e-4, membrane_modulus: 1e6, bending_modulus: 1e6, poisson_ratio: 0.3}
 start: {perturbation: 1e-3}
 pins:
-  - {region: box, lower: [-1, -1, -1], upper: [0.013, 1, 1], move: [0, 0, 0]}
-  - {region: box, lower: [0.387, -1, -1], upper: [1, 1, 1], move: [-0.02, 0, 0], about: [0.4, 0.025, 0]}
+  - {region: box, lower: [-1, -1, -1], upper: [0.013, 1, 1], translate: [0, 0, 0]}
+  - {region: box, lower: [0.387, -1, -1], upper: [1, 1, 1], translate: [-0.02, 0, 0], centre: [0.4, 0.025, 0]}
 energies: [neo_hookean, hinge, gravity]
 newton: {force_tolerance: 1e-5}
 schedule:
   steps: 12
-  settle: true
+  equilibrate: true
   keys:
-    - {set: pins.1.turn, at: [0, 1, 2], to: [[0, 0, 0], [60, 0, 0], [0, 0, 0]]}
+    - {parameter: pins.1.rotate, times: [0, 1, 2], values: [[0, 0, 0], [60, 0, 0], [0, 0, 0]]}
 methods: {newton: {}}
 )");
   Increments increments(s);
@@ -135,13 +135,13 @@ cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
 levels: 2
 start: {translate: [-0.25, -0.25, 0.22]}
 pins:
-  - {region: nearest, point: [0.222, 0.222, 0], move: [-0.25, -0.25, 0.22]}
+  - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
   - {region: nearest, point: [0, 0, 0]}
 energies: [neo_hookean, hinge, gravity]
 contact: [ipc, {type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.2}]}]
 schedule:
   steps: 3
-  keys: [{set: pins.0.move, at: [0, 1], to: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
+  keys: [{parameter: pins.0.translate, times: [0, 1], values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
 methods: {pcs: {}}
 )");
   Increments increments(s);
@@ -172,14 +172,14 @@ energies: [neo_hookean, hinge, gravity, {type: strain_limit, limit: 1.2}]
 contact: ipc
 schedule:
   steps: 6
-  settle: true
+  equilibrate: true
   keys:
-    - {set: energies.gravity.acceleration, between: jump, at: [0, 1, 2], to: [[0, 0, -9.81], [0, 0, -981], [0, 0, -9.81]]}
-    - {set: material.membrane_modulus, between: jump, at: [0, 3], to: [8e4, 80]}
-    - {set: material.bending_modulus, between: jump, at: [0, 3], to: [8e4, 80]}
-    - {set: energies.strain_limit.limit, between: jump, at: [0, 4], to: [1.2, 1.05]}
-    - {set: material.thickness, between: jump, at: [0, 5], to: [3e-4, 1e-3]}
-    - {set: material.density, between: jump, at: [0, 6], to: [470, 100]}
+    - {parameter: energies.gravity.acceleration, interpolation: step, times: [0, 1, 2], values: [[0, 0, -9.81], [0, 0, -981], [0, 0, -9.81]]}
+    - {parameter: material.membrane_modulus, interpolation: step, times: [0, 3], values: [8e4, 80]}
+    - {parameter: material.bending_modulus, interpolation: step, times: [0, 3], values: [8e4, 80]}
+    - {parameter: energies.strain_limit.limit, interpolation: step, times: [0, 4], values: [1.2, 1.05]}
+    - {parameter: material.thickness, interpolation: step, times: [0, 5], values: [3e-4, 1e-3]}
+    - {parameter: material.density, interpolation: step, times: [0, 6], values: [470, 100]}
 methods: {pcs: {}}
 )");
   Increments increments(s);
@@ -213,8 +213,9 @@ schedule:
 methods: {newton: {}}
 )");
   };
-  Solved s =
-      scene("{set: contact.ipc.obstacles.plate.translate, at: [0, 1], to: [[0, 0, 0.04], [0.05, 0, 0.24]]}");
+  Solved s = scene(
+      "{parameter: contact.ipc.obstacles.plate.translate, times: [0, 1], values: [[0, 0, 0.04], [0.05, 0, "
+      "0.24]]}");
   Increments increments(s);
   run(s, increments);
   INFO(s.levels[0].message);
@@ -225,8 +226,8 @@ methods: {newton: {}}
   // Friction drags it sideways too, except for what slid while it was lifted off the start.
   CHECK(centroid.x() > 0.03);
 
-  Solved closing =
-      scene("{set: contact.shapes.shapes.lid.centre, at: [0, 1], to: [[0, 0, 0.5], [0, 0, 0.045]]}");
+  Solved closing = scene(
+      "{parameter: contact.shapes.shapes.lid.centre, times: [0, 1], values: [[0, 0, 0.5], [0, 0, 0.045]]}");
   Increments closing_increments(closing);
   run(closing, closing_increments);
   CHECK(closing.levels[0].outcome == Outcome::infeasible);

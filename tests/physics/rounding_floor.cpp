@@ -39,11 +39,11 @@ TEST_CASE("Stiff narrow strips end at the rounding floor, along either path", "[
 }
 
 TEST_CASE("Under a schedule the rounding floor counts as equilibrium", "[physics]") {
-  const Solved s = solve_yaml(
-      strip(1e9, 1e9,
-            "newton: {force_tolerance: 1e-10, max_steps: 700}\n"
-            "schedule: {steps: 3, settle: true, keys: [{set: energies.gravity.acceleration, at: [0, 1], "
-            "to: [[0, 0, -9.81], [0, 0, -12]]}]}\n"));
+  const Solved s = solve_yaml(strip(1e9, 1e9,
+                                    "newton: {force_tolerance: 1e-10, max_steps: 700}\n"
+                                    "schedule: {steps: 3, equilibrate: true, keys: [{parameter: "
+                                    "energies.gravity.acceleration, times: [0, 1], "
+                                    "values: [[0, 0, -9.81], [0, 0, -12]]}]}\n"));
   const LevelResult& r = s.levels.back();
   CAPTURE(r.steps, r.message);
   CHECK(r.outcome == Outcome::converged_to_rounding);

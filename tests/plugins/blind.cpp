@@ -54,7 +54,7 @@ class Blind final : public drape::ContactModel {
   struct Parameters {
     double height = 0;
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("height", &Parameters::height).unit("m").meaning("of the floor").source("test");
+      d.add("height", &Parameters::height).unit("m").description("of the floor").source("test");
     }
   };
   explicit Blind(const Parameters& p) : height_(p.height) {}

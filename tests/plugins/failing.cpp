@@ -42,12 +42,15 @@ class FailingEnergy final : public drape::Energy {
   struct Parameters {
     int level = 0, gradients = -1, values = -1;
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("level", &Parameters::level).at_least(0).meaning("that it fails on").source("test");
+      d.add("level", &Parameters::level).at_least(0).description("that it fails on").source("test");
       d.add("gradients", &Parameters::gradients)
           .at_least(-1)
-          .meaning("before it throws; -1: never")
+          .description("before it throws; -1: never")
           .source("test");
-      d.add("values", &Parameters::values).at_least(-1).meaning("before it throws; -1: never").source("test");
+      d.add("values", &Parameters::values)
+          .at_least(-1)
+          .description("before it throws; -1: never")
+          .source("test");
     }
   };
   explicit FailingEnergy(const Parameters& p) : p_(p) {}
@@ -72,16 +75,16 @@ class FailingSolver final : public drape::Solver {
     Throws throws = Throws::nothing;
     drape::NewtonParameters newton;  // which every method is given
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("level", &Parameters::level).at_least(0).meaning("that it fails on").source("test");
-      d.add("command", &Parameters::command).meaning("that the shell runs there").source("test");
+      d.add("level", &Parameters::level).at_least(0).description("that it fails on").source("test");
+      d.add("command", &Parameters::command).description("that the shell runs there").source("test");
       d.add_choice("throws", &Parameters::throws,
                    {{"nothing", Throws::nothing},
                     {"error", Throws::error},
                     {"memory", Throws::memory},
                     {"other", Throws::other}})
-          .meaning("what it throws after that")
+          .description("what it throws after that")
           .source("test");
-      d.add_section("newton", &Parameters::newton).meaning("not used");
+      d.add_section("newton", &Parameters::newton).description("not used");
     }
   };
   explicit FailingSolver(const Parameters& p) : p_(p) {}

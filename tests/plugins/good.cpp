@@ -10,7 +10,7 @@ class Good final : public drape::Refiner {
   struct Parameters {
     int rows = 3;
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("rows", &Parameters::rows).at_least(1).meaning("rows of the returned matrix").source("test");
+      d.add("rows", &Parameters::rows).at_least(1).description("rows of the returned matrix").source("test");
     }
   };
   explicit Good(const Parameters& p) : rows_(p.rows) {}

@@ -27,6 +27,8 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
                     remove = "; remove it and the run's folder\n";
   CHECK(said(status, [](Json& json) { json["status"] = "done"; }) ==
         of_status + "no status is called \"done\"" + remove);
+  CHECK(said(status, [](Json& json) { json["status"] = "ended"; }) ==
+        of_status + "status \"ended\" is now called \"not_converged\"" + remove);
   CHECK(said(status, [](Json& json) { json["status"] = 3; }) ==
         of_status + "\"status\" must be a text, not 3" + remove);
   CHECK(said(status, [](Json& json) { json["threads"] = 1e300; }) ==

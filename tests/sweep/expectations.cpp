@@ -44,8 +44,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   write_cases(folder);
   const Ended swept = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(swept.exit_code == 1);
-  CHECK_THAT(swept.err, Contains("endless, seed 1: failed") &&
-                            Contains("was ended since it took longer than the sweep's time_limit"));
+  CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
 
   const Ended ended = drape_with("table out --format json", folder.path);
   CHECK(ended.exit_code == 1);
@@ -59,28 +58,30 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(outcome(1) == "unheld: refused, passes");
   CHECK(outcome(2) == "short: max_steps_reached, passes");
   CHECK(outcome(3) == "for another reason: max_steps_reached");
-  CHECK(outcome(4) == "endless: hang");
+  CHECK(outcome(4) == "endless: timeout");
   CHECK(rows[0]["method"] == "newton");
   CHECK(rows[0]["vertices"] > 10);
   CHECK(rows[2]["iterations"] == 1);
   CHECK(rows[0]["energy"].is_number());
   CHECK(rows[1]["vertices"].is_null());
-  CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("holds no vertex"));
+  CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("selects no vertex"));
 
   const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
   CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));
   CHECK_THAT(
       few.out,
       Contains("| short | yes | max_steps_reached | 1 |\n| for another reason | NO | max_steps_reached "
-               "| 2 |\n| endless | NO | hang |  |\n"));
+               "| 2 |\n| endless | NO | timeout |  |\n"));
   const Ended csv = drape_with("table out --format csv --columns run,pass,outcome", folder.path);
   CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
         "error: there is no column \"runs\"; did you mean \"run\"?\n");
+  CHECK(drape_with("table out --columns cuts", folder.path).err ==
+        "error: column \"cuts\" is now called \"shortened_steps\"\n");
 }
 
 TEST_CASE("an intersection, or an energy that is no number, fails whatever the outcome") {
-  const auto rows = [](Figure energy, Figure intersections) {
+  const auto rows = [](OptionalNumber energy, OptionalNumber intersections) {
     RunData data;
     data.methods.push_back({});
     data.methods[0].name = "newton";
@@ -90,7 +91,7 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
     level.energy_on_finest = energy;
     level.intersections = intersections;
     data.methods[0].levels.push_back(level);
-    SetRun run;
+    RunRecord run;
     run.variation = "case";
     run.status = "converged";
     run.data = data;
@@ -110,7 +111,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
     level.status = status;
     level.energy_on_finest = 1;
     data.methods[0].levels.push_back(level);
-    SetRun run;
+    RunRecord run;
     run.status = "converged";
     run.expected = expected;
     run.data = data;
@@ -123,18 +124,18 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
   CHECK(!passes("stalled", "converged"));
 }
 
-TEST_CASE("an expectation says why") {
+TEST_CASE("an expectation needs a message") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {outcome: refused}}\n"
                "  - {name: b, expect: {outcome: refuse}}\n");
-  CHECK(
-      drape_with("sweep s.yaml", folder.path).err ==
-      "error: s.yaml:4:23: \"expect\" of what is not to converge needs a \"message\": a part of what it says "
-      "then\n"
-      "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
-      "\"stalled\", \"max_steps_reached\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
+  CHECK(drape_with("sweep s.yaml", folder.path).err ==
+        "error: s.yaml:4:23: \"expect\" of an outcome other than converged needs a \"message\": a part of "
+        "the expected message "
+        "then\n"
+        "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
+        "\"stalled\", \"max_steps_reached\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }
 
 TEST_CASE("a sweep over several experiments names each run by its experiment") {

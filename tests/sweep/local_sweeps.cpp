@@ -103,7 +103,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   CHECK(text_of(folder / "by_hand/levels/pcs_l1.ply") == text_of(folder / (run + "/levels/pcs_l1.ply")));
 }
 
-TEST_CASE("whoever reads sweep.json while a sweep begins finds the status of every run") {
+TEST_CASE("sweep.json has the status of every run from the beginning of a sweep") {
   const Scratch folder;
   REQUIRE(drape_with(small_sweep + "--out out", folder.path).exit_code == 0);
   std::atomic<bool> ended = false;
@@ -125,7 +125,7 @@ TEST_CASE("whoever reads sweep.json while a sweep begins finds the status of eve
   CHECK(without == 0);
 }
 
-TEST_CASE("kill -9 in the middle loses nothing but what was running") {
+TEST_CASE("kill -9 loses only the active runs") {
   const Scratch folder;
   REQUIRE(drape_with(small_sweep + "--out whole", folder.path).exit_code == 0);
   for (const int done : {1, 9, 17}) {
@@ -149,7 +149,7 @@ TEST_CASE("kill -9 in the middle loses nothing but what was running") {
   CHECK(starts <= 24 + 3 * workers);
 }
 
-TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same command goes on") {
+TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command resumes") {
   const Scratch folder;
   write_endless(folder);
   Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
@@ -157,19 +157,19 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   const Ended second = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(second.exit_code == 2);
   CHECK_THAT(second.err,
-             Catch::Matchers::Matches("error: out: another `drape sweep` is at work here \\(process "
+             Catch::Matchers::Matches("error: out: another `drape sweep` uses this folder \\(process "
                                       "[0-9]+ on .+\\); wait for it, or name another folder with "
                                       "--out\n"));
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
   CHECK_THAT(ended.err, Contains("stopping: 1 running save what they have\n"));
-  CHECK_THAT(ended.err, Catch::Matchers::EndsWith(
-                            "stopped on request; the same command goes on with what is missing\n"));
+  CHECK_THAT(ended.err,
+             Catch::Matchers::EndsWith("stopped on request; the same command runs what is missing\n"));
   const Json stopped = runs_of(folder / "out");
   CHECK(stopped[0]["status"] == "converged");
   CHECK(stopped[1]["status"] == "cancelled");
-  CHECK(stopped[2]["status"] == "waiting");
+  CHECK(stopped[2]["status"] == "pending");
   CHECK(stopped[2]["starts"] == 0);
   const Json results = Json::parse(text_of(folder / "out/runs/endless/seed_1/results.json"));
   CHECK(results["methods"]["newton"]["status"] == "cancelled");
@@ -180,7 +180,7 @@ TEST_CASE("Ctrl-C stops the runs, which save what they have, and the same comman
   CHECK(on.exit_code == 1);
   const Json after = runs_of(folder / "out");
   CHECK(after[0]["starts"] == 1);
-  CHECK(after[1]["status"] == "ended");
+  CHECK(after[1]["status"] == "not_converged");
   CHECK(after[1]["exit_code"] == 1);
   CHECK(after[1]["starts"] == 2);
   CHECK(after[2]["starts"] == 1);
@@ -193,7 +193,7 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
   folder.write("s.yaml",
                "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nablation:\n"
                "  - {name: unheld, set: {pins: [{region: ball, point: [5, 5, 5]}]}}\n  - {name: fine}\n");
-  const std::string error = "pin 0 (ball) holds no vertex of the coarsest level; widen its region";
+  const std::string error = "pin 0 (ball) selects no vertex of the coarsest level; widen its region";
   const Ended ended = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.out, Contains(error) && Contains("unheld") && Contains("failed"));
@@ -220,7 +220,7 @@ TEST_CASE("a failed run is listed with its error, does not stop the others, and 
   CHECK(runs_of(folder / "out")[0]["starts"] == 3);
 }
 
-TEST_CASE("a run that is killed has failed, by name of the signal") {
+TEST_CASE("a killed run has failed, with the name of the signal") {
   const Scratch folder;
   write_endless(folder);
   Command command("exec " + drape_command + " sweep s.yaml --out out --workers 1", folder.path);
@@ -243,7 +243,7 @@ TEST_CASE("a run that is killed has failed, by name of the signal") {
   CHECK(runs[2]["status"] == "converged");
 }
 
-TEST_CASE("a sweep that no longer fits its results is refused, and they stay") {
+TEST_CASE("a sweep that no longer fits its results is refused, and the results stay") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string sweep =
@@ -279,7 +279,7 @@ TEST_CASE("a sweep that no longer fits its results is refused, and they stay") {
   for (const Json& run : runs_of(folder / "out")) CHECK(run["starts"] == 1);
 }
 
-TEST_CASE("a folder where a run would go, and that the sweep has not made, stays") {
+TEST_CASE("a foreign folder in the place of a run's stays") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string sweep =
@@ -297,7 +297,7 @@ TEST_CASE("a folder where a run would go, and that the sweep has not made, stays
   CHECK(text_of(folder / "out/runs/b/seed_1/notes") == "mine");
 }
 
-TEST_CASE("runs that do not fit into the memory together run one after another, with a warning") {
+TEST_CASE("runs that exceed the memory together run one after another, with a warning") {
   if (std::thread::hardware_concurrency() < 2) return;
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
@@ -318,7 +318,7 @@ TEST_CASE("runs that do not fit into the memory together run one after another, 
   }
 }
 
-TEST_CASE("a run whose end was not noted down has its results, and is not run again") {
+TEST_CASE("a complete run without a final status keeps its results and is not repeated") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml",
@@ -327,7 +327,7 @@ TEST_CASE("a run whose end was not noted down has its results, and is not run ag
   REQUIRE(drape_with("sweep s.yaml --out out", folder.path).exit_code == 1);
   for (const std::string name : {"a", "b"}) {
     const std::string status = "out/runs/" + name + "/seed_1.status.json";
-    const std::string word = name == "a" ? "converged" : "ended";
+    const std::string word = name == "a" ? "converged" : "not_converged";
     folder.write(status, replaced(text_of(folder / status), "\"" + word + "\"", "\"running\""));
   }
   const Ended again = drape_with("sweep s.yaml --out out", folder.path);
@@ -335,7 +335,7 @@ TEST_CASE("a run whose end was not noted down has its results, and is not run ag
   CHECK(again.err == "");
   const Json runs = runs_of(folder / "out");
   CHECK(runs[0]["status"] == "converged");
-  CHECK(runs[1]["status"] == "ended");
+  CHECK(runs[1]["status"] == "not_converged");
   for (const Json& run : runs) CHECK(run["starts"] == 1);
 
   folder.write("out/runs/a/seed_1.status.json", "{");

@@ -86,7 +86,7 @@ TEST_CASE("the shape of an ablation") {
         "error: s.yaml:3:18: the grid has more than 10000 variations; take some values out\n");
 }
 
-TEST_CASE("every variation is checked, and every fault is named with its place and its variation") {
+TEST_CASE("every variation is validated, and errors have location and variation") {
   CHECK(
       said_of("ablation:\n"
               "  - {name: a, set: {newton.step_siz: 1}}\n"
@@ -111,7 +111,7 @@ TEST_CASE("every variation is checked, and every fault is named with its place a
       "error: s.yaml:3:35: \"levels\" must be at least 1, not 0 (variation \"a\")\n");
 }
 
-TEST_CASE("two variations that are one") {
+TEST_CASE("two equal variations") {
   CHECK(
       said_of("ablation: [{name: a b}, {name: a_b, levels: 1}]\n") ==
       "error: s.yaml:3:32: variations \"a b\" and \"a_b\" would share the folder a_b; rename one of them\n");
@@ -124,7 +124,7 @@ TEST_CASE("two variations that are one") {
         "error: s.yaml:3:18: variation \"levels=1\" is given twice; rename one of them\n");
 }
 
-TEST_CASE("a sweep with a run that may take more memory than there is begins none") {
+TEST_CASE("a sweep with a run that may exceed the memory starts no run") {
   CHECK_THAT(said_of("methods: [newton]\nablation:\n  - {name: small, levels: 1}\n"
                      "  - {name: large, levels: 10, set: {cloth.columns: 12, cloth.rows: 12}}\n"),
              Catch::Matchers::Matches(
@@ -132,7 +132,7 @@ TEST_CASE("a sweep with a run that may take more memory than there is begins non
                  "fewer levels or vertices, or allow it with --allow-memory\n"));
 }
 
-TEST_CASE("options that do not fit, and a folder that is somebody's") {
+TEST_CASE("conflicting options, and a foreign folder") {
   const int cores = int(std::thread::hardware_concurrency());
   const std::string count = std::to_string(cores), more = std::to_string(cores + 1);
   const std::string rest = " threads (workers × threads) are more than the " + count +
@@ -161,7 +161,7 @@ TEST_CASE("options that do not fit, and a folder that is somebody's") {
         "error: out: holds the sweep \"s\"; name another folder with --out\n");
 }
 
-TEST_CASE("--dry-run checks and lists, and leaves no trace") {
+TEST_CASE("--dry-run validates and lists without writing") {
   const Scratch folder;
   const std::string sweep = folders::source() + "/tests/sweep/small_sweep.yaml";
   const Ended ended = drape_with("sweep " + sweep + " --dry-run", folder.path);
@@ -169,13 +169,13 @@ TEST_CASE("--dry-run checks and lists, and leaves no trace") {
   CHECK(ended.err == "");
   CHECK_THAT(ended.out, Catch::Matchers::StartsWith(
                             "sweep small_sweep: 24 runs in results/small_sweep, each with 1 thread\n"
-                            "waiting    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
+                            "pending    runs/refiner=loop,levels=1,step_growth=1.5/seed_1  levels 1, "
                             "about 64 vertices, 0.1 GB  {\"refiner\":\"loop\",\"levels\":1,"
                             "\"newton.step_growth\":1.5}\n"));
   CHECK(fs::is_empty(folder.path));
 }
 
-TEST_CASE("--most-levels keeps experiments from having more, and leaves those that have fewer") {
+TEST_CASE("--most-levels limits the levels of experiments") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml",

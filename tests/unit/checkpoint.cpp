@@ -57,7 +57,7 @@ Checkpoint full() {
   c.own_start = Positions::Random(4, 3);
   c.recorder.results = "{}";
   c.recorder.states = {{"pcs", 1, Positions::Random(9, 3)}};
-  c.recorder.frames = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
+  c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
   c.recorder.steps_bytes = 12345;
   return c;
@@ -127,7 +127,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
 }
 
-TEST_CASE("No byte of a checkpoint may be another, missing or too many") {
+TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected") {
   const std::string bytes = encode(full());
   REQUIRE(bytes.size() > 1000);
   for (std::size_t k = 0; k < bytes.size(); ++k) {
@@ -198,7 +198,7 @@ TEST_CASE("Whatever bytes a body has, it is refused or read as what would be wri
   CHECK(read > 1000);
 }
 
-TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") {
+TEST_CASE("The newest complete checkpoint is used, and a damaged one is named") {
   const Scratch folder;
   CHECK_THAT(error_in(folder.path), Contains("holds no checkpoint of a run"));
   std::string warning;
@@ -225,6 +225,6 @@ TEST_CASE("The newest whole checkpoint is taken, and one that is not is named") 
   folder.write("checkpoint/previous.bin", "something else");
   const std::string error = error_in(folder.path);
   CHECK_THAT(error, Contains("state.bin: is cut short; ") && Contains("previous.bin: is no checkpoint"));
-  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment anew, as in drape run " +
+  CHECK_THAT(error, EndsWith("no checkpoint is whole: run the experiment again, as in drape run " +
                              (folder / "config.yaml").string() + " --out ANOTHER"));
 }

@@ -43,7 +43,7 @@ TEST_CASE("docs/exit-codes.md has every code as `drape --help` does") {
   const std::string page = text_of(fs::path(folders::source()) / "docs/exit-codes.md");
   for (const drape::ExitCode& code : drape::exit_codes) {
     INFO(code.code);
-    CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.meaning + " |\n") !=
+    CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n") !=
           std::string::npos);
   }
 }

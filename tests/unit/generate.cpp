@@ -36,7 +36,7 @@ bool same(const TriangleMesh& a, const TriangleMesh& b) {
          a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-/// What every pattern must be: sound, flat, counter-clockwise, in one piece with this many holes.
+/// What every pattern must be: valid, flat, counter-clockwise, in one piece with this many holes.
 void require_pattern(const TriangleMesh& mesh, double area, int holes, double angle) {
   REQUIRE(mesh.vertices.rows() > 0);
   CHECK(check_mesh(mesh).empty());
@@ -257,7 +257,7 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
                     Catch::StartsWith("polygon: about 20 vertices cannot be had; nearest is "));
 }
 
-TEST_CASE("A random triangulation is sound for sides that no division hits exactly") {
+TEST_CASE("A random triangulation is valid for sides that no division hits exactly") {
   for (const double height : {0.8, 0.7, 1.1, 0.3})
     for (const int vertices : {60, 61, 150}) {
       CAPTURE(height, vertices);

@@ -87,7 +87,7 @@ struct Served {
 
 }  // namespace
 
-TEST_CASE("the page is served and the end comes while forty peers send a header line now and then") {
+TEST_CASE("forty slow peers delay neither the page nor the shutdown") {
   Served served;
   REQUIRE(served.serves_page(10));
   std::vector<std::unique_ptr<Client>> slow;
@@ -112,7 +112,7 @@ TEST_CASE("the page is served and the end comes while forty peers send a header 
   CHECK(end.seconds() < 3);  // at once; a busy machine takes its time
 }
 
-TEST_CASE("a peer that takes no part of its answer does not hold up the end") {
+TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
   Served served;
   served.body = std::string(50000000, 'p');
   std::vector<std::unique_ptr<Client>> deaf;

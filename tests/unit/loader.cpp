@@ -101,7 +101,7 @@ TEST_CASE("mismatch names what differs, on both sides") {
   CHECK(mismatch(theirs) == "its descriptor is not one of drape");
   theirs = ours;
   theirs.abi_number = 999;
-  theirs.compiler = nullptr;  // another ABI number: nothing else may be looked at
+  theirs.compiler = nullptr;  // another ABI number: nothing else may be read
   CHECK(mismatch(theirs) ==
         "the ABI number is 999 in the plugin and " + std::to_string(ours.abi_number) + " in drape");
   theirs = ours;

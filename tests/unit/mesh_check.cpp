@@ -31,7 +31,7 @@ void append_vertex(TriangleMesh& mesh, double x, double y, double z) {
 
 }  // namespace
 
-TEST_CASE("a sound mesh has no faults", "[check]") {
+TEST_CASE("a valid mesh has no faults", "[check]") {
   CHECK(check_mesh(strip()).empty());
   CHECK(check_mesh(grid({1, 1}, 5, 4, Diagonals::criss_cross)).empty());
 }

@@ -244,7 +244,7 @@ TEST_CASE("counts that do not fit the file are told as such", "[io]") {
         ":14: vertex 4: its line has more values than the header declares (the header declares 5 vertex, 2 "
         "face)");
   CHECK(said("a.ply", ply(4, 1)) ==
-        ":15: the file goes on after the elements that its header declares (the header declares 4 vertex, 1 "
+        ":15: the file has data after the elements that its header declares (the header declares 4 vertex, 1 "
         "face)");
   CHECK(said("a.ply", ply(4, 3)) ==
         ":15: the file ends where face 2 is expected (the header declares 4 vertex, 3 face)");
@@ -258,7 +258,7 @@ TEST_CASE("counts that do not fit the file are told as such", "[io]") {
   CHECK(said("a.off", off(5, 2)) ==
         ":8: the file ends before face 1 (the header declares 5 vertices, 2 faces)");
   CHECK(said("a.off", off(4, 1)) ==
-        ":8: the file goes on after its last face (the header declares 4 vertices, 1 faces)");
+        ":8: the file has data after its last face (the header declares 4 vertices, 1 faces)");
 
   // In binary, where no line tells.
   const std::string header =
@@ -267,7 +267,7 @@ TEST_CASE("counts that do not fit the file are told as such", "[io]") {
   CHECK(said("a.ply", header + std::string(12, '\0')) == "");
   CHECK(said("a.ply", header + std::string(12, '\0') + "\r\n") == "");
   CHECK(said("a.ply", header + std::string(13, '\0')) ==
-        ": the file goes on after the elements that its header declares (the header declares 1 vertex)");
+        ": the file has data after the elements that its header declares (the header declares 1 vertex)");
   CHECK(said("a.ply", header + std::string(8, '\0') + std::string("\0\0\xc0\x7f", 4)) ==
         ": vertex 0 has a coordinate that is not finite");
 }
@@ -287,7 +287,7 @@ TEST_CASE("what is declared twice, left over, not finite or no text is refused",
       {"a.ply", element + "element face 1\nproperty int vertex_indices\nend_header\n",
        ":7: element 'face' must have one list 'vertex_indices'"},
       {"a.off", "OFF\n1 0 0 7\n0 0 0\n",
-       ":2: the line goes on after the numbers of vertices, faces and edges"},
+       ":2: the line has more than the numbers of vertices, faces and edges"},
       {"a.off", "OFF\n1 0 0\n0 0 0 junk\n",
        ":3: 'junk' is not a number (the header declares 1 vertices, 0 faces)"},
       {"a.off", "OFF\n1 1 0\n0 0 0\n3 0 0 0 1 1 1 1 1\n",
@@ -358,9 +358,9 @@ TEST_CASE("fields must fit the mesh", "[io]") {
   CHECK_THROWS_WITH(write_ply("m.ply", mesh, {{"mean h", four}}),
                     "cannot write m.ply: field 'mean h' needs a name without white space");
   CHECK_THROWS_WITH(write_vtp("m.vtp", mesh, {{"h", four}, {"h", four}}),
-                    "cannot write m.vtp: field 'h' has a name that is taken");
+                    "cannot write m.vtp: field 'h' has the name of another field");
   CHECK_THROWS_WITH(write_ply("m.ply", mesh, {{"x", four}}),
-                    "cannot write m.ply: field 'x' has a name that is taken");
+                    "cannot write m.ply: field 'x' has the name of another field");
 }
 
 namespace {

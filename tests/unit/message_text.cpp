@@ -11,7 +11,7 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "tests/support/command.h"
 
 using namespace drape;
@@ -68,7 +68,7 @@ TEST_CASE("exceptions of the library are sentences that name the file or say wha
   CHECK(reason([] { throw std::runtime_error("as it is"); }) == "as it is");
 }
 
-TEST_CASE("only regular files are read, of a size that is said, and nothing is waited for") {
+TEST_CASE("only regular files of limited size are read, without blocking") {
   const Scratch folder;
   REQUIRE(mkfifo((folder / "pipe").c_str(), 0600) == 0);
   fs::create_directory(folder / "sub");

@@ -39,7 +39,7 @@ struct Everything {
 
   static void declare(Declaration<Everything>& d) {
     using E = Everything;
-    d.add("step_size", &E::step_size).unit("s").above(0).meaning("step of the flow").source("PCS eq. 2");
+    d.add("step_size", &E::step_size).unit("s").above(0).description("step of the flow").source("PCS eq. 2");
     d.add("fraction", &E::fraction).unit("1").at_least(0).below(1);
     d.add("count", &E::count).at_least(1).at_most(10);
     d.add("on", &E::on);
@@ -124,7 +124,7 @@ raw: {type: any, of: [it]}
   CHECK(e.raw.one_line() == "{type: any, of: [it]}");
 }
 
-TEST_CASE("what is not written keeps its default") {
+TEST_CASE("omitted parameters keep their defaults") {
   const Everything e = read("count: 4\nball:\nlimit:\n");
   CHECK(e.count == 4);
   CHECK(e.step_size == 0.5);
@@ -133,7 +133,7 @@ TEST_CASE("what is not written keeps its default") {
   CHECK_FALSE(e.limit);
 }
 
-TEST_CASE("unknown keys are told, with the nearest known one") {
+TEST_CASE("unknown keys are reported with the nearest known one") {
   CHECK(fault("stepsize: 1") == "f:1:1: unknown key \"stepsize\" in newton; did you mean \"step_size\"?");
   CHECK(fault("count: 1\nStep-Size: 1") ==
         "f:2:1: unknown key \"Step-Size\" in newton; did you mean \"step_size\"?");
@@ -151,7 +151,44 @@ TEST_CASE("unknown keys are told, with the nearest known one") {
         std::vector<std::string>{"f:1:1: unknown key \"a\" in air; it takes no keys"});
 }
 
-TEST_CASE("wrong types are told with what was written") {
+TEST_CASE("keys of an earlier version are refused with their new names") {
+  struct Renamed {
+    double dhat = 1e-3;
+    int steps = 1;
+    Ball ball;
+    static void declare(Declaration<Renamed>& d) {
+      d.add("dhat", &Renamed::dhat).formerly("range").formerly("reach").required();
+      d.add("steps", &Renamed::steps);
+      d.add_section("ball", &Renamed::ball).formerly("sphere");
+      d.moved("radius", "ball.radius");
+    }
+  } object;
+  const Schema schema = schema_of<Renamed>("ipc");
+  using Texts = std::vector<std::string>;
+  CHECK(faults(schema, &object, "range: 1") == Texts{"f:1:1: \"range\" in ipc is now called \"dhat\""});
+  CHECK(faults(schema, &object, "{steps: 2, reach: 1}") ==
+        Texts{"f:1:12: \"reach\" in ipc is now called \"dhat\""});
+  CHECK(faults(schema, &object, "dhat: 1\nsphere: {radius: 1}") ==
+        Texts{"f:2:1: \"sphere\" in ipc is now called \"ball\""});
+  CHECK(faults(schema, &object, "dhat: 1\nradius: 1") ==
+        Texts{"f:2:1: \"radius\" in ipc is now \"ball.radius\""});
+  CHECK(faults(schema, &object, "dhat: 2\nrange: 1") ==
+        Texts{"f:2:1: \"range\" in ipc is now called \"dhat\""});
+  CHECK(object.dhat == 2);
+}
+
+TEST_CASE("a declaration cannot use a former name for another parameter") {
+  struct Twice {
+    double a = 0, b = 0;
+    static void declare(Declaration<Twice>& d) {
+      d.add("a", &Twice::a).formerly("b");
+      d.add("b", &Twice::b);
+    }
+  };
+  CHECK_THROWS_WITH(schema_of<Twice>(), "\"b\" is declared, and as a former name of \"a\"");
+}
+
+TEST_CASE("wrong types are reported with the written value") {
   CHECK(fault("step_size: abc") == "f:1:12: \"step_size\" must be a number, not \"abc\"");
   CHECK(fault("step_size: 1s") == "f:1:12: \"step_size\" must be a number, not \"1s\"");
   CHECK(fault("step_size: \"1\"") == "f:1:12: \"step_size\" must be a number, not the text \"1\"");
@@ -172,7 +209,7 @@ TEST_CASE("wrong types are told with what was written") {
   CHECK(fault("balls: [3]") == "f:1:9: \"balls\" must be a map of keys and values, not 3");
 }
 
-TEST_CASE("numbers out of range are told with the bound and its unit") {
+TEST_CASE("numbers out of range are reported with the bound and its unit") {
   CHECK(fault("step_size: -1") == "f:1:12: \"step_size\" must be above 0 s, not -1");
   CHECK(fault("step_size: 0") == "f:1:12: \"step_size\" must be above 0 s, not 0");
   CHECK(fault("fraction: -0.1") == "f:1:11: \"fraction\" must be at least 0, not -0.1");
@@ -201,7 +238,7 @@ TEST_CASE("lists are checked for their size and each item") {
   CHECK(fault("labels: [[]]") == "f:1:10: item 1 of \"labels\" must be text, not a list");
 }
 
-TEST_CASE("repeated keys and missing ones are told, and all errors come together") {
+TEST_CASE("repeated and missing keys are reported, and all errors together") {
   CHECK(fault("count: 1\non: true\ncount: 2") ==
         "f:3:1: repeated key \"count\" in newton; it is first set at f:1:1");
   struct Needed {
@@ -217,7 +254,7 @@ TEST_CASE("repeated keys and missing ones are told, and all errors come together
                                  "f:1:1: \"density\" in material is required and missing"});
 }
 
-TEST_CASE("a value that was refused leaves the default") {
+TEST_CASE("a refused value leaves the default") {
   Everything object;
   CHECK(faults(schema_of<Everything>(), &object, "step_size: -1\ncount: 5").size() == 1);
   CHECK(object.step_size == 0.5);
@@ -278,7 +315,7 @@ TEST_CASE("a schema describes sections and lists of them") {
     std::optional<double> limit;
     double density = 0;
     static void declare(Declaration<Top>& d) {
-      d.add_section("ball", &Top::ball).meaning("the obstacle");
+      d.add_section("ball", &Top::ball).description("the obstacle");
       d.add_sections("balls", &Top::balls);
       d.add("word", &Top::word).choices({"left", "right"});
       d.add("center", &Top::center).unit("m");

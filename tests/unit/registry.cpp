@@ -29,7 +29,7 @@ class Loop final : public Ballast, public Refiner {
           .unit("deg")
           .above(0)
           .at_most(180)
-          .meaning("sharper corners stay | sharp")
+          .description("sharper corners stay | sharp")
           .source("Loop 1987");
     }
   };
@@ -117,7 +117,7 @@ TEST_CASE("a node makes the object it names, with its parameters") {
   CHECK(alive == 0);
 }
 
-TEST_CASE("what a node gets wrong is told with its place") {
+TEST_CASE("faults of a node are reported with their location") {
   CHECK(fault("lopo") == "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
   CHECK(fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
   CHECK(fault("{corner_angle: 3}") ==
@@ -153,7 +153,7 @@ TEST_CASE("an entry describes itself for the terminal and for the reference page
         "refiner linear: Midpoints.\nfrom /lib/a.so\n\n  no parameters\n");
   CHECK(describe_markdown(*registry.find("refiner", "loop")) ==
         "### refiner `loop`\n\nLoop subdivision.\n\n"
-        "| name | type | default | unit | range | meaning | source |\n"
+        "| name | type | default | unit | range | description | source |\n"
         "|---|---|---|---|---|---|---|\n"
         "| `corner_angle` | number | `30` | deg | > 0, <= 180 "
         "| sharper corners stay \\| sharp | Loop 1987 |\n");

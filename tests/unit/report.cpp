@@ -211,7 +211,7 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(fs::file_size(run.folder / "report.html") < 25'000'000);
 }
 
-TEST_CASE("a report leaves out the pictures that it is told to leave, in the midst of one, and says so") {
+TEST_CASE("a report that is told to stop skips the remaining pictures, with a note") {
   const SampleRun run;
   write_file(run.folder / "results.json", run.results.dump());
   int asked = 0;
@@ -403,8 +403,8 @@ TEST_CASE("figures in a report have three digits") {
   const std::pair<double, const char*> cases[] = {
       {0, "0"},         {403.4, "403"},     {9999, "1.00e4"},   {1234, "1230"},    {0.02134, "0.0213"},
       {0.9996, "1.00"}, {7.21e5, "7.21e5"}, {-1.2345, "-1.23"}, {4e-4, "4.00e-4"}, {99.96, "100"}};
-  for (const auto& [value, text] : cases) CHECK(html::figure(value) == text);
-  CHECK(html::figure({}) == "–");
+  for (const auto& [value, text] : cases) CHECK(html::number_text(value) == text);
+  CHECK(html::number_text({}) == "–");
   CHECK(html::count(1234567) == "1\u202f234\u202f567");
   CHECK(html::count(123) == "123");
   CHECK(html::bytes(2.5e9) == "2.50 GB");
@@ -479,9 +479,9 @@ TEST_CASE("colour maps are symmetric around their middle and clamp at their ends
   CHECK(magnitude_quantile({}, 0.5) == 0);
 }
 
-TEST_CASE("errors are read, drawn and told of; a run without them says so") {
+TEST_CASE("errors are read, drawn and described; a run without them says so") {
   SampleRun run;
-  CHECK(contains(run.page(), "No states were kept in this run"));
+  CHECK(contains(run.page(), "No states were recorded in this run"));
   write_file(run.folder / "errors.csv",
              "method,level,iteration,seconds,iterations,flops,vertices,own_rms,own_hausdorff,own_d_H_fit,"
              "own_energy_gap,reference_rms,reference_hausdorff,reference_d_H_fit,reference_energy_gap\n"
@@ -494,7 +494,7 @@ TEST_CASE("errors are read, drawn and told of; a run without them says so") {
   const RunData data = read_run(run.folder);
   REQUIRE(data.errors.size() == 2);
   CHECK(data.errors[0].method == "pcs");
-  CHECK(data.errors[0].rows[0].work[2].value() == 1e6);
+  CHECK(data.errors[0].rows[0].cost[2].value() == 1e6);
   CHECK_FALSE(data.errors[0].rows[0].error[1][3]);  // a run of before there was that measure
   CHECK(data.errors[0].rows[0].error[1][4].value() == -0.01);
   CHECK(!data.errors[1].rows[0].error[1][0]);
@@ -531,7 +531,7 @@ TEST_CASE("every method has a verdict beside the others that converged") {
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }
 
-TEST_CASE("the viewer has every state, and recorded frames that fit their mesh") {
+TEST_CASE("the viewer has every state, and recorded snapshots that fit their mesh") {
   SampleRun run;
   const auto whole_page = [&] {
     run.page();
@@ -542,14 +542,15 @@ TEST_CASE("the viewer has every state, and recorded frames that fit their mesh")
   CHECK(contains(page, "id=\"viewer-m1l1-stretch\""));
   CHECK_FALSE(contains(page, "id=\"viewer-m0l0f0\""));
 
-  fs::create_directories(run.folder / "frames");
+  fs::create_directories(run.folder / "snapshots");
   Json& level = run.results["methods"]["pcs"]["levels"][0];
-  level["frames"] = {{"file", "frames/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
-  write_file(run.folder / "frames/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
+  level["snapshots"] = {
+      {"file", "snapshots/pcs_l0.bin"}, {"iterations", {1, 2, 3}}, {"seconds", {0.1, 0.2, 0.3}}};
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(3 * 169 * 12, '\0'));
   CHECK(contains(whole_page(), "id=\"viewer-m0l0f1\""));
-  write_file(run.folder / "frames/pcs_l0.bin", std::string(100, '\0'));
+  write_file(run.folder / "snapshots/pcs_l0.bin", std::string(100, '\0'));
   const std::string without = whole_page();
   CHECK_FALSE(contains(without, "id=\"viewer-m0l0f1\""));
   CHECK(contains(without, "id=\"viewer-m0l0\""));
-  CHECK(contains(without, "frames/pcs_l0.bin: holds 100 bytes, not 3 frames of 169 vertices"));
+  CHECK(contains(without, "snapshots/pcs_l0.bin: holds 100 bytes, not 3 snapshots of 169 vertices"));
 }

@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-LevelRecord level_of(int index, Figure intersections, Figure gap) {
+LevelRecord level_of(int index, OptionalNumber intersections, OptionalNumber gap) {
   LevelRecord level;
   level.level = index;
   level.status = "converged";
@@ -44,22 +44,22 @@ RunData contact_run() {
   return run;
 }
 
-std::string verdict_of(const RunData& run, bool sound) {
+std::string verdict_of(const RunData& run, bool intersection_free) {
   const auto verdict = intersection_verdict(run);
   REQUIRE(verdict);
-  CHECK(verdict->sound == sound);
+  CHECK(verdict->intersection_free == intersection_free);
   return verdict->text;
 }
 
 }  // namespace
 
-TEST_CASE("a run's verdict on intersections counts what was looked at") {
+TEST_CASE("a run's verdict on intersections counts the checked states") {
   RunData run = contact_run();
   CHECK(verdict_of(run, true) ==
-        "No intersection at any recorded state (4 levels looked at, smallest gap on the way 1.50e-5 m).");
+        "No intersection at any recorded state (4 levels checked, smallest gap on the way 1.50e-5 m).");
   run.iterations[0].rows[1].intersections = 0;
   CHECK(verdict_of(run, true) ==
-        "No intersection at any recorded state (4 levels and 1 iteration looked at, smallest gap on the way "
+        "No intersection at any recorded state (4 levels and 1 iteration checked, smallest gap on the way "
         "1.50e-5 m).");
 }
 
@@ -82,13 +82,13 @@ TEST_CASE("a run without contact has no verdict and no columns for it") {
   CHECK(summary_table(run).find("intersections") != std::string::npos);
   CHECK(level_table(run).find("smallest gap") != std::string::npos);
   for (MethodRecord& method : run.methods)
-    for (LevelRecord& level : method.levels) level.intersections = level.smallest_gap = Figure();
+    for (LevelRecord& level : method.levels) level.intersections = level.smallest_gap = OptionalNumber();
   CHECK_FALSE(intersection_verdict(run));
   CHECK(summary_table(run).find("intersections") == std::string::npos);
   CHECK(level_table(run).find("smallest gap") == std::string::npos);
 }
 
-TEST_CASE("what did not converge is told with its message") {
+TEST_CASE("levels that did not converge are listed with their messages") {
   RunData run = contact_run();
   CHECK(troubles(run).empty());
   LevelRecord& level = run.methods[1].levels[0];
@@ -102,7 +102,7 @@ TEST_CASE("what did not converge is told with its message") {
 
   level.status = "converged_to_rounding";
   CHECK(troubles(run) ==
-        "<p>To be known of what converged:</p>\n<ul>\n<li><b>a&lt;b</b>, level 0: held by cloth triangle 3 "
+        "<p>Remarks on what converged:</p>\n<ul>\n<li><b>a&lt;b</b>, level 0: held by cloth triangle 3 "
         "&amp; "
         "ball</li>\n</ul>\n");
 }
@@ -129,7 +129,7 @@ TEST_CASE("Table 1 as text sets the paper's columns beside the run's") {
   CHECK(table1_text(run) == "sample: no pair of levels has been compared\n");
 }
 
-TEST_CASE("No method is the best on what the flat start would win") {
+TEST_CASE("No method is the best on a measure that the flat start would win") {
   RunData run = contact_run();
   const auto pair = [&](int m) -> ConsistencyRecord& { return run.methods[m].consistency[0]; };
   const auto is_best = [&](const std::string& figure) {

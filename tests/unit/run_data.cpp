@@ -31,7 +31,7 @@ std::string said_of_level(const std::string& level) {
 
 TEST_CASE("a level that is no whole number is named with its file and its key") {
   const std::string must = "results.json: \"level\" must be a whole number, not ",
-                    end = "; run the experiment anew";
+                    end = "; run the experiment again";
   CHECK(said_of_level("1e300") == must + "1e+300" + end);
   CHECK(said_of_level("-1") == must + "-1" + end);
   CHECK(said_of_level("0.5") == must + "0.5" + end);

@@ -83,7 +83,7 @@ TEST_CASE("triangles are differences, and pack well") {
   CHECK(deflated(bytes).size() < bytes.size() / 10);
 }
 
-TEST_CASE("scalars take their range's ends, and 255 is none") {
+TEST_CASE("scalars include their range's ends, and 255 is missing") {
   const std::string bytes = encode_scalars(Eigen::Vector4d(-9, 1, none, 99), 0, 2);
   REQUIRE(bytes.size() == 12);
   CHECK(at<float>(bytes, 0) == 0);

@@ -34,11 +34,11 @@ std::string set(const std::string& yaml, const std::string& path, const std::str
 
 }  // namespace
 
-TEST_CASE("nodes bear the place where they stand") {
+TEST_CASE("nodes have their locations") {
   const ConfigNode node = parsed("a: 1\nlist:\n  - x\n  - {k: \"v\"}\n");
   REQUIRE(node.entries.size() == 2);
   CHECK(node.find("a")->where.text() == "f:1:4");
-  CHECK(node.key_places[1].text() == "f:2:1");
+  CHECK(node.key_locations[1].text() == "f:2:1");
   const ConfigNode& list = *node.find("list");
   REQUIRE(list.items.size() == 2);
   CHECK(list.items[0].where.text() == "f:3:5");
@@ -55,7 +55,7 @@ TEST_CASE("anchors and aliases work, repeated keys are kept") {
   CHECK(node.find("b")->one_line() == "{r: 1}");
   CHECK(node.entries[2].first == "a");
   CHECK(node.entries[2].second.scalar == "2");
-  CHECK(node.key_places[2].text() == "f:3:1");
+  CHECK(node.key_locations[2].text() == "f:3:1");
 }
 
 TEST_CASE("null, quoted and tagged scalars are told apart") {
@@ -68,7 +68,7 @@ TEST_CASE("null, quoted and tagged scalars are told apart") {
   CHECK(node.find("h")->scalar == "text\n");
 }
 
-TEST_CASE("what is not a config is told with its place") {
+TEST_CASE("invalid configs are reported with the location") {
   CHECK(fault("a: 1\nb: [1, 2\nc: 3\n") == "f:3:2: not valid YAML: end of sequence flow not found");
   CHECK(fault("a: 1\n  b: 2\n") == "f:2:4: not valid YAML: illegal map value");
   CHECK(fault("a: *none\n") == "f:1:4: not valid YAML: the referenced anchor is not defined");
@@ -85,7 +85,7 @@ TEST_CASE("what is not a config is told with its place") {
   CHECK(fault("a: !color 5\n") == "f:1:4: tag \"!color\" is not supported; take it out");
 }
 
-TEST_CASE("aliases that never end, or nearly so, are refused") {
+TEST_CASE("infinite and huge aliases are refused") {
   CHECK(fault("a: &a [*a, *a]\n") == "f:1:4: too many nested or repeated nodes; check the aliases");
   std::string laughs = "a0: &a0 [x]\n";
   for (int i = 1; i < 12; ++i) {
@@ -95,7 +95,7 @@ TEST_CASE("aliases that never end, or nearly so, are refused") {
   CHECK(fault(laughs).find("too many nested or repeated nodes; check the aliases") != std::string::npos);
 }
 
-TEST_CASE("files are read with their name, and told if they cannot be") {
+TEST_CASE("files are read with their name, and unreadable ones reported") {
   const fs::path folder = fs::temp_directory_path();
   const fs::path file = folder / "drape_yaml_file_test.yaml";
   std::ofstream(file) << "a: {b: [1, 2]}\n";
@@ -141,7 +141,7 @@ TEST_CASE("plain text with commas or braces survives being put on one line") {
   CHECK(to_yaml(node) == "list: [\"a, b\", \"c}\", \"it's\", \"--\", \"10%\"]\n");
 }
 
-TEST_CASE("a path sets a value in maps and lists, making what is not there") {
+TEST_CASE("a path sets a value in maps and lists, making missing maps") {
   CHECK(set("a: {b: 1}", "a.b", "2") == "{a: {b: 2}}");
   CHECK(set("a: {b: 1}", "a.c", "[1, x]") == "{a: {b: 1, c: [1, x]}}");
   CHECK(set("a: 1", "b.c.d", "{e: 3}") == "{a: 1, b: {c: {d: {e: 3}}}}");
@@ -150,7 +150,7 @@ TEST_CASE("a path sets a value in maps and lists, making what is not there") {
   CHECK(set("refiner: loop", "refiner.corner_angle", "30") == "{refiner: {type: loop, corner_angle: 30}}");
 }
 
-TEST_CASE("a path that leads nowhere is told") {
+TEST_CASE("a path that does not exist is reported") {
   CHECK(set("a: 1", "a..b", "2") == "--set a..b: the path has an empty name");
   CHECK(set("a: 1", "", "2") == "--set : the path has an empty name");
   CHECK(set("list: [x]", "list.1", "2") ==
@@ -161,12 +161,12 @@ TEST_CASE("a path that leads nowhere is told") {
   CHECK(set("a: 1", "a", "[1") == "--set a:1:1: not valid YAML: end of sequence flow not found");
 }
 
-TEST_CASE("what a path sets bears the path as its place") {
+TEST_CASE("a value that a path sets has the path as its location") {
   ConfigNode node = parsed("a: 1");
   ConfigErrors errors;
   REQUIRE(set_path(node, "b.c", "{d: [5]}", errors));
   const ConfigNode& c = *node.find("b")->find("c");
   CHECK(c.find("d")->items[0].where.text() == "--set b.c");
-  CHECK(c.key_places[0].text() == "--set b.c");
-  CHECK(node.key_places[1].text() == "--set b.c");
+  CHECK(c.key_locations[0].text() == "--set b.c");
+  CHECK(node.key_locations[1].text() == "--set b.c");
 }

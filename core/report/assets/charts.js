@@ -1,6 +1,6 @@
 'use strict';
-// What the pages of one run and of many runs share: colours, axes, plots that follow the theme, and the data of
-// every plot and table as files.
+// Shared by the pages of one run and of several runs: colours, axes, plots that follow the theme, and export of
+// plots and tables.
 const drape = (() => {
   const data = JSON.parse(document.getElementById('data').textContent);
   const charts = new Map();
@@ -9,12 +9,12 @@ const drape = (() => {
     ? value.toExponential(2).replace('e+', 'e') : String(Number(value.toPrecision(3)));
   const superscript = n => String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
 
-  // What errors are measured in and against, and what they cost, as errors.csv has them.
+  // Measures, targets and costs of errors, as in errors.csv.
   const measures = {rms: 'distance, RMS [diagonals]', hausdorff: 'Hausdorff distance [diagonals]',
     d_H_fit: 'difference in mean curvature, d_H_fit', silhouette_mismatch: 'silhouettes, 1 − overlap',
     energy_gap: 'energy above the target, relative'};
   const targets = {reference: 'the reference', own: 'the method’s own finest state'};
-  const works = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
+  const costKinds = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 
   function axis(title, logarithmic) {
     const options = {
@@ -39,7 +39,7 @@ const drape = (() => {
     return options;
   }
 
-  /// Chart.js leaves the dashes out of its legend.
+  /// Chart.js has no dashes in its legend.
   function lineLabels(chart) {
     return Chart.defaults.plugins.legend.labels.generateLabels(chart)
       .filter(item => item.text && item.text !== 'tolerance')
@@ -61,7 +61,7 @@ const drape = (() => {
   const records = rows => JSON.stringify(rows.slice(1).map(row =>
     Object.fromEntries(rows[0].map((name, k) => [name, row[k] === undefined ? null : row[k]]))), null, 1);
 
-  /// Two buttons below `element`; `rows` is asked when one is pressed.
+  /// Two export buttons below `element`; `rows` is called when one is pressed.
   function offer(element, name, what, rows) {
     const note = document.createElement('p');
     note.className = 'data';
@@ -77,7 +77,7 @@ const drape = (() => {
     element.append(note);
   }
 
-  /// What a plot shows: a row a point of its lines, or a row a bar.
+  /// The data of a plot: one row per point of its lines, or per bar.
   function rowsOf(chart) {
     const sets = chart.data.datasets.filter(set => set.label);
     if (chart.config.type === 'bar') {
@@ -92,7 +92,7 @@ const drape = (() => {
       ...sets.flatMap(set => set.data.map(p => [set.label, p.x, p.y, ...extra.map(key => p[key])]))];
   }
 
-  /// Draws a plot, or draws it again; `count` is of its points.
+  /// Draws a plot, or redraws it; `count` is the number of its points.
   function show(id, config, count) {
     const canvas = document.getElementById(id);
     if (!canvas) return;
@@ -127,12 +127,12 @@ const drape = (() => {
   /// Choices above a plot, by the name of its select element; calls `draw` when one changes.
   function choices(id, draw) {
     const select = name => document.getElementById(id + '-' + name);
-    for (const [name, words] of [['measure', measures], ['target', targets], ['work', works]]) {
+    for (const [name, words] of [['measure', measures], ['target', targets], ['cost', costKinds]]) {
       if (!select(name)) continue;
       for (const [value, text] of Object.entries(words)) select(name).add(new Option(text, value));
       select(name).addEventListener('change', draw);
     }
-    return () => Object.fromEntries(['measure', 'target', 'work'].map(name => [name, select(name).value]));
+    return () => Object.fromEntries(['measure', 'target', 'cost'].map(name => [name, select(name).value]));
   }
 
   /// Calls `draw` now and whenever the theme changes; paper is light.
@@ -145,15 +145,14 @@ const drape = (() => {
     addEventListener('afterprint', () => { delete theme.theme; draw(); });
   }
 
-  /// A cell's words as a file has them: d_H_fit, no dashes for what is absent, no spaces within numbers.
+  /// A cell's text for export: d_H_fit, no dashes for absent values, no spaces within numbers.
   function wordsOf(cell) {
     const copy = cell.cloneNode(true);
     copy.querySelectorAll('sub, sup').forEach(part => part.replaceWith('_' + part.textContent));
     return copy.textContent.trim().replace(/^–$/, '').replace(/\u202f/g, '');
   }
 
-  /// A cell for every column that one spans, and those of rows above that reach down. A column of medians gives
-  /// three: the median, the lowest and the highest.
+  /// Expands spanning cells. A column of medians gives three: median, lowest and highest.
   function cellsOf(table) {
     const grid = [], spread = [];
     [...table.rows].forEach((row, r) => {
@@ -185,5 +184,5 @@ const drape = (() => {
     offer(below, 'table-' + (k + 1), 'the table: ' + title, () => cellsOf(frame.querySelector('table')));
   });
 
-  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, works};
+  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, costKinds};
 })();

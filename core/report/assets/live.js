@@ -1,5 +1,5 @@
 'use strict';
-/// The live page: asks for news four times a second, and passes on the buttons.
+/// The live page: polls for news four times a second, and sends button presses.
 (() => {
   const element = name => document.getElementById('live-' + name);
   const style = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -42,7 +42,7 @@
       : news.method ? `Running: ${news.method}, level ${news.level} of ${news.finest}.` : 'Waiting for the run.';
     element('stop').disabled = !news.method || !!news.outcome;
     element('refine').disabled = element('stop').disabled || news.level === news.finest;
-    // Before more is asked for: states that are replaced are soon forgotten.
+    // Before the next request: the server soon drops replaced states.
     if (window.drapeViewer) await window.drapeViewer.update(news);
     else window.drapeViewer = new Viewer(Object.assign(source, {document: news}));
   }
@@ -54,13 +54,13 @@
       misses = 0;
       if (response.status === 200) {
         await take(await response.json());
-        pause = last.outcome ? 0 : pause;  // at once, so that the run knows that it was heard
+        pause = last.outcome ? 0 : pause;  // at once: tells the run that its outcome was received
       } else if (last && last.outcome) {
         return;
       }
     } catch (error) {
       if (++misses > 4) {
-        if (!last || !last.outcome) element('status').textContent = 'The run no longer answers: it has ended, or was ended.';
+        if (!last || !last.outcome) element('status').textContent = 'The run no longer answers: it has finished or was stopped.';
         element('stop').disabled = element('refine').disabled = true;
         return;
       }

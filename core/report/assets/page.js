@@ -16,7 +16,7 @@
     };
   }
 
-  /// Where only one level is shown: methods by name, told apart by dashes too, as lines may coincide.
+  /// Plots of one level: methods by name, also distinguished by dashes, since lines may coincide.
   function methodStyle(series) {
     const k = data.methods.indexOf(series.method);
     return Object.assign(lineStyle(series), {label: series.method, borderWidth: 2.2,
@@ -68,18 +68,18 @@
     }, count);
   }
 
-  /// Against pseudo-time, a point a change.
+  /// Over pseudo-time, one point per increment.
   function changes(id, y, title) {
     lines(id, 'time', y, ['pseudo-time', title], false, false, data.increments,
       s => Object.assign(lineStyle(Object.assign({iteration: s.time}, s)), {pointRadius: 2.5}), false);
   }
 
-  /// Levels that build on each other go on where the last one ends; a method's colour is its own.
+  /// Levels that build on each other continue the last one's line; every method has its colour.
   function drawErrors() {
-    const {measure, target, work} = chosenError();
+    const {measure, target, cost} = chosenError();
     const series = data.errors.map(s => Object.assign({error: (s[target] || {})[measure] || []}, s));
-    lines('errors', work, 'error', [drape.works[work], drape.measures[measure]], true, false, series,
-      s => Object.assign(lineStyle(Object.assign({iteration: s[work]}, s)), {pointRadius: 2.5}));
+    lines('errors', cost, 'error', [drape.costKinds[cost], drape.measures[measure]], true, false, series,
+      s => Object.assign(lineStyle(Object.assign({iteration: s[cost]}, s)), {pointRadius: 2.5}));
   }
   const chosenError = drape.choices('error', drawErrors);
 

@@ -17,8 +17,8 @@
   ranges.addEventListener('change', drawErrors);
 
   function drawErrors() {
-    const {measure, target, work} = chosen();
-    const plot = ((data.errors || {})[work] || {})[target][measure];
+    const {measure, target, cost} = chosen();
+    const plot = ((data.errors || {})[cost] || {})[target][measure];
     const datasets = [];
     let count = 0;
     data.rows.forEach((row, r) => {
@@ -42,7 +42,7 @@
       type: 'scatter',
       data: {datasets: datasets.map(set => Object.assign({showLine: true}, set))},
       options: {
-        scales: {x: axis(drape.works[work], true), y: axis(drape.measures[measure], true)},
+        scales: {x: axis(drape.costKinds[cost], true), y: axis(drape.measures[measure], true)},
         plugins: {tooltip: drape.tooltip},
       },
     }, count);
@@ -68,24 +68,24 @@
     },
   };
 
-  const work = document.getElementById('cost-work');
-  for (const [value, text] of Object.entries(drape.works)) work.add(new Option(text, value));
-  work.addEventListener('change', drawCosts);
+  const kind = document.getElementById('cost-kind');
+  for (const [value, text] of Object.entries(drape.costKinds)) kind.add(new Option(text, value));
+  kind.addEventListener('change', drawCosts);
 
   function drawCosts() {
-    const costs = (data.costs || {})[work.value] || [];
+    const costs = (data.costs || {})[kind.value] || [];
     document.getElementById('costs').parentElement.style.height = (110 + 30 * data.rows.length) + 'px';
     show('costs', {
       type: 'bar',
       data: {
         labels: data.rows.map(row => row.title),
-        datasets: [{label: drape.works[work.value], data: costs.map(c => c && c[0]),
+        datasets: [{label: drape.costKinds[kind.value], data: costs.map(c => c && c[0]),
           ranges: costs.map(c => c && [c[1], c[2]]),
           backgroundColor: data.rows.map(row => style(row).borderColor + 'b0'), barPercentage: .8}],
       },
       options: {
         indexAxis: 'y',
-        scales: {x: Object.assign(axis(drape.works[work.value], false), {beginAtZero: true,
+        scales: {x: Object.assign(axis(drape.costKinds[kind.value], false), {beginAtZero: true,
           suggestedMax: Math.max(...costs.filter(c => c).map(c => 1.02 * c[2]))}),
           y: {grid: {display: false}, ticks: {color: colour('--ink'), autoSkip: false}}},
         plugins: {legend: {display: false}},

@@ -1,7 +1,7 @@
 'use strict';
 /// The viewer's controls: which state of the progression is shown, in which colours, in which views.
 class Viewer {
-  /// `source` has the document and load(name), which promises a block's bytes.
+  /// `source` has the document and load(name), a promise of a block's bytes.
   constructor(source) {
     this.source = source;
     this.blocks = new Map();   // promises of decoded blocks, by kind and name
@@ -16,7 +16,7 @@ class Viewer {
     } catch (error) {
       this.element.stage.hidden = true;
       document.querySelectorAll('.viewer-bar, #viewer-keys').forEach(bar => { bar.hidden = true; });
-      this.say('This browser gives no WebGL, so there is no 3D view; the pictures show the same states.');
+      this.say('This browser has no WebGL: there is no 3D view. The pictures show the same states.');
       return;
     }
     this.listen();
@@ -25,7 +25,7 @@ class Viewer {
 
   say(text) { this.element.note.textContent = text; }
 
-  /// Takes a document, also while it grows; who looked at the newest state goes on to. A promise that it is shown.
+  /// Takes a document, also while it grows; a viewer of the newest state follows. Resolves once it is shown.
   update(data) {
     const following = this.stop === this.stops.length - 1;
     this.data = data;
@@ -118,7 +118,7 @@ class Viewer {
       new THREE.BufferAttribute(ViewerData.triangles(bytes, entry.triangles), 1));
   }
 
-  /// The state of a method at a stop: of that level, or of the last one it got to.
+  /// The state of a method at a stop: of that level, or of the last one that it reached.
   stateAt(method, stop) {
     const level = method.levels.filter(l => l.level <= stop.level && l.states.length).pop();
     if (!level) return null;
@@ -136,7 +136,7 @@ class Viewer {
     return {method, found, shape: {index, x, tints}};
   }
 
-  /// Shows a stop once everything for it is there; a later call overtakes.
+  /// Shows a stop once its data are loaded; a later call supersedes it.
   async show(number) {
     this.stop = Math.min(Math.max(number, 0), this.stops.length - 1);
     const stop = this.stops[this.stop], {level, stop: scrubber} = this.element;
@@ -174,7 +174,7 @@ class Viewer {
     await this.obstacles;
   }
 
-  /// Points the camera at what the cloth takes up.
+  /// Points the camera at the cloth's bounding box.
   aim(panels) {
     const lower = [Infinity, Infinity, Infinity], upper = [-Infinity, -Infinity, -Infinity];
     panels.forEach(({shape}) => shape && shape.x.forEach((v, i) => {

@@ -1,5 +1,5 @@
 'use strict';
-/// Keys, wheel and pointers on the view itself.
+/// Keys, wheel and pointers on the view.
 function listenToView(viewer, canvas) {
   const scene = viewer.scene;
   canvas.addEventListener('keydown', event => {
@@ -22,7 +22,7 @@ function listenToView(viewer, canvas) {
     scene.zoom(Math.exp(event.deltaY * (event.deltaMode ? .05 : .0015)));
   }, {passive: false});
 
-  // One pointer turns, or moves with Shift or another button than the first; two move and zoom.
+  // One pointer rotates, or pans with Shift or another button; two pan and zoom.
   const down = new Map();
   const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
   const spread = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };

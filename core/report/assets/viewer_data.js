@@ -1,5 +1,5 @@
 'use strict';
-/// Where the viewer's document and blocks come from, and what the blocks hold (docs/viewer.md).
+/// Sources of the viewer's document and blocks, and the blocks' formats (docs/viewer.md).
 const ViewerData = (() => {
   function bytesOfBase64(text) {
     const binary = atob(text), bytes = new Uint8Array(binary.length);
@@ -7,7 +7,7 @@ const ViewerData = (() => {
     return bytes;
   }
 
-  /// The blocks of this page; each is unpacked when it is first asked for.
+  /// The blocks of this page; each is unpacked at its first use.
   function embedded() {
     return {
       document: JSON.parse(document.getElementById('viewer-data').textContent),
@@ -75,7 +75,7 @@ const ViewerColours = (() => {
   const maps = {
     diverging: rgb('#053061 #2166ab #4393c3 #92c5de #f7f7f7 #f4a582 #d64d4d #b2182b #67001f'),
     sequential: rgb(viridis),
-    near: rgb(viridis).reverse(),  // what nearly touches is brightest
+    near: rgb(viridis).reverse(),  // small gaps are brightest
   };
   const none = {diverging: [140, 140, 140], sequential: [140, 140, 140], near: [204, 194, 178]};
 
@@ -85,7 +85,7 @@ const ViewerColours = (() => {
     return table[cell].map((c, k) => c + (table[cell + 1][k] - c) * share);
   }
 
-  /// Three bytes a vertex of a block of scalars, on the scale of a field of the document.
+  /// Three bytes per vertex of a block of scalars, on the scale of a field of the document.
   function paint(block, field) {
     const table = new Uint8Array(256 * 3);
     for (let s = 0; s < 255; ++s) {

@@ -1,7 +1,7 @@
 'use strict';
-/// The drawing: one WebGL context, a view a method side by side, one camera for all of them.
+/// The drawing: one WebGL context, one view per method side by side, with one camera.
 class ViewerScene {
-  /// Throws where there is no WebGL.
+  /// Throws without WebGL.
   constructor(canvas, labels) {
     const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: true}), null);
     if (!context) throw new Error('no WebGL');
@@ -20,7 +20,7 @@ class ViewerScene {
     canvas.addEventListener('webglcontextrestored', () => this.draw());
   }
 
-  /// Light comes from above the viewer's left shoulder, so that both sides of the cloth are readable from anywhere.
+  /// Light comes from above the viewer's left shoulder: both sides of the cloth are lit from every direction.
   static material(painted) {
     return new THREE.ShaderMaterial({
       side: THREE.DoubleSide,
@@ -75,7 +75,7 @@ class ViewerScene {
     return geometry;
   }
 
-  /// How many views there are, and what stands in all of them.
+  /// Sets the number of views and their obstacles.
   setViews(count) {
     while (this.views.length < count) {
       const view = {scene: new THREE.Scene(), mesh: null};
@@ -95,7 +95,7 @@ class ViewerScene {
     return mesh;
   }
 
-  /// Shows a state in a view; null empties it. `tints` is three bytes a vertex, or null for plain cloth.
+  /// Shows a state in a view; null empties it. `tints` is three bytes per vertex, or null for plain cloth.
   setCloth(k, shape) {
     const view = this.views[k];
     if (view.mesh && (!shape || view.mesh.userData.x !== shape.x)) {
@@ -114,7 +114,7 @@ class ViewerScene {
     view.mesh.material = shape.tints ? this.painted : this.cloth;
   }
 
-  /// Three quarters from above, as the pictures, from where a ball of that radius fills a view.
+  /// Three quarters from above, as the pictures, at a distance where a ball of that radius fills the view.
   lookAt(centre, radius) {
     this.home = {target: centre.slice(), radius};
     this.resetView();
@@ -134,7 +134,7 @@ class ViewerScene {
     this.view.distance = Math.min(Math.max(this.view.distance * factor, .05 * r), 40 * r);
     this.draw();
   }
-  /// In heights of a view.
+  /// In units of a view's height.
   move(right, up) {
     const {azimuth: a, elevation: e, distance} = this.view, size = 2 * distance * Math.tan(14 * Math.PI / 180);
     const across = [-Math.sin(a), Math.cos(a), 0];
@@ -158,7 +158,7 @@ class ViewerScene {
     this.draw();
   }
 
-  /// Once a frame, however often it is asked for.
+  /// Once per frame, however often it is requested.
   draw() {
     if (this.waiting) return;
     this.waiting = true;

@@ -122,14 +122,14 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
   d.add("count", &P::count)
       .at_least(0)
       .at_most(8)
-      .meaning(
+      .description(
           "number of cages: level l of the cloth collides with cage l, finer levels with the obstacle "
           "itself");
   d.add("alpha", &P::alpha)
       .unit("1")
       .at_least(5e-3)
       .below(1)
-      .meaning(
+      .description(
           "of the innermost cage's alpha wrap, over the diagonal of the mesh's bounding box: size of the "
           "holes that are closed, and of triangles")
       .source("Portaneri et al. 2022");
@@ -137,13 +137,13 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .unit("1")
       .at_least(1e-4)
       .below(1)
-      .meaning("offset of the innermost cage from the mesh, over the same diagonal")
+      .description("offset of the innermost cage from the mesh, over the same diagonal")
       .source("Portaneri et al. 2022");
   d.add("growth", &P::growth)
       .unit("1")
       .at_least(1)
       .at_most(10)
-      .meaning("ratio of a cage's alpha and offset to those of the next finer one");
+      .description("ratio of a cage's alpha and offset to those of the next finer one");
 }
 
 std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inner) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "core/mesh/message_text.h"
-#include "core/mesh/turn.h"
+#include "core/mesh/rotation.h"
 #include "core/plugin/bounds.h"
 
 namespace drape::ipc {
@@ -63,58 +63,61 @@ ObstacleGeometry geometry_of(const ObstacleParameters& p) {
 
 void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
-  d.add("name", &P::name).meaning("name in messages; by default its shape and index");
+  d.add("name", &P::name).description("name in messages; by default its shape and index");
   d.add("shape", &P::shape)
       .choices({"file", "box", "sphere"})
-      .meaning("a mesh from a file, a box centred at the origin, or an icosphere centred at the origin");
-  d.add("file", &P::file).path().meaning("shape file: the mesh (.obj, .off or .ply), relative to this file");
+      .description("a mesh from a file, a box centred at the origin, or an icosphere centred at the origin");
+  d.add("file", &P::file)
+      .path()
+      .description("shape file: the mesh (.obj, .off or .ply), relative to this file");
   d.add("size", &P::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape box: edge lengths");
+      .description("shape box: edge lengths");
   d.add("radius", &P::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("shape sphere: radius");
+      .description("shape sphere: radius");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
-      .meaning("shape sphere: subdivisions of the icosahedron; it has 20 · 4^subdivisions triangles");
+      .description("shape sphere: subdivisions of the icosahedron; it has 20 · 4^subdivisions triangles");
   d.add("animation", &P::animation)
       .path()
-      .meaning("instead of file: the frames of an animation, meshes with the same triangles");
+      .description("instead of file: the frames of an animation, meshes with the same triangles");
   d.add("frame", &P::frame)
       .unit("1")
       .at_least(0)
       .at_most(1e6)
-      .meaning("frame of the animation, from 0, interpolated linearly; for a schedule to change");
+      .description(
+          "frame of the animation, from 0, interpolated linearly; for a schedule to change");
   d.add_section("cages", &P::cages)
-      .meaning("closed surfaces around the obstacle that replace it on coarse levels");
+      .description("closed surfaces around the obstacle that replace it on coarse levels");
   d.add("scale", &P::scale)
       .unit("1")
       .at_least(1 / bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .meaning("scale factor, applied first");
+      .description("scale factor, applied first");
   d.add("rotate", &P::rotate)
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("rotation about the x, then y, then z axis, applied second");
+      .description("rotation about the x, then y, then z axis, applied second");
   d.add("translate", &P::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("translation, applied last");
+      .description("translation, applied last");
   d.add("friction", &P::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("its friction coefficient μ; null: the model's");
+      .description("its friction coefficient μ; null: the model's");
 }
 
-Eigen::Matrix3d Pose::linear() const { return scale * turned(rotate); }
+Eigen::Matrix3d Pose::linear() const { return scale * rotation_matrix(rotate); }
 
 Positions ObstacleGeometry::local_positions(double frame) const {
   const int last = static_cast<int>(frames.size()) - 1;

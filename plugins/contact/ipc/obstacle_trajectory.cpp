@@ -6,8 +6,8 @@
 
 #include "core/contact/nonlinear_ccd.h"
 #include "core/contact/pair_geometry.h"
+#include "core/mesh/rotation.h"
 #include "core/mesh/same_triangles.h"
-#include "core/mesh/turn.h"
 #include "core/numerics/parallel.h"
 
 namespace drape::ipc {
@@ -190,7 +190,7 @@ TrajectorySegment ObstacleTrajectory::segment(double begin, double end) const {
     const ObstacleGeometry &from = before_.bodies[i].geometry, &to = after_.bodies[i].geometry;
     body.begin = interpolate(from.pose, to.pose, begin);
     body.end = interpolate(from.pose, to.pose, end);
-    body.rotation = turned(body.begin.rotate);
+    body.rotation = rotation_matrix(body.begin.rotate);
     const auto local_at = [&](double t) {
       if (from.frames == to.frames && from.local_scale == to.local_scale)
         return from.local_positions(interpolate<double>(from.frame, to.frame, t));

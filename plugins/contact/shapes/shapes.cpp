@@ -51,73 +51,77 @@ std::string to_string(SolidKind kind) {
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
-  d.add("name", &ShapeParameters::name).meaning("name in messages; empty: its index").source("this project");
+  d.add("name", &ShapeParameters::name).description("name in messages; empty: its index").source("this project");
   d.add_choice("shape", &ShapeParameters::shape, kind_names)
       .required()
-      .meaning("capsule: all points within radius of a segment; half_space: all points behind a plane")
+      .description("capsule: all points within radius of a segment; half_space: all points behind a plane")
       .source("this project");
   d.add("centre", &ShapeParameters::centre)
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
-      .meaning("centre; of a half_space any point of its plane")
+      .description("centre; of a half_space any point of its plane")
       .source("this project");
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("radius of a sphere, capsule or cylinder")
+      .description("radius of a sphere, capsule or cylinder")
       .source("this project");
   d.add("size", &ShapeParameters::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("edge lengths of a box")
+      .description("edge lengths of a box")
       .source("this project");
   d.add("height", &ShapeParameters::height)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .meaning("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
+      .description(
+          "length along the local z axis of a cylinder, or of a capsule without its hemispheres")
       .source("this project");
   d.add("rotate", &ShapeParameters::rotate)
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
-      .meaning("rotation about the x, then y, then z axis")
+      .description("rotation about the x, then y, then z axis")
       .source("this project");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
-      .meaning("outward normal of a half_space, of any length")
+      .description("outward normal of a half_space, of any length")
       .source("this project");
   d.add("friction", &ShapeParameters::friction)
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("friction coefficient μ; null: the model's")
+      .description("friction coefficient μ; null: the model's")
       .source("Li et al. 2020, section 5");
 }
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
-  d.add_sections("shapes", &Parameters::shapes).required().meaning("the obstacles").source("this project");
+  d.add_sections("shapes", &Parameters::shapes)
+      .required()
+      .description("the obstacles")
+      .source("this project");
   d.add("friction", &Parameters::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
-      .meaning("Coulomb's friction coefficient μ")
+      .description("Coulomb's friction coefficient μ")
       .source("Li et al. 2020, section 5");
   d.add("dhat", &Parameters::dhat)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(1e3)
-      .meaning("barrier activation distance d̂: the barrier acts on smaller gaps")
+      .description("barrier activation distance d̂: the barrier acts on smaller gaps")
       .formerly("range")
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Parameters::stiffness)
       .unit("Pa")
       .at_least(1e-9)
       .at_most(bounds::largest_modulus)
-      .meaning(
+      .description(
           "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
           "weight per area")
       .source("this project");
@@ -125,14 +129,14 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
       .unit("m")
       .at_least(1e-12)
       .at_most(1e3)
-      .meaning("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
+      .description("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
       .formerly("slip_distance")
       .source("Li et al. 2020, eq. 14");
   d.add("min_gap_fraction", &Parameters::min_gap_fraction)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
-      .meaning("fraction of every gap that a step must leave: s of additive CCD")
+      .description("fraction of every gap that a step must leave: s of additive CCD")
       .formerly("keep")
       .source("Li et al. 2021");
 }

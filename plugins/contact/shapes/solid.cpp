@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/mesh/turn.h"
+#include "core/mesh/rotation.h"
 
 namespace drape::shapes {
 
@@ -98,7 +98,7 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
 void Solid::update_axes() {
   axes = kind == SolidKind::half_space
              ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), plane).toRotationMatrix()
-             : turned(rotate);
+             : rotation_matrix(rotate);
 }
 
 Nearest Solid::nearest(const Vector3d& p) const {

@@ -21,14 +21,14 @@ class ConstantLoad final : public Energy {
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
           .required()
-          .meaning("point in the rest shape; the nearest vertex receives the force")
+          .description("point in the rest shape; the nearest vertex receives the force")
           .source("this project");
       d.add("force", &PointForce::force)
           .unit("N")
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .meaning("total force")
+          .description("total force")
           .source("this project");
     }
   };
@@ -41,10 +41,10 @@ class ConstantLoad final : public Energy {
           .unit("N/m²")
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
-          .meaning("force per rest area on the whole cloth")
+          .description("force per rest area on the whole cloth")
           .source("this project");
       d.add_sections("points", &Parameters::points)
-          .meaning("forces on single vertices")
+          .description("forces on single vertices")
           .source("this project");
     }
   };

@@ -15,7 +15,7 @@ class Gravity final : public Energy {
           .unit("m/s²")
           .at_least(-1e7)
           .at_most(1e7)
-          .meaning("acceleration of free fall")
+          .description("acceleration of free fall")
           .source("standard gravity, rounded; z is up");
     }
   };

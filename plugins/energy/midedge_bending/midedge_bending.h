@@ -16,7 +16,7 @@ class MidedgeBending final : public Energy {
       d.add("correction_tolerance", &Parameters::correction_tolerance)
           .at_least(0)
           .at_most(1)
-          .meaning(
+          .description(
               "smallest weight with which a neighbouring dihedral angle corrects an edge's normal, where "
               "the triangles about the edge differ; with 1 normals are plain averages of the triangles'")
           .source("this project");

@@ -19,13 +19,14 @@ class Pressure final : public Energy {
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .meaning("pressure along the normal of every triangle; negative for suction")
+          .description(
+              "pressure along the normal of every triangle; negative for suction")
           .source("this project");
       d.add("centre", &Parameters::centre)
           .unit("m")
           .at_least(-bounds::largest_coordinate)
           .at_most(bounds::largest_coordinate)
-          .meaning(
+          .description(
               "apex of the cone that closes an open cloth; it has no effect on a pinned border or a closed "
               "mesh")
           .source("this project");

@@ -18,13 +18,13 @@ class StrainLimit final : public Energy {
           .unit("1")
           .at_least(1.0001)
           .at_most(100)
-          .meaning("largest principal stretch s of every triangle, never reached")
+          .description("largest principal stretch s of every triangle, never reached")
           .source("our default; cotton 1.0608 and wool-lycra 1.134: Li et al. 2021");
       d.add("stiffness", &Parameters::stiffness)
           .unit("Pa")
           .at_least(1e-9)
           .at_most(bounds::largest_modulus)
-          .meaning("κ_s, stiffness of the barrier: energy per volume")
+          .description("κ_s, stiffness of the barrier: energy per volume")
           .source("Li et al. 2021, section 5");
     }
   };

@@ -12,7 +12,7 @@ void CurvatureConsistency::Parameters::declare(Declaration<Parameters>& d) {
   d.add("rings", &Parameters::rings)
       .at_least(1)
       .at_most(50)
-      .meaning("how many edges away from a vertex the quadric fit of its curvature reaches")
+      .description("how many edges away from a vertex the quadric fit of its curvature reaches")
       .source("Panozzo et al. 2010; libigl's default is 5");
 }
 

@@ -18,7 +18,7 @@ class Residuals : public Metric {
           .unit("s")
           .at_least(bounds::smallest_time_step)
           .at_most(bounds::largest_time_step)
-          .meaning("h of the implicit step whose Newton direction the decrement measures")
+          .description("h of the implicit step whose Newton direction the decrement measures")
           .source("Li et al. 2021 (C-IPC)");
     }
   };

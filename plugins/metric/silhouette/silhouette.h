@@ -17,7 +17,7 @@ class Silhouette : public Metric {
       d.add("resolution", &Parameters::resolution)
           .at_least(16)
           .at_most(4096)
-          .meaning("pixels along the diagonal of the rest shape");
+          .description("pixels along the diagonal of the rest shape");
     }
   };
 

@@ -25,7 +25,7 @@ class LoopRefiner : public Refiner {
           .unit("degree")
           .at_least(0)
           .at_most(360)
-          .meaning(
+          .description(
               "border vertices whose interior rest angle differs from 180 degrees by more than this are "
               "corners and are interpolated; others are smoothed")
           .source("docs/method.md, section 4");

@@ -14,9 +14,9 @@ class CascadicSolver : public ResumableSolver {
     static void declare(Declaration<Parameters>& d) {
       d.add_choice("prolongation", &Parameters::prolongation,
                    {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
-          .meaning("prolongs a level's state: by edge midpoints, or by the experiment's refiner")
+          .description("prolongs a level's state: by edge midpoints, or by the experiment's refiner")
           .source("docs/method.md section 3");
-      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+      d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}

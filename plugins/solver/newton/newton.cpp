@@ -11,7 +11,7 @@ class NewtonSolver : public ResumableSolver {
   struct Parameters {
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
-      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+      d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };
   explicit NewtonSolver(const Parameters& parameters) : p_(parameters) {}

@@ -26,32 +26,32 @@ class PcsSolver : public ResumableSolver {
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
       d.add_section("interpolation", &Parameters::interpolation)
-          .meaning("how a coarse level sees the fine mesh whose energy it minimises");
+          .description("how a coarse level sees the fine mesh whose energy it minimises");
       d.add("target", &Parameters::target)
           .at_least(0)
           .at_most(8)
-          .meaning(
+          .description(
               "levels from a coarse level up to the one whose energy it minimises, at most to the finest; 0 "
               "for the finest")
           .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
-          .meaning(
+          .description(
               "matrix on coarse levels: that of the plain coarse model, or the Galerkin product of the proxy")
           .source("PCS section 4.2 for coarse; galerkin is a departure");
       d.add("depth", &Parameters::depth)
           .at_least(1)
           .at_most(8)
-          .meaning(
+          .description(
               "levels up to the model whose matrix the Galerkin product restricts, for energies that are "
               "evaluated on the refiner's mesh; at most to the proxy's target");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
-          .meaning(
+          .description(
               "what a coarse level minimises after its proxy: its own plain energy, which makes folds as "
               "sharp as the level allows, or nothing")
           .source("PCS section 4 for none; plain is a departure (docs/locking.md)");
-      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solves");
+      d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}

@@ -12,17 +12,18 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
                         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
   };
   add("membrane", &ProxyInterpolation::membrane)
-      .meaning("surface on which stretching is measured: the coarse one, or the refiner's, which locks")
+      .description(
+          "surface on which stretching is measured: the coarse one, or the refiner's, which locks")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("bending", &ProxyInterpolation::bending)
-      .meaning(
+      .description(
           "surface on which bending is measured: the coarse one with folds at its edges, or the refiner's")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("external", &ProxyInterpolation::external)
-      .meaning("surface on which loads and handles act")
+      .description("surface on which loads and handles act")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("state", &ProxyInterpolation::state)
-      .meaning("prolongs a level's state to the next level")
+      .description("prolongs a level's state to the next level")
       .source("PCS section 4.3 for refiner; midpoint is a departure (docs/locking.md)");
 }
 

@@ -10,7 +10,7 @@ class FinestOnly : public drape::Solver {
     drape::NewtonParameters newton;
 
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add_section("newton", &Parameters::newton).meaning("settings of the Newton solve");
+      d.add_section("newton", &Parameters::newton).description("settings of the Newton solve");
     }
   };
 

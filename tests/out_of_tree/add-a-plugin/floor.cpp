@@ -113,12 +113,16 @@ class FloorModel : public drape::ContactModel {
     double height = 0, dhat = 1e-3;
 
     static void declare(drape::Declaration<Parameters>& d) {
-      d.add("height", &Parameters::height).unit("m").at_least(-1e3).at_most(1e3).meaning("z of the floor");
+      d.add("height", &Parameters::height)
+          .unit("m")
+          .at_least(-1e3)
+          .at_most(1e3)
+          .description("z of the floor");
       d.add("dhat", &Parameters::dhat)
           .unit("m")
           .at_least(1e-9)
           .at_most(1)
-          .meaning("d̂: the barrier acts on smaller gaps");
+          .description("d̂: the barrier acts on smaller gaps");
     }
   };
 

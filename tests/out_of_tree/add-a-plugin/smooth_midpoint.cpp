@@ -13,7 +13,7 @@ class SmoothMidpoint : public drape::Refiner {
       d.add("pull", &Parameters::pull)
           .at_least(0)
           .at_most(0.25)
-          .meaning("weight of each opposite vertex; 1/8 is Loop's");
+          .description("weight of each opposite vertex; 1/8 is Loop's");
     }
   };
 

@@ -50,12 +50,12 @@ class SpringToPlane : public drape::Energy {
           .unit("1/s²")
           .above(0)
           .at_most(1e9)
-          .meaning("k: spring constant of a unit of mass");
+          .description("k: spring constant of a unit of mass");
       d.add("height", &Parameters::height)
           .unit("m")
           .at_least(-1e3)
           .at_most(1e3)
-          .meaning("z0: height of the plane");
+          .description("z0: height of the plane");
     }
   };
 

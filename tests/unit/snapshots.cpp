@@ -1,4 +1,4 @@
-#include "core/experiment/frames.h"
+#include "core/experiment/snapshots.h"
 
 #include <catch2/catch.hpp>
 
@@ -13,20 +13,20 @@ Positions state(int iteration) { return Positions::Constant(4, 3, iteration / 3.
 
 /// The iterations that are kept of so many.
 std::vector<int> kept(int most, int iterations) {
-  Frames frames(most);
-  frames.begin_level();
-  for (int k = 1; k <= iterations; ++k) frames.iteration({0.1 * k, k, 5.0 * k}, state(k));
+  SnapshotRecorder snapshots(most);
+  snapshots.begin_level();
+  for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, state(k));
   std::vector<int> of;
-  for (const Frame& frame : frames.end_level({0.1 * iterations, iterations, 0}, state(iterations))) {
-    CHECK((frame.x - state(frame.work.iterations)).norm() == 0);
-    of.push_back(frame.work.iterations);
+  for (const Snapshot& snapshot : snapshots.end_level({0.1 * iterations, iterations, 0}, state(iterations))) {
+    CHECK((snapshot.x - state(snapshot.cost.iterations)).norm() == 0);
+    of.push_back(snapshot.cost.iterations);
   }
   return of;
 }
 
 }  // namespace
 
-TEST_CASE("frames are spread evenly, never more than asked for, the last state among them") {
+TEST_CASE("snapshots are spread evenly, never more than asked for, the last state among them") {
   CHECK(kept(8, 0) == std::vector{0});
   CHECK(kept(8, 1) == std::vector{1});
   CHECK(kept(8, 5) == std::vector{1, 2, 3, 4, 5});
@@ -43,14 +43,15 @@ TEST_CASE("frames are spread evenly, never more than asked for, the last state a
     }
 }
 
-TEST_CASE("a frames file reads back in single precision; one cut short is refused") {
+TEST_CASE("a snapshots file reads back in single precision; one cut short is refused") {
   const Scratch folder;
-  write_frames(folder / "f.bin", {{{}, state(1)}, {{}, state(2)}});
+  write_snapshots(folder / "f.bin", {{{}, state(1)}, {{}, state(2)}});
   CHECK(std::filesystem::file_size(folder / "f.bin") == 2 * 4 * 3 * 4);
-  const std::vector<Positions> read = read_frames(folder / "f.bin", 4);
+  const std::vector<Positions> read = read_snapshots(folder / "f.bin", 4);
   REQUIRE(read.size() == 2);
   CHECK((read[0] - state(1)).norm() < 1e-6);
   CHECK((read[1] - state(2)).norm() < 1e-6);
-  CHECK_THROWS_WITH(read_frames(folder / "f.bin", 5),
-                    Catch::Matchers::EndsWith("f.bin: not made of frames of 5 vertices; is it cut short?"));
+  CHECK_THROWS_WITH(
+      read_snapshots(folder / "f.bin", 5),
+      Catch::Matchers::EndsWith("f.bin: not made of snapshots of 5 vertices; is it cut short?"));
 }

@@ -4,8 +4,8 @@
 
 namespace drape {
 
-/// The rotation about the x, then the y, then the z axis by these angles [degree].
-inline Eigen::Matrix3d turned(const Eigen::Vector3d& degrees) {
+/// The 3×3 matrix of the rotation about the x, then the y, then the z axis by these angles [degree].
+inline Eigen::Matrix3d rotation_matrix(const Eigen::Vector3d& degrees) {
   const Eigen::Vector3d angle = degrees * (M_PI / 180);
   return (Eigen::AngleAxisd(angle.z(), Eigen::Vector3d::UnitZ()) *
           Eigen::AngleAxisd(angle.y(), Eigen::Vector3d::UnitY()) *

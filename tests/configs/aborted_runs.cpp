@@ -38,7 +38,7 @@ std::vector<Json> events(const Scratch& folder, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("What a method throws is its outcome, with level and cause, and the others run") {
+TEST_CASE("A method that throws has failed, with level and cause, and the others run") {
   const std::pair<std::string, std::string> causes[] = {
       {"error", "the test's method fails"},
       {"memory", "memory does not suffice; take fewer vertices or levels, or a smaller file"},
@@ -109,15 +109,15 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   }
 }
 
-TEST_CASE("A folder that is deleted meanwhile ends the run with its own code, and stays deleted") {
+TEST_CASE("A folder that is deleted during a run aborts it with its own code, and stays deleted") {
   for (const char* gone : {"out", "out/levels"}) {
     INFO(gone);
     const Scratch folder;
     write_experiment(folder, "{type: failing, level: 1, command: rm -r " + std::string(gone) + "}");
     const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path, with_failing);
-    CHECK(ended.exit_code == drape::exit_broken_off);
+    CHECK(ended.exit_code == drape::exit_aborted);
     CHECK_THAT(ended.err, StartsWith("error: cannot write out/levels/odd_l1.ply: No such file or directory"));
-    CHECK_THAT(ended.err, Contains("; the run is broken off. "));
+    CHECK_THAT(ended.err, Contains("; the run is aborted. "));
     CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
     if (gone == std::string("out")) {
       CHECK_FALSE(fs::exists(folder / "out"));
@@ -125,23 +125,23 @@ TEST_CASE("A folder that is deleted meanwhile ends the run with its own code, an
     }
     const Json all = results_in(folder);
     CHECK(all["complete"] == false);
-    CHECK_THAT(all["broken_off"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
-    CHECK(all["methods"]["odd"]["status"] == "broken_off");
-    CHECK(events(folder, "run_broken_off").size() == 1);
+    CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
+    CHECK(all["methods"]["odd"]["status"] == "aborted");
+    CHECK(events(folder, "run_aborted").size() == 1);
     CHECK(drape_with("report out", folder.path).exit_code == drape::exit_done);
-    CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was broken off (cannot write "));
+    CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was aborted (cannot write "));
     const Ended on = drape_with("run --resume out --quiet --no-report", folder.path,
                                 with_failing);  // which fails at the same
-    CHECK(on.exit_code == drape::exit_broken_off);
+    CHECK(on.exit_code == drape::exit_aborted);
   }
 }
 
-TEST_CASE("A disk that is full ends the run with its own code; once there is room it goes on") {
+TEST_CASE("A full disk aborts the run with its own code; once there is room it can be resumed") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string arguments =
       " run e.yaml --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
-      "--set newton.max_steps=3 --set frames=0 --out ";
+      "--set newton.max_steps=3 --set snapshots=0 --out ";
   REQUIRE(drape_with(arguments + "whole", folder.path).exit_code == drape::exit_not_converged);
   // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
   // what has the whole state in it.
@@ -153,13 +153,13 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
         .wait();
   };
   const Ended ended = limited(largest + 2048, arguments + "out");
-  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK(ended.exit_code == drape::exit_aborted);
   CHECK_THAT(ended.err, StartsWith("error: cannot write out/") && Contains("File too large") &&
-                            Contains("go on with drape run --resume out"));
+                            Contains("resume it with drape run --resume out"));
   const Json all = results_in(folder);
   CHECK(all["complete"] == false);
-  CHECK_THAT(all["broken_off"].get<std::string>(), Contains("File too large"));
-  CHECK(all["methods"]["pcs"]["status"] == "broken_off");
+  CHECK_THAT(all["aborted"].get<std::string>(), Contains("File too large"));
+  CHECK(all["methods"]["pcs"]["status"] == "aborted");
   CHECK(all["methods"].size() == 1);  // the others could not be written either
   for (const auto& entry : fs::recursive_directory_iterator(folder / "out"))
     CHECK(entry.path().extension() != ".part");
@@ -167,29 +167,29 @@ TEST_CASE("A disk that is full ends the run with its own code; once there is roo
   const Ended on = drape_with("run --resume out --quiet --no-report --threads 1", folder.path);
   CHECK(on.err == "");
   CHECK(on.exit_code == drape::exit_not_converged);
-  CHECK_FALSE(results_in(folder).contains("broken_off"));
+  CHECK_FALSE(results_in(folder).contains("aborted"));
   for (const char* mesh : {"levels/pcs_l1.ply", "levels/newton_l1.ply"})
     CHECK((text_of(folder / "out" / mesh) == text_of(folder / "whole" / mesh)));
 
   // Before the first method, and where the rows of steps.csv no longer fit.
-  CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_broken_off);
+  CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_aborted);
   const Ended rows =
       limited(16 * 512,
-              " run e.yaml --quiet --no-report --method newton --levels 1 --set frames=0 "
+              " run e.yaml --quiet --no-report --method newton --levels 1 --set snapshots=0 "
               "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
-  CHECK(rows.exit_code == drape::exit_broken_off);
+  CHECK(rows.exit_code == drape::exit_aborted);
   CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
 }
 
-TEST_CASE("Standard output that cannot be written to is no success") {
+TEST_CASE("A failed write to standard output is an error") {
   if (!fs::exists("/dev/full")) return;
   const Scratch folder;
   const Ended ended = Command("exec " + drape_command + " list > /dev/full", folder.path).wait();
-  CHECK(ended.exit_code == drape::exit_broken_off);
+  CHECK(ended.exit_code == drape::exit_aborted);
   CHECK(ended.err == "error: standard output cannot be written to\n");
 }
 
-TEST_CASE("Names that the file system does not take are refused before anything is written") {
+TEST_CASE("Names that the file system does not allow are refused before the first write") {
   const Scratch folder;
   const std::string longest(200, 'm'), too_long(201, 'm');
   const auto refused = [&](const std::string& line, const std::string& expected) {
@@ -219,6 +219,6 @@ TEST_CASE("The exit codes are in every help") {
     INFO(help);
     const Ended ended = drape_with(help, folder.path);
     CHECK(ended.exit_code == drape::exit_done);
-    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.meaning));
+    for (const drape::ExitCode& code : drape::exit_codes) CHECK_THAT(ended.out, Contains(code.description));
   }
 }

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "core/experiment/checkpoint_manager.h"
 #include "core/experiment/runner.h"
-#include "core/experiment/session.h"
 #include "core/mesh/generate.h"
 #include "core/mesh/io.h"
 #include "tests/support/command.h"
@@ -73,7 +73,7 @@ std::string without_column(const std::string& text, const std::string& name) {
 /// All that two equal runs have in common, by file.
 std::map<std::string, std::string> outcome_of(const fs::path& folder) {
   std::map<std::string, std::string> all;
-  for (const char* part : {"levels", "frames", "fields"})
+  for (const char* part : {"levels", "snapshots", "fields"})
     if (fs::exists(folder / part))
       for (const auto& entry : fs::directory_iterator(folder / part))
         all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
@@ -150,20 +150,20 @@ int check_in_parts(const Experiment& experiment, const fs::path& folder, int* re
 
 }  // namespace
 
-TEST_CASE("A run that is stopped at every step and goes on has the bits of one that is not") {
+TEST_CASE("A run that is stopped at every step and resumed equals an uninterrupted one, bit for bit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Overrides short_levels = {{"levels", "3"}, {"newton.max_steps", "8"}};
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", short_levels), folder.path) > 60);
 }
 
-TEST_CASE("So has one with self-contact, obstacles, friction and a strain limit") {
+TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit") {
   const Scratch folder;
   write_sheets(folder);
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", some_steps()), folder.path) > 60);
 }
 
-TEST_CASE("So has one whose iterations share a matrix, and one of several of them a step") {
+TEST_CASE("So does one whose iterations share a matrix, and one with several of them per step") {
   for (const char* iterations : {"1", "2"}) {
     const Scratch folder;
     write_sheets(folder);
@@ -174,7 +174,7 @@ TEST_CASE("So has one whose iterations share a matrix, and one of several of the
 }
 
 TEST_CASE(
-    "So has one of PCS whose levels relax, into a matrix of the same pattern, of another, with contact") {
+    "So does one of PCS whose levels relax, into a matrix of the same pattern, of another, with contact") {
   const fs::path data = fs::path(folders::source()) / "tests/configs/data";
   const std::string interpolation = "interpolation: {membrane: refiner, bending: refiner, external: refiner}";
   const Overrides small = {
@@ -195,7 +195,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("So has one of the static form, with the full projection") {
+TEST_CASE("So does one of the static form, with full projection") {
   const Scratch folder;
   write_sheets(folder);
   const Overrides statics =
@@ -203,33 +203,33 @@ TEST_CASE("So has one of the static form, with the full projection") {
   CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
 }
 
-TEST_CASE("So has one under load stepping, with a Dirichlet penalty and moving obstacles") {
+TEST_CASE("So does one under load stepping, with a Dirichlet penalty and moving obstacles") {
   // The ball rises into the sheets, which are held at two corners, one of which is moved, and become softer.
   const std::string schedule = R"(
 pins:
-  - {region: vertices, vertices: [0], move: [-0.2, -0.2, 0.1015]}
-  - {region: vertices, vertices: [35], move: [-0.2, -0.2, 0.1015]}
+  - {region: vertices, vertices: [0], translate: [-0.2, -0.2, 0.1015]}
+  - {region: vertices, vertices: [35], translate: [-0.2, -0.2, 0.1015]}
 schedule:
   steps: 6
   keys:
-    - {set: material.bending_modulus, at: [0, 0.5], to: [8e4, 8e3], between: log}
-    - {set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.03]]}
-    - set: pins.1.move
-      at: [0, 0.5, 1]
-      to: [[-0.2, -0.2, 0.1015], [-0.25, -0.2, 0], [-0.2, -0.2, 0.1015]]
-    - {set: energies.strain_limit.limit, at: [0, 1], to: [1.06, 1.04]}
+    - {parameter: material.bending_modulus, times: [0, 0.5], values: [8e4, 8e3], interpolation: log}
+    - {parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.03]]}
+    - parameter: pins.1.translate
+      times: [0, 0.5, 1]
+      values: [[-0.2, -0.2, 0.1015], [-0.25, -0.2, 0], [-0.2, -0.2, 0.1015]]
+    - {parameter: energies.strain_limit.limit, times: [0, 1], values: [1.06, 1.04]}
 )";
-  for (const char* settle : {"false", "true"}) {
+  for (const char* equilibrate : {"false", "true"}) {
     const Scratch folder;
     write_sheets(folder);
     folder.write("e.yaml", text_of(folder / "e.yaml") + schedule);
-    const Overrides some =
-        some_steps({{"schedule.settle", settle}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
+    const Overrides some = some_steps(
+        {{"schedule.equilibrate", equilibrate}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
     CHECK(check_in_parts(experiment_in(folder / "e.yaml", some), folder.path) > 40);
   }
 }
 
-TEST_CASE("So has one whose cloth is taken along by an obstacle") {
+TEST_CASE("So does one whose cloth is advected by an obstacle") {
   const Scratch folder;
   folder.write("e.yaml", R"(name: lifted
 cloth: {shape: square, side: 0.4, columns: 8, rows: 8}
@@ -238,7 +238,7 @@ start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
 energies: [neo_hookean, hinge, gravity]
 contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
   {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
-schedule: {steps: 2, settle: true, keys: [{set: contact.1.shapes.0.centre, at: [0, 1], to: [[0, 0, 0], [0, 0, 0.05]]}]}
+schedule: {steps: 2, equilibrate: true, keys: [{parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.05]]}]}
 newton: {force_tolerance: 1e-2}
 methods: {pcs: {}}
 )");
@@ -247,7 +247,7 @@ methods: {pcs: {}}
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
 }
 
-TEST_CASE("So has one under load stepping with a level that starts from the scene's start") {
+TEST_CASE("So does one under load stepping with a level that starts from the initial state") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;
@@ -271,12 +271,12 @@ TEST_CASE("So has one under load stepping with a level that starts from the scen
                replaced(text_of(fs::path(folders::source()) / "configs/hard/drape.yaml"),
                         "{shape: square, side: 1, columns: 16, rows: 16}", "{shape: file, file: fan.obj}") +
                    R"(
-schedule: {steps: 3, keys: [{set: energies.gravity.acceleration, at: [0, 1], to: [[0, 0, -9.81], [1, 0, -9.81]]}]}
+schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [1, 0, -9.81]]}]}
 )");
   const Experiment experiment = experiment_in(folder / "e.yaml", {{"start.translate", "[-0.5, -0.3, 0.32]"},
                                                                   {"start.perturbation", "1e-6"},
                                                                   {"methods", "{cascadic: {}}"},
-                                                                  {"frames", "2"},
+                                                                  {"snapshots", "2"},
                                                                   {"newton.max_steps", "60"}});
   CHECK(check_in_parts(experiment, folder.path) > 15);
   const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
@@ -324,7 +324,7 @@ std::string refused_by(const std::string& arguments, const Scratch& folder) {
 
 }  // namespace
 
-TEST_CASE("Killed at twenty random moments, a run goes on every time and ends with the same bits") {
+TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
   const Scratch folder;
   write_sheets(folder);
   const Stopwatch watch;
@@ -359,11 +359,11 @@ TEST_CASE("Killed at twenty random moments, a run goes on every time and ends wi
   check_equal(folder / "out", folder / "whole");
   const Ended again = drape_with("run --resume out", folder.path);
   CHECK(again.exit_code == 1);  // the run's own
-  CHECK(again.out == "out: the run is complete; there is nothing to go on with\n");
+  CHECK(again.out == "out: the run is complete; there is nothing to resume\n");
   CHECK_FALSE(fs::exists(folder / "out/checkpoint/state.bin"));
 }
 
-TEST_CASE("What a run cannot go on with is refused, and said") {
+TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   const Scratch folder;
   interrupt_sheets(folder);
   const std::string before = text_of(folder / "out/results.json");
@@ -396,10 +396,10 @@ TEST_CASE("What a run cannot go on with is refused, and said") {
 
   FileLock other(folder / "out/checkpoint/lock");
   REQUIRE(other.acquire(0));
-  CHECK_THAT(refused_by("run --resume out", folder), Contains("is at this run; wait for it, or stop it"));
+  CHECK_THAT(refused_by("run --resume out", folder), Contains("uses this folder; wait for it, or stop it"));
 }
 
-TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a warning") {
+TEST_CASE("A damaged checkpoint is replaced by its predecessor, with a warning") {
   const Scratch folder;
   interrupt_sheets(folder);
   REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
@@ -410,7 +410,7 @@ TEST_CASE("From a damaged checkpoint a run goes on by the one before it, with a 
   check_equal(folder / "out", folder / "whole");
 }
 
-TEST_CASE("What is damaged or gone of an interrupted run's files is written again, to the same bits") {
+TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for bit") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Experiment experiment =
@@ -446,7 +446,7 @@ TEST_CASE("What is damaged or gone of an interrupted run's files is written agai
   const Ended ended = drape_with("run --resume out --quiet --no-report", folder.path);
   CHECK(ended.exit_code == 1);  // out of steps
   CHECK(ended.err ==
-        "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
+        "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
         "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
         "levels/newton_l0.ply, levels/pcs.pvd\n");
   for (const auto& [name, bytes] : before) {
@@ -456,28 +456,28 @@ TEST_CASE("What is damaged or gone of an interrupted run's files is written agai
   check_equal(folder / "out", folder / "whole");
 }
 
-TEST_CASE("Frames that are damaged leave their rows out of errors.csv, and cost nothing else") {
+TEST_CASE("Damaged snapshots are skipped in errors.csv, without other effects") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Experiment experiment = experiment_in(folder / "e.yaml");
   RunOptions options = silent(folder / "out");
   options.stop = [&] { return fs::exists(folder / "out/levels/cascadic_l0.ply"); };
   run_experiment(experiment, *scene_of(experiment), options);
-  std::string frames = text_of(folder / "out/frames/pcs_l0.bin");
-  frames[frames.size() / 2] ^= 1;
-  folder.write("out/frames/pcs_l0.bin", frames);
+  std::string snapshots = text_of(folder / "out/snapshots/pcs_l0.bin");
+  snapshots[snapshots.size() / 2] ^= 1;
+  folder.write("out/snapshots/pcs_l0.bin", snapshots);
   CHECK(drape_with("run --resume out --quiet --no-report", folder.path).exit_code == 0);
-  CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("frames/pcs_l0.bin: is damaged"));
+  CHECK_THAT(text_of(folder / "out/log.jsonl"), Contains("snapshots/pcs_l0.bin: is damaged"));
   const std::string errors = text_of(folder / "out/errors.csv");
   CHECK(errors.find("\npcs,0,") == std::string::npos);
   CHECK(errors.find("\npcs,1,") != std::string::npos);
 }
 
-TEST_CASE("A complete run has its own exit code when it is resumed, and its files are looked after") {
+TEST_CASE("Resuming a complete run returns its exit code and checks its files") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --quiet --no-report --method pcs --out ",
-                    said = ": the run is complete; there is nothing to go on with\n";
+                    said = ": the run is complete; there is nothing to resume\n";
   REQUIRE(drape_with(run + "good", folder.path).exit_code == 0);
   REQUIRE(drape_with(run + "poor --set newton.max_steps=2", folder.path).exit_code == 1);
   const Ended good = drape_with("run --resume good", folder.path);
@@ -492,7 +492,7 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
   fs::remove_all(folder / "good/rest");
   const Ended restored = drape_with("run --resume good", folder.path);
   CHECK(restored.exit_code == 0);
-  CHECK(restored.err == "warning: damaged or gone since, and written again: rest/l0.ply, rest/l1.ply\n");
+  CHECK(restored.err == "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply\n");
   CHECK((text_of(folder / "good/rest/l1.ply") == rest));
 
   std::string mesh = text_of(folder / "good/levels/pcs_l0.ply");
@@ -500,11 +500,12 @@ TEST_CASE("A complete run has its own exit code when it is resumed, and its file
   folder.write("good/levels/pcs_l0.ply", mesh);
   fs::remove(folder / "good/levels/pcs_l1.ply");
   CHECK(refused_by("run --resume good", folder) ==
-        "error: good: the run is complete, but damaged or gone since: levels/pcs_l0.ply, levels/pcs_l1.ply; "
-        "run the experiment anew, as in drape run good/config.yaml --out ANOTHER\n");
+        "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
+        "levels/pcs_l1.ply; "
+        "run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
 }
 
-TEST_CASE("A checkpoint whose values do not fit its experiment is refused before anything is written") {
+TEST_CASE("A checkpoint whose values do not fit its experiment is refused before the first write") {
   const Scratch folder;
   interrupt_sheets(folder);
   const Experiment experiment = experiment_in(folder / "out/config.yaml");
@@ -554,8 +555,8 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("results.json as it was", [](auto& c) { c.recorder.results = "{"; });
   refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
   refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });
-  refused("the frames", [](auto& c) { c.recorder.frames.spacing = 0; });
-  refused("the frames", [](auto& c) { c.recorder.measured = {LevelFrames()}; });
+  refused("the snapshots", [](auto& c) { c.recorder.snapshots.spacing = 0; });
+  refused("the snapshots", [](auto& c) { c.recorder.measured = {LevelSnapshots()}; });
   CHECK(text_of(folder / "out/log.jsonl") == before);
 }
 
@@ -576,7 +577,7 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   CHECK_THAT(refused_by("run --resume out", folder), Contains("box.obj"));
 }
 
-TEST_CASE("A saved state flows on under changed parameters, in a folder of its own") {
+TEST_CASE("A run warm-starts from a saved state under changed parameters, in another folder") {
   const Scratch folder;
   interrupt_sheets(folder);
   const std::string flow = "run --resume out --quiet --no-report --threads 1 --set newton.max_steps=4 ";
@@ -588,7 +589,7 @@ TEST_CASE("A saved state flows on under changed parameters, in a folder of its o
   REQUIRE(drape_with(flow + "--out last", folder.path).exit_code == 1);
   CHECK(rows("last").starts_with("pcs,1,0,0,"));  // the level under way after 12 steps of 8 a level
   const Json last = Json::parse(text_of(folder / "last/results.json"));
-  CHECK(last["begun_from"] == "out, method pcs, level 1");
+  CHECK(last["warm_started_from"] == "out, method pcs, level 1");
   REQUIRE(last["methods"].size() == 1);
   REQUIRE(last["methods"]["pcs"]["levels"].size() == 2);
   CHECK(last["methods"]["pcs"]["levels"][0]["from_initial_state"] == true);

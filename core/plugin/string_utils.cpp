@@ -1,4 +1,4 @@
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,7 +11,7 @@ std::string folded(std::string word) {
   return word;
 }
 
-/// Insertions, deletions, substitutions and swaps of neighbours that turn a into b.
+/// The optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
 size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
   for (size_t i = 0; i <= a.size(); ++i) d[i][0] = i;

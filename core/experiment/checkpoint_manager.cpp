@@ -1,4 +1,4 @@
-#include "core/experiment/session.h"
+#include "core/experiment/checkpoint_manager.h"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 #include "core/experiment/yaml_file.h"
 #include "core/mesh/file.h"
 #include "core/mesh/io.h"
-#include "core/plugin/words.h"
+#include "core/plugin/string_utils.h"
 #include "core/report/run_data.h"
 #include "core/version.h"
 
@@ -16,13 +16,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Saving takes no more than one part in so many of the time.
-constexpr double rareness = 100;
+/// The interval is at least this many times the time to save.
+constexpr double save_time_ratio = 100;
 
 std::string program() { return "drape " + std::string(version()) + " (" + commit() + ")"; }
 
 /// A file's bytes, or those of the files in a folder, in the order of their names.
-FileMark mark_of(const fs::path& path) {
+FileFingerprint fingerprint_of(const fs::path& path) {
   std::string bytes;
   if (fs::is_directory(path)) {
     std::vector<fs::path> files;
@@ -45,15 +45,16 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
   if (!fs::exists(file))
     throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
   nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
-  const bool sound = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
+  const bool valid = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
                      (!results.contains("complete") || results["complete"].is_boolean());
-  if (!sound) throw std::runtime_error(file.string() + ": is damaged; run the experiment anew");
+  if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
   return results;
 }
 
 }  // namespace
 
-Session::Session(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval)
+CheckpointManager::CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun,
+                                     double interval)
     : folder_(folder.path()),
       recorder_(recorder),
       now_(std::move(begun)),
@@ -62,7 +63,7 @@ Session::Session(const RunFolder& folder, const Recorder& recorder, Checkpoint b
   now_.program = program();
 }
 
-void Session::method_started(int method) {
+void CheckpointManager::method_started(int method) {
   now_.method = method;
   now_.state = {};
   now_.state.level = now_.first_level;
@@ -70,9 +71,11 @@ void Session::method_started(int method) {
   save();
 }
 
-void Session::method_finished(bool converged) { now_.all_converged = now_.all_converged && converged; }
+void CheckpointManager::method_finished(bool converged) {
+  now_.all_converged = now_.all_converged && converged;
+}
 
-void Session::level_finished(const LevelResult& result) {
+void CheckpointManager::level_finished(const LevelResult& result) {
   if (result.outcome == Outcome::cancelled) return;
   now_.state.finished.push_back(result);
   now_.state.level = result.level + 1;
@@ -80,17 +83,17 @@ void Session::level_finished(const LevelResult& result) {
   save();
 }
 
-bool Session::due(bool stopping) const {
-  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, rareness * cost_);
+bool CheckpointManager::due(bool stopping) const {
+  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, save_time_ratio * cost_);
 }
 
-void Session::save(const NewtonState& under_way) {
+void CheckpointManager::save(const NewtonState& under_way) {
   now_.state.level = under_way.so_far.level;
   now_.state.under_way = under_way;
   save();
 }
 
-void Session::save() {
+void CheckpointManager::save() {
   const Stopwatch watch;
   now_.state.seconds = method_clock_.seconds();
   now_.recorder = recorder_.state();
@@ -99,24 +102,25 @@ void Session::save() {
   since_ = Stopwatch();
 }
 
-std::vector<FileMark> marks_of_files(const ConfigNode& saved, const fs::path& folder) {
-  std::vector<FileMark> marks;
-  // Parameters that are paths are absolute there, but for the copies in the folder.
+std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
+  std::vector<FileFingerprint> fingerprints;
+  // Paths in the saved config are absolute, except those of copies in the folder.
   const std::string& path = saved.scalar;
-  if (path.starts_with('/') && fs::exists(path)) marks.push_back(mark_of(path));
+  if (path.starts_with('/') && fs::exists(path)) fingerprints.push_back(fingerprint_of(path));
   for (const char* copy : {"rest/l0.ply", "reference.ply", "start.ply"})
-    if (path == copy) marks.push_back(mark_of(folder / copy)), marks.back().path = copy;
+    if (path == copy) fingerprints.push_back(fingerprint_of(folder / copy)), fingerprints.back().path = copy;
   const auto add = [&](const ConfigNode& part) {
-    for (FileMark& mark : marks_of_files(part, folder)) marks.push_back(std::move(mark));
+    for (FileFingerprint& fingerprint : fingerprints_of_files(part, folder))
+      fingerprints.push_back(std::move(fingerprint));
   };
   for (const ConfigNode& item : saved.items) add(item);
   for (const auto& entry : saved.entries) add(entry.second);
-  return marks;
+  return fingerprints;
 }
 
 bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }
 
-bool methods_ended_as_asked(const fs::path& folder) {
+bool all_methods_succeeded(const fs::path& folder) {
   const RunData run = read_run(folder);
   return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
                                      [](const MethodRecord& m) { return succeeded(m.status); });
@@ -125,7 +129,7 @@ bool methods_ended_as_asked(const fs::path& folder) {
 void refuse_damaged_results(const fs::path& folder) {
   std::vector<std::string> damaged;
   const auto results = results_of(folder);
-  const JsonFile file(folder / "results.json", "run the experiment anew");
+  const JsonFile file(folder / "results.json", "run the experiment again");
   for (const auto& [name, method] : results["methods"].items()) {
     if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
     for (const auto& level : method["levels"]) {
@@ -137,9 +141,9 @@ void refuse_damaged_results(const fs::path& folder) {
     }
   }
   if (!damaged.empty())
-    throw std::runtime_error(
-        folder.string() + ": the run is complete, but damaged or gone since: " + joined(damaged) +
-        "; run the experiment anew, as in drape run " + (folder / "config.yaml").string() + " --out ANOTHER");
+    throw std::runtime_error(folder.string() + ": the run is complete, but files are damaged or missing: " +
+                             joined(damaged) + "; run the experiment again, as in drape run " +
+                             (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
 Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
@@ -150,14 +154,14 @@ Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
     throw std::runtime_error(config.string() +
                              ": is not the one that the checkpoint was made with; put that one back, or "
                              "change parameters with --set KEY=VALUE --out ANOTHER");
-  for (const FileMark& was : checkpoint.files) {
+  for (const FileFingerprint& was : checkpoint.files) {
     const fs::path path = was.path.starts_with('/') ? fs::path(was.path) : folder / was.path;
     if (!fs::exists(path))
-      throw std::runtime_error(path.string() + ": is gone, and the run reads it; put it back where it was");
-    if (const FileMark is = mark_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
-      throw std::runtime_error(path.string() +
-                               ": is not what it was when the run began; put that file back, or run the "
-                               "experiment anew");
+      throw std::runtime_error(path.string() + ": is missing, but the run reads it; put it back");
+    if (const FileFingerprint is = fingerprint_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
+      throw std::runtime_error(
+          path.string() +
+          ": is not what it was when the run began; put that file back, or run the experiment again");
   }
   if (checkpoint.program != program())
     warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
@@ -199,22 +203,22 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
   for (const char* key : {"cloth", "refiner"})
     if (to_yaml(*before.resolved.find(key)) != to_yaml(*changed.resolved.find(key)))
       errors.push_back(
-          {changed.place_of(key), "\"" + std::string(key) +
-                                      "\" cannot be changed: the saved state is one of the cloth "
-                                      "as it was; run the changed experiment from its start"});
+          {changed.location_of(key), "\"" + std::string(key) +
+                                         "\" cannot be changed: the saved state is one of the cloth "
+                                         "as it was; run the changed experiment from its start"});
   if (changed.parameters.levels <= level)
-    errors.push_back({changed.place_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
-                                                      ", for the saved state is one of level " +
-                                                      std::to_string(level) +
-                                                      "; choose a coarser one with --level"});
+    errors.push_back(
+        {changed.location_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
+                                            ", for the saved state is one of level " + std::to_string(level) +
+                                            "; choose a coarser one with --level"});
 }
 
-void begin_from(const Experiment& experiment, Scene& scene, int level, const Positions& x,
-                ConfigErrors& errors) {
+void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                      ConfigErrors& errors) {
   const LevelModel& model = *scene.models[level];
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
   scene.starts[level] = x;
-  refuse_touching_start(experiment, model, x, errors);
+  refuse_intersecting_start(experiment, model, x, errors);
   for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
     scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
 }

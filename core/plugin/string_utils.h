@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// The word that `typed` was probably meant to be, or "" if none is close; case and -/_ do not count.
+/// The word closest to `typed`, or "" if none is close; ignores case and treats - as _.
 std::string nearest_word(const std::string& typed, const std::vector<std::string>& words);
 
 /// "a, b, c"
