@@ -108,7 +108,7 @@ void check_boundary_conditions(const Experiment& e, const Level& coarsest, Confi
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
-                                           const Level& coarsest, const Positions& start) {
+                                                const Level& coarsest, const Positions& start) {
   std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k)
     for (int v : selected_vertices(p.pins[k], level, coarsest))

@@ -120,7 +120,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 10;
+constexpr std::uint32_t format = 11;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -12,7 +12,7 @@ namespace drape {
 
 namespace {
 
-/// "gravity.acceleration", "pins.0.translate, contact.range", "pins.0.translate and 3 more".
+/// "gravity.acceleration", "pins.0.translate, contact.dhat", "pins.0.translate and 3 more".
 std::string first_two(const std::vector<std::string>& names) {
   if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
   return names.empty() ? "" : names[0] + (names.size() == 2 ? ", " + names[1] : "");
@@ -20,13 +20,13 @@ std::string first_two(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Progress::Progress(double tolerance, int levels, bool quiet, const LoadStepping* conditions,
+Progress::Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping,
                    std::vector<std::string> changing)
     : tolerance_(tolerance),
       levels_(levels),
       quiet_(quiet),
       terminal_(isatty(STDERR_FILENO)),
-      conditions_(conditions),
+      load_stepping_(load_stepping),
       changing_(first_two(changing)) {}
 
 void Progress::method_started(const std::string& method) { method_ = method; }
@@ -51,13 +51,13 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
 /// Updates the finished fraction of the level: by the logarithm of the residual towards the tolerance, and
 /// under load stepping by increments, the initial equilibrium included.
 void Progress::take_note(const IterationRow& row) {
-  const bool scheduled = conditions_ && row.time;
-  const int increment = scheduled ? conditions_->increment() : 0,
-            last = scheduled ? conditions_->increment_count() : 0;
+  const bool scheduled = load_stepping_ && row.time;
+  const int increment = scheduled ? load_stepping_->increment() : 0,
+            last = scheduled ? load_stepping_->increment_count() : 0;
   if (first_residual_ == 0 || increment != increment_) first_residual_ = best_residual_ = row.force_residual;
   increment_ = increment;
   best_residual_ = std::min(best_residual_, row.force_residual);
-  const bool is_solved = !scheduled || conditions_->equilibrates() || increment == last;
+  const bool is_solved = !scheduled || load_stepping_->equilibrates() || increment == last;
   const double decades = std::log(first_residual_ / tolerance_);
   const double part = decades > 0 ? std::log(first_residual_ / best_residual_) / decades : 1;
   done_ = std::max(done_, (increment + (is_solved ? std::clamp(part, 0.0, 1.0) : 0)) / (last + 1));
@@ -68,8 +68,8 @@ std::string Progress::line(const IterationRow& row) const {
   std::string bar, increment, to_go;
   for (int k = 0; k < width; ++k) bar += k < done_ * width ? "█" : "░";
   char text[256];
-  if (conditions_ && row.time) {
-    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, conditions_->increment_count());
+  if (load_stepping_ && row.time) {
+    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, load_stepping_->increment_count());
     increment = text + changing_ + " ";
   }
   if (const std::optional<double> seconds = to_go_.seconds()) {

@@ -14,8 +14,8 @@ namespace drape {
 class Progress : public Observer {
  public:
   /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping
-  /// (`conditions`, which change the parameters `changing`) it is full after the last increment.
-  Progress(double tolerance, int levels, bool quiet, const LoadStepping* conditions = nullptr,
+  /// (`load_stepping`, which changes the parameters `changing`) it is full after the last increment.
+  Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping = nullptr,
            std::vector<std::string> changing = {});
 
   void method_started(const std::string& method);
@@ -35,7 +35,7 @@ class Progress : public Observer {
   double tolerance_;
   int levels_;
   bool quiet_, terminal_, drawn_ = false;
-  const LoadStepping* conditions_;
+  const LoadStepping* load_stepping_;
   std::string changing_, method_;
   Stopwatch level_clock_;
   double last_draw_ = 0;

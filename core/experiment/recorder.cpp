@@ -251,8 +251,8 @@ void Recorder::level_finished(const LevelResult& r) {
   // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
   const Cost cost = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
   if (snapshots_.any())
-    entry["levels"].back()["snapshots"] =
-        errors_.add(method_, r, snapshots_.end_level(cost, r.x), r.from_initial_state ? Cost() : spent_, spent_);
+    entry["levels"].back()["snapshots"] = errors_.add(method_, r, snapshots_.end_level(cost, r.x),
+                                                      r.from_initial_state ? Cost() : spent_, spent_);
   states_.push_back(state);
   spent_ = spent_ + cost;
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
@@ -322,10 +322,10 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
       const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
-      const Positions carried = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
+      const Positions prolonged = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
       const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};
-      row.update(compare(fine, results[f].x, carried, fine == finest ? "fields/" + tag + ".ply" : ""));
+      row.update(compare(fine, results[f].x, prolonged, fine == finest ? "fields/" + tag + ".ply" : ""));
       row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }

@@ -98,8 +98,8 @@ void KeyParameters::declare(Declaration<KeyParameters>& d) {
       .formerly("set")
       .required()
       .description(
-          "path of the parameter, as for --set, in material, energies, contact, pins or handles; an item of a "
-          "list goes by its index or its name, as in energies.gravity.acceleration");
+          "path of the parameter, as for --set, in material, energies, contact, pins or handles; an index or "
+          "a name selects an item of a list, as in energies.gravity.acceleration");
   d.add("times", &KeyParameters::times)
       .formerly("at")
       .at_least(-1e9)
@@ -132,7 +132,7 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
       .formerly("settle")
       .description(
           "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate "
-          "after the last");
+          "only after the last increment");
   d.add_sections("keys", &ScheduleParameters::keys).description("parameters that change");
 }
 

@@ -10,7 +10,8 @@ namespace drape {
 /// The faults that keep a mesh from being a cloth or an obstacle, one line each, naming the element
 /// (vertices and triangles count from 0); of many, the first and their number. Empty for a valid mesh.
 /// Checked are:
-/// - an empty mesh; an index out of range; a vertex without triangle; the coordinates, as in check_coordinates;
+/// - an empty mesh; an index out of range; a vertex without triangle; the coordinates, as in
+/// check_coordinates;
 /// - a triangle that repeats a vertex, has no area (height below 1e-12 of its longest edge) or occurs twice;
 /// - an edge with more than two triangles, or two that run along it in the same direction;
 /// - a vertex whose triangles form more than one fan;

@@ -30,8 +30,8 @@ class WriteError : public std::runtime_error {
 /// bytes.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most = largest_file);
 
-/// Writes path + ".part" and renames it: the final name never has an incomplete file. Throws WriteError naming
-/// path and cause, after removing the part.
+/// Writes path + ".part" and renames it: the final name never has an incomplete file. Throws WriteError
+/// naming path and cause, after removing the part.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 /// As write_file, unless the file has these bytes already. Returns whether it wrote.

@@ -31,9 +31,9 @@ Eigen::Vector2i equilateral_counts(const Eigen::Vector2d& size, int vertices, in
 /// Corners of a closed polygon in order, in either orientation.
 using Polygon = std::vector<Eigen::Vector2d>;
 
-/// A polygon, loops[0], with holes, loops[1 …], meshed by Delaunay refinement (CGAL's 2D mesh generator, after
-/// Shewchuk). All angles exceed 20° where the polygon's own angles permit. Sides are divided evenly at the
-/// inner spacing. The number of vertices is within 15 % of `vertices_about`. Another `seed` gives another
+/// A polygon, loops[0], with holes, loops[1 …], meshed by Delaunay refinement (CGAL's 2D mesh generator,
+/// after Shewchuk). All angles exceed 20° where the polygon's own angles permit. Sides are divided evenly at
+/// the inner spacing. The number of vertices is within 15 % of `vertices_about`. Another `seed` gives another
 /// mesh.
 TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed);
 

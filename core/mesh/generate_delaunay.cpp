@@ -148,7 +148,8 @@ std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std
     const Point c = CGAL::centroid(triangulation.triangle(f));
     if (!encloses(rings, c)) hole_points.push_back(c);
   }
-  constexpr double shape_bound = 0.125;  // sin² of the smallest angle, 20.7°: refinement terminates for certain
+  // sin² of the smallest angle, 20.7°: refinement terminates for certain.
+  constexpr double shape_bound = 0.125;
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
   mesher.set_seeds(hole_points.begin(), hole_points.end(), false);
   mesher.init();

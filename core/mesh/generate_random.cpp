@@ -54,7 +54,8 @@ class CellGrid {
 void throw_darts(const Eigen::Vector2d& size, double spacing, int count, Random& random, Points& points) {
   constexpr int patience = 400;  // misses before the radius shrinks
   constexpr double shrink = 0.98;
-  const double border_share = 0.6;  // least distance to the sides, relative to the radius: less makes slivers there
+  // Smallest distance to the sides, relative to the radius: less makes slivers there.
+  const double border_share = 0.6;
   CellGrid taken(size, spacing);
   for (const Eigen::Vector2d& p : points) taken.add(p);
   double radius = spacing;

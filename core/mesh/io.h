@@ -20,8 +20,8 @@ using VertexFields = std::vector<VertexField>;
 /// Reads a Wavefront OBJ (v and f), an OFF (text) or a PLY (text, binary little or big endian), by
 /// extension. Polygons are split into fans around their first corner, which suits convex ones.
 /// Vertices keep their order and are not merged. Coordinates are finite; check_mesh checks the rest of the
-/// geometry. Data beyond what the file declares are refused. Throws std::runtime_error with "file:line: fault"
-/// (in binary parts: the element).
+/// geometry. Data beyond what the file declares are refused. Throws std::runtime_error with "file:line:
+/// fault" (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.

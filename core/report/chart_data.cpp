@@ -113,11 +113,11 @@ Json errors_json(const RunData& run) {
   return all;
 }
 
-Json changes_json(const RunData& run) {
+Json increments_json(const RunData& run) {
   Json all = Json::array();
-  for (const ConditionSeries& series : run.changes) {
+  for (const IncrementSeries& series : run.increments) {
     Json time = Json::array(), steps = time, energy = time;
-    for (const ConditionRow& row : series.rows) {
+    for (const IncrementRecord& row : series.rows) {
       time.push_back(rounded(row.time));
       steps.push_back(rounded(row.steps));
       energy.push_back(rounded(row.energy));
@@ -162,7 +162,7 @@ std::string chart_data(const RunData& run) {
                      {"tolerance", rounded(run.force_tolerance)},
                      {"series", series_json(run)},
                      {"errors", errors_json(run)},
-                     {"increments", changes_json(run)},
+                     {"increments", increments_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
                      {"parts", bars_json(run, &LevelRecord::energy_parts)}};
   return script_json(data);

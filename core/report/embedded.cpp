@@ -34,7 +34,7 @@
 DRAPE_EMBED(page_html, "core/report/assets/page.html")
 DRAPE_EMBED(page_css, "core/report/assets/page.css")
 DRAPE_EMBED(page_js, "core/report/assets/page.js")
-DRAPE_EMBED(conditions_html, "core/report/assets/conditions.html")
+DRAPE_EMBED(load_stepping_html, "core/report/assets/load_stepping.html")
 DRAPE_EMBED(charts_js, "core/report/assets/charts.js")
 DRAPE_EMBED(runs_html, "core/report/assets/runs.html")
 DRAPE_EMBED(runs_js, "core/report/assets/runs.js")

@@ -9,7 +9,7 @@ struct Embedded {
   static std::string_view page_html();
   static std::string_view page_css();
   static std::string_view page_js();
-  static std::string_view conditions_html();
+  static std::string_view load_stepping_html();
   static std::string_view charts_js();
   static std::string_view runs_html();
   static std::string_view runs_js();

@@ -118,8 +118,8 @@ std::string verdict_line(const RunData& run) {
          escape(verdict->text) + "</p>\n";
 }
 
-std::string conditions_section(const RunData& run) {
-  return run.changes.empty() ? "" : std::string(Embedded::conditions_html());
+std::string load_stepping_section(const RunData& run) {
+  return run.increments.empty() ? "" : std::string(Embedded::load_stepping_html());
 }
 
 std::string machine_line(const RunData& run) {
@@ -198,7 +198,7 @@ void write_report(const std::filesystem::path& run_directory, const std::functio
                   {"H_differences", H_difference_grid(run, gallery, set)},
                   {"fold_quantile", html::count(100 * fold_quantile)},
                   {"folds", fold_grid(run, gallery, set)},
-                  {"conditions", conditions_section(run)},
+                  {"load_stepping", load_stepping_section(run)},
                   {"energies", energy_table(run)},
                   {"configuration",
                    run.configuration.empty() ? "config.yaml was not stored." : escape(run.configuration)},

@@ -104,7 +104,7 @@ MethodRecord method_record(const JsonFile& file, const std::string& name, const 
   return method;
 }
 
-ConditionRow change_row(const Json& json) {
+IncrementRecord increment_record(const Json& json) {
   return {number(at(json, "time")), number(at(json, "steps")), number(at(json, "energy"))};
 }
 
@@ -158,12 +158,13 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
   return all;
 }
 
-std::vector<ConditionSeries> changes_of(const JsonFile& file, const std::string& method,
-                                        const Json& changes) {
-  std::vector<ConditionSeries> all;
-  if (!changes.is_array()) return all;
-  for (const Json& change : changes)
-    series_of(all, method, file.find<int>(change, "level").value_or(0)).rows.push_back(change_row(change));
+std::vector<IncrementSeries> increments_of(const JsonFile& file, const std::string& method,
+                                           const Json& increments) {
+  std::vector<IncrementSeries> all;
+  if (!increments.is_array()) return all;
+  for (const Json& increment : increments)
+    series_of(all, method, file.find<int>(increment, "level").value_or(0))
+        .rows.push_back(increment_record(increment));
   return all;
 }
 
@@ -278,8 +279,8 @@ RunData read_run(const std::filesystem::path& folder) {
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
       run.methods.push_back(method_record(file, name, value));
-      const std::vector<ConditionSeries> changes = changes_of(file, name, at(value, "increments"));
-      run.changes.insert(run.changes.end(), changes.begin(), changes.end());
+      const std::vector<IncrementSeries> increments = increments_of(file, name, at(value, "increments"));
+      run.increments.insert(run.increments.end(), increments.begin(), increments.end());
     }
   }
   // The progressive method comes first; the others stay in file order.
@@ -296,8 +297,8 @@ RunData read_run(const std::filesystem::path& folder) {
   run.errors = read_errors(folder / "errors.csv");
   std::stable_sort(run.errors.begin(), run.errors.end(),
                    [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
-  std::stable_sort(run.changes.begin(), run.changes.end(),
-                   [&](const ConditionSeries& a, const ConditionSeries& b) { return place(a) < place(b); });
+  std::stable_sort(run.increments.begin(), run.increments.end(),
+                   [&](const IncrementSeries& a, const IncrementSeries& b) { return place(a) < place(b); });
   run.configuration = file_if_there(folder / "config.yaml");
   add_last_contacts(run);
   add_step_sizes(run);

@@ -24,7 +24,7 @@ struct LevelRecord {
   int level = 0;
   std::string status, message;
   OptionalNumber vertices, triangles, steps, newton_iterations, seconds, flops;
-  bool from_initial_state = false;  ///< earlier levels do not contribute
+  bool from_initial_state = false;           ///< earlier levels do not contribute
   OptionalNumber energy, energy_on_finest;   ///< [J]
   OptionalNumber decrement, force_residual;  ///< [m/s], [1]
   OptionalNumber largest_stretch, intersections, smallest_gap;
@@ -75,15 +75,15 @@ struct IterationSeries {
 };
 
 /// One load increment, at its end.
-struct ConditionRow {
+struct IncrementRecord {
   OptionalNumber time, steps, energy;  ///< pseudo-time; the others as in LevelRecord
 };
 
 /// All increments of one level of one method, in order.
-struct ConditionSeries {
+struct IncrementSeries {
   std::string method;
   int level = 0;
-  std::vector<ConditionRow> rows;
+  std::vector<IncrementRecord> rows;
 };
 
 /// One row of errors.csv: a state's cost, and its error against each target in each measure.
@@ -109,7 +109,7 @@ struct RunData {
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
-  std::vector<ConditionSeries> changes;     ///< likewise; empty without a schedule
+  std::vector<IncrementSeries> increments;  ///< likewise; empty without a schedule
   std::string reference;                    ///< method or file of the state that errors are measured against
   bool reference_is_lowest = false;         ///< it was chosen for its lowest energy
   OptionalNumber reference_tolerance;       ///< force tolerance to which it was solved

@@ -59,7 +59,7 @@ test('a schedule has plots of its own', async () => {
   run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--threads', '1', '--set', 'snapshots=0', '--method', 'newton',
     '--set', 'schedule=' + schedule);
   const {page, heard} = await openPage(chrome, pathToFileURL(path.join(folder, 'changing/report.html')).href);
-  for (const plot of ['#change-energy', '#change-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
+  for (const plot of ['#increment-energy', '#increment-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
   assert.deepEqual(heard.errors, []);
   await page.context().close();
 });

@@ -137,7 +137,7 @@ int check_in_parts(const Experiment& experiment, const fs::path& folder, int* re
     const MethodState& state = checkpoint.state;
     const std::string now = std::to_string(checkpoint.method) + " " + std::to_string(state.level) + " " +
                             (state.under_way ? std::to_string(state.under_way->so_far.steps) : "begins");
-    if (relaxing) *relaxing += state.under_way && state.under_way->relaxed;
+    if (relaxing) *relaxing += state.under_way && state.under_way->switched_to_plain;
     patience = now == before ? 2 * patience : 2;
     before = now;
     asked = 0;
@@ -545,7 +545,7 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("the settings of the step", [&](auto& c) { under_way(c).psd_blend = 7; });
   refused("the response to an increment",
           [&](auto& c) { under_way(c).response.predicted = Positions::Zero(1, 3); });
-  refused("the contacts: ", [&](auto& c) { under_way(c).contacts.from.resize(0, 3); });
+  refused("the contacts: ", [&](auto& c) { under_way(c).contacts.reference.resize(0, 3); });
   refused("the contacts' tangential displacements",
           [&](auto& c) { under_way(c).contacts.tangential_displacements.clear(); });
   refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.extra = {{{0, 1 << 20}}, {0}}; });

@@ -192,25 +192,25 @@ TEST_CASE("every method's own interpolation prolongs its states") {
     const auto state = [&](int l) {
       return read_mesh(folder / "out/levels" / (method + "_l" + std::to_string(l) + ".ply")).vertices;
     };
-    const Positions carried = hierarchy.prolong(state(0), 0, 2, weights), end = state(2);
+    const Positions prolonged = hierarchy.prolong(state(0), 0, 2, weights), end = state(2);
     const Positions by_the_other = hierarchy.prolong(state(0), 0, 2, others);
-    REQUIRE((carried - by_the_other).norm() > 1e-3);
+    REQUIRE((prolonged - by_the_other).norm() > 1e-3);
     const Json& level = all[method]["levels"][0];
     CHECK(level["energy_on_finest"].get<double>() ==
-          Approx(small.scene->models[2]->value(carried)).epsilon(1e-9));
+          Approx(small.scene->models[2]->value(prolonged)).epsilon(1e-9));
     for (const Json& pair : all[method]["consistency"]) {
       if (pair["coarse"] != 0 || pair["fine"] != 2) continue;
       for (const char* name :
            {"d_H_fit", "d_K_ddg", "distance_rms", "silhouette_overlap", "energy_above_end"}) {
         INFO(name);
-        CHECK(pair[name].get<double>() == Approx(value_of(carried, end, name)).epsilon(1e-6));
+        CHECK(pair[name].get<double>() == Approx(value_of(prolonged, end, name)).epsilon(1e-6));
         CHECK(pair["of_start"][name].get<double>() ==
               Approx(value_of(small.scene->starts[2], end, name)).epsilon(1e-6));
       }
     }
     for (const Row& row : rows)
       if (row.at("method") == method && row.at("level") == "0")
-        CHECK(std::stod(row.at("own_rms")) == Approx(value_of(carried, end, "distance_rms")).epsilon(1e-5));
+        CHECK(std::stod(row.at("own_rms")) == Approx(value_of(prolonged, end, "distance_rms")).epsilon(1e-5));
   }
 }
 

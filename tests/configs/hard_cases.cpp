@@ -85,7 +85,7 @@ TEST_CASE(
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
   CHECK_THAT(levels[1]["message"].get<std::string>(),
-             Catch::Contains("begun from the scene's start instead"));
+             Catch::Contains("starts from the scene's start instead"));
 }
 
 TEST_CASE("a triangle close to its strain limit moves away from it instead of along it") {

@@ -120,8 +120,10 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.state.under_way->idle.steps == 3);
   CHECK(c.state.under_way->idle.energy == -0.5);
   CHECK(c.state.under_way->idle.residual == 1e-6);
-  CHECK(c.state.under_way->contacts.slips.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
-  CHECK(c.state.under_way->contacts.slips.at(0).at(0).by == Eigen::Vector3d(1e-5, 0, 2e-5));
+  CHECK(c.state.under_way->contacts.tangential_displacements.at(0).at(0).contact ==
+        ContactKey{1, 2, 3, 4, 0});
+  CHECK(c.state.under_way->contacts.tangential_displacements.at(0).at(0).displacement ==
+        Eigen::Vector3d(1e-5, 0, 2e-5));
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
   CHECK(c.recorder.steps_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
@@ -148,7 +150,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 10; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 11; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

@@ -358,16 +358,16 @@ TEST_CASE("chart data compares energies of one level only, and never the proxy w
   CHECK(data["tolerance"] == 1e-3);
 }
 
-TEST_CASE("a report has plots of a schedule's changes where there is one") {
+TEST_CASE("a report has plots of load increments if there is a schedule") {
   SampleRun run;
-  CHECK_FALSE(contains(run.page(), "id=\"conditions\""));
-  Json& changes = run.results["methods"]["pcs"]["increments"];
+  CHECK_FALSE(contains(run.page(), "id=\"load-stepping\""));
+  Json& increments = run.results["methods"]["pcs"]["increments"];
   for (const int level : {1, 0})
     for (const double time : {0.5, 1.0})
-      changes.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy", -time}});
+      increments.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy", -time}});
   const std::string page = run.page();
-  CHECK(contains(page, "id=\"conditions\""));
-  CHECK(contains(page, "id=\"change-energy\""));
+  CHECK(contains(page, "id=\"load-stepping\""));
+  CHECK(contains(page, "id=\"increment-energy\""));
   const Json data = Json::parse(chart_data(read_run(run.folder)))["increments"];
   REQUIRE(data.size() == 2);
   CHECK(data[0]["level"] == 0);

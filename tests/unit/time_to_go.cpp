@@ -95,25 +95,25 @@ TEST_CASE("The progress line shows how far a level is from its tolerance") {
 }
 
 TEST_CASE("Under a schedule the progress line shows which increment of how many, and of what") {
-  Forty conditions;
-  Progress progress(1e-4, 3, true, &conditions, {"pins.0.translate"});
+  Forty increments;
+  Progress progress(1e-4, 3, true, &increments, {"pins.0.translate"});
   progress.method_started("newton");
   progress.level_started(1);
   CHECK(
       line_after(progress, row_of(0, 1, 0)) ==
       "newton    level 1/2 increment 0/40 of pins.0.translate ░░░░░░░░░░░░░░░░ step 0    residual 1.00e+00  "
       "energy -0.25 J");
-  conditions.at = 20;  // half of an increment in the middle of 41
+  increments.at = 20;  // half of an increment in the middle of 41
   line_after(progress, row_of(99, 1, 20));
   CHECK(
       line_after(progress, row_of(100, 1e-2, 20)) ==
       "newton    level 1/2 increment 20/40 of pins.0.translate ████████░░░░░░░░ step 100  residual 1.00e-02  "
       "energy -0.25 J");
 
-  Progress of_many(1e-4, 3, true, &conditions, {"pins.0.translate", "material.density", "contact.friction"});
+  Progress of_many(1e-4, 3, true, &increments, {"pins.0.translate", "material.density", "contact.friction"});
   of_many.level_started(1);
   CHECK_THAT(line_after(of_many, row_of(0, 1, 20)),
              Catch::Contains(" increment 20/40 of pins.0.translate and 2 more "));
-  // A solve without conditions after such a one, as of the reference.
+  // A later solve without load stepping, such as the reference.
   CHECK_THAT(line_after(of_many, row_of(0, 1)), !Catch::Contains("increment"));
 }

@@ -69,7 +69,7 @@
   }
 
   /// Over pseudo-time, one point per increment.
-  function changes(id, y, title) {
+  function increments(id, y, title) {
     lines(id, 'time', y, ['pseudo-time', title], false, false, data.increments,
       s => Object.assign(lineStyle(Object.assign({iteration: s.time}, s)), {pointRadius: 2.5}), false);
   }
@@ -93,8 +93,8 @@
       coarsest, methodStyle);
     lines('coarsest-residual', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true,
       coarsest, methodStyle);
-    changes('change-energy', 'energy', 'energy [J]');
-    changes('change-steps', 'steps', 'steps');
+    increments('increment-energy', 'energy', 'energy [J]');
+    increments('increment-steps', 'steps', 'steps');
     bars('phases', data.phases, 's');
     bars('parts', data.parts, 'J');
   }

@@ -49,7 +49,8 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
       .source("Li et al. 2021");
   d.add_choice("broad_phase", &P::broad_phase,
                {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
-      .description("broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
+      .description(
+          "broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {

@@ -91,8 +91,7 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .unit("1")
       .at_least(0)
       .at_most(1e6)
-      .description(
-          "frame of the animation, from 0, interpolated linearly; for a schedule to change");
+      .description("frame of the animation, from 0, interpolated linearly; for a schedule to change");
   d.add_section("cages", &P::cages)
       .description("closed surfaces around the obstacle that replace it on coarse levels");
   d.add("scale", &P::scale)

@@ -51,7 +51,9 @@ std::string to_string(SolidKind kind) {
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
-  d.add("name", &ShapeParameters::name).description("name in messages; empty: its index").source("this project");
+  d.add("name", &ShapeParameters::name)
+      .description("name in messages; empty: its index")
+      .source("this project");
   d.add_choice("shape", &ShapeParameters::shape, kind_names)
       .required()
       .description("capsule: all points within radius of a segment; half_space: all points behind a plane")
@@ -78,8 +80,7 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .description(
-          "length along the local z axis of a cylinder, or of a capsule without its hemispheres")
+      .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
       .source("this project");
   d.add("rotate", &ShapeParameters::rotate)
       .unit("degree")

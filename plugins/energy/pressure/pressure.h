@@ -19,8 +19,7 @@ class Pressure final : public Energy {
           .at_least(-bounds::largest_load)
           .at_most(bounds::largest_load)
           .required()
-          .description(
-              "pressure along the normal of every triangle; negative for suction")
+          .description("pressure along the normal of every triangle; negative for suction")
           .source("this project");
       d.add("centre", &Parameters::centre)
           .unit("m")

@@ -12,8 +12,7 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
                         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
   };
   add("membrane", &ProxyInterpolation::membrane)
-      .description(
-          "surface on which stretching is measured: the coarse one, or the refiner's, which locks")
+      .description("surface on which stretching is measured: the coarse one, or the refiner's, which locks")
       .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
   add("bending", &ProxyInterpolation::bending)
       .description(
