@@ -96,7 +96,8 @@ class Table {
 Positions wrinkled_state(const Experiment& e, const Scene& scene) {
   FirstIterations some(30);
   const auto results = method(e, "pcs_galerkin_1").solve(scene.problem(), some);
-  return scene.hierarchy.prolong(results.front().x, 0, static_cast<int>(scene.models.size()) - 1);
+  return scene.hierarchy.prolong(results.front().x, 0, static_cast<int>(scene.models.size()) - 1,
+                                 scene.hierarchy.prolongations);
 }
 
 void finest_level(const Experiment& e, const Scene& scene, Table& table) {
