@@ -60,12 +60,12 @@ Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
 }
 
 void Loaded::repair(ConfigErrors& errors) {
-  const Eigen::Vector3d way = repair_start(*experiment, *scene, errors);
-  if (way.isZero(0)) return;
+  const Eigen::Vector3d translation = repair_start(*experiment, *scene, errors);
+  if (translation.isZero(0)) return;
   scene = build_scene(*experiment, errors);
   if (errors.empty())
-    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", way.x(), way.y(),
-                 way.z());
+    std::fprintf(stderr, "start moved by (%.4g, %.4g, %.4g) m; it touches nothing now\n", translation.x(),
+                 translation.y(), translation.z());
 }
 
 }  // namespace drape

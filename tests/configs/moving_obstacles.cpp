@@ -93,8 +93,8 @@ schedule: {steps: 10, keys: [
 }
 
 TEST_CASE(
-    "what pushes or carries the cloth far takes it along, and not by a tenth of the contact's dhat at a "
-    "time") {
+    "an obstacle that pushes or drags the cloth far moves it, by more than a tenth of the contact's dhat at "
+    "a time") {
   const std::string draped = R"(name: pushed
 cloth: {shape: square, side: 0.4, columns: 14, rows: 14}
 levels: 1

@@ -50,7 +50,7 @@ double volume(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("scanned meshes are sound obstacles of the size that their record says") {
+TEST_CASE("scanned meshes are valid obstacles of the size in their record") {
   REQUIRE(names() == std::vector<std::string>{"bunny", "armadillo", "bear", "dragon"});
   for (const std::string& name : names()) {
     INFO(name);
