@@ -51,8 +51,8 @@ struct PictureLeft : std::runtime_error {
 /// with occlusion. No display is needed. One at a time, on one thread.
 class Renderer {
  public:
-  /// Size of the pictures [pixels]. `leave`, which may be empty, is asked all along. Throws
-  /// std::runtime_error if OSMesa gives no context.
+  /// Size of the pictures [pixels]. `leave`, which may be empty, is asked while the sky light of a
+  /// picture is made. Throws std::runtime_error if OSMesa gives no context.
   Renderer(int width, int height, std::function<bool()> leave = {});
   ~Renderer();
 
