@@ -51,8 +51,8 @@ struct PictureLeft : std::runtime_error {
 /// and sky light with occlusion. One instance at a time, on one thread.
 class Renderer {
  public:
-  /// Size of the pictures [pixels]. `leave`, which may be empty, is polled. Throws
-  /// std::runtime_error if OSMesa gives no context.
+  /// Size of the pictures [pixels]. `leave`, which may be empty, is polled while the sky light of a picture
+  /// is computed. Throws std::runtime_error if OSMesa gives no context.
   Renderer(int width, int height, std::function<bool()> leave = {});
   ~Renderer();
 
