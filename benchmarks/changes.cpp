@@ -11,11 +11,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "core/experiment/experiment.h"
-#include "core/experiment/machine.h"
-#include "core/numerics/parallel.h"
-#include "core/plugin/loader.h"
-#include "core/version.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/machine.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/plugin/loader.h"
+#include "core/kernel/version.h"
 
 using namespace drape;
 

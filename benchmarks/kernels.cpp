@@ -3,9 +3,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/hierarchy/level.h"
-#include "core/mesh/generate.h"
-#include "core/numerics/element_energy.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/level.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"

@@ -13,13 +13,13 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/experiment/experiment.h"
-#include "core/experiment/machine.h"
-#include "core/numerics/block_cholesky.h"
-#include "core/numerics/newton.h"
-#include "core/numerics/parallel.h"
-#include "core/plugin/loader.h"
-#include "core/version.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/machine.h"
+#include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/plugin/loader.h"
+#include "core/kernel/solve/newton.h"
+#include "core/kernel/version.h"
 
 using namespace drape;
 

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/cli/exit_codes.h"
+#include "core/app/experiment/exit_codes.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

@@ -502,7 +502,7 @@ TEST_CASE("plugin libraries that do not fit") {
       said(plugins + "/not_a_plugin") ==
       "error: " + plugins +
           "/not_a_plugin/libnot_a_plugin.so: is not a drape plugin: it exports no function drape_plugin (see "
-          "DRAPE_PLUGIN in core/plugin/plugin.h)\n");
+          "DRAPE_PLUGIN in core/kernel/plugin/plugin.h)\n");
   CHECK(said(plugins + "/good:" + plugins + "/duplicate") ==
         "error: refiner \"good\" of " + plugins + "/duplicate/libduplicate.so is already registered by " +
             plugins + "/good/libgood.so; rename it or take one of them out of the search path\n");

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "core/experiment/checkpoint_manager.h"
-#include "core/experiment/runner.h"
-#include "core/mesh/generate.h"
-#include "core/mesh/io.h"
+#include "core/app/run/checkpoint_manager.h"
+#include "core/app/run/runner.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/experiment/experiment.h"
+#include "core/app/experiment/experiment.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"

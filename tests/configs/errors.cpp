@@ -1,11 +1,11 @@
 // Errors of states: known answers, and what a run writes.
 
-#include "core/experiment/errors.h"
+#include "core/app/run/errors.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/experiment/reference.h"
-#include "core/mesh/io.h"
+#include "core/app/run/reference.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 #include "tests/support/registry.h"
 

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/mesh/generate.h"
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 
 using drape::Positions;

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 
 namespace fs = std::filesystem;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/report/compare.h"
-#include "core/report/run_rows.h"
+#include "core/app/report/compare.h"
+#include "core/app/report/run_rows.h"
 #include "tests/support/command.h"
 
 using namespace drape;

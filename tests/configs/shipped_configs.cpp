@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/experiment/yaml_file.h"
+#include "core/app/files/yaml_file.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

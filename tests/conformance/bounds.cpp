@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/experiment/experiment.h"
-#include "core/sweep/sweep.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/sweep/sweep.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

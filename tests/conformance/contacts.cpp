@@ -6,10 +6,10 @@
 #include <map>
 #include <random>
 
-#include "core/mesh/check.h"
-#include "core/mesh/generate.h"
-#include "core/model/contact_model.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/contact_model.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/registry.h"
 

@@ -5,12 +5,12 @@
 #include <map>
 #include <random>
 
-#include "core/hierarchy/hierarchy.h"
-#include "core/hierarchy/midpoint.h"
-#include "core/mesh/generate.h"
-#include "core/model/energy.h"
-#include "core/model/refiner.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/energy.h"
+#include "core/kernel/model/hierarchy.h"
+#include "core/kernel/model/midpoint.h"
+#include "core/kernel/model/refiner.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/registry.h"
 

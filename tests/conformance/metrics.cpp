@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/model/metric.h"
+#include "core/kernel/model/metric.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "core/hierarchy/level.h"
-#include "core/mesh/check.h"
-#include "core/mesh/generate.h"
-#include "core/model/refiner.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/level.h"
+#include "core/kernel/model/refiner.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

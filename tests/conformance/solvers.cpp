@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/mesh/check.h"
-#include "core/mesh/intersections.h"
-#include "core/mesh/io.h"
-#include "core/mesh/topology.h"
+#include "core/kernel/contact/intersections.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/topology.h"
 #include "tests/support/folders.h"
 
 using namespace drape;

@@ -1,6 +1,6 @@
 // The state of a run, beneath its checksum: with that in the way, nothing else would be tested.
 
-#include "core/experiment/checkpoint.h"
+#include "core/app/run/checkpoint.h"
 
 #include <cstdint>
 #include <cstdlib>

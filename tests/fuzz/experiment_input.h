@@ -4,9 +4,9 @@
 #include <iostream>
 #include <string>
 
-#include "core/experiment/experiment.h"
-#include "core/experiment/yaml_file.h"
-#include "core/plugin/loader.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/plugin/loader.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "core/mesh/check.h"
-#include "core/mesh/io_formats.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/io_formats.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <sstream>
 
-#include "core/cli/config_arguments.h"
+#include "core/app/cli/config_arguments.h"
 #include "tests/fuzz/experiment_input.h"
 
 namespace {

@@ -1,8 +1,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/hierarchy/level.h"
-#include "core/version.h"
+#include "core/kernel/model/level.h"
+#include "core/kernel/version.h"
 
 // A program of somebody else's: exits with 0 when the library it was linked with works.
 int main() {

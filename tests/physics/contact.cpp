@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
 #include "tests/support/slope.h"
 #include "tests/support/solve.h"

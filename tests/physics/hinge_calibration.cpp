@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
-#include "core/model/energy.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/energy.h"
 #include "tests/support/strip.h"
 
 using namespace drape;

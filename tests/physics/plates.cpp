@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 

@@ -1,8 +1,8 @@
-#include "core/model/weak_barrier.h"
+#include "core/kernel/model/weak_barrier.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/model/smallest_gap.h"
+#include "core/kernel/model/smallest_gap.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

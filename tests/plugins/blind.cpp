@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "core/model/contact_model.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/contact_model.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

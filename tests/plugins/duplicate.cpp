@@ -1,7 +1,7 @@
 // A plugin whose only fault is a name that good.cpp has too.
 
-#include "core/model/refiner.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // A plugin that loads: one refiner, which tells its parameter by the number of rows it returns.
 
-#include "core/model/refiner.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

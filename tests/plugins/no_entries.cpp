@@ -1,5 +1,5 @@
 // A plugin that names nothing.
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 
 DRAPE_PLUGIN(registry) { (void)registry; }

@@ -1,7 +1,7 @@
 // A plugin with a refiner that has no name.
 
-#include "core/model/refiner.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

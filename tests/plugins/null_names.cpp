@@ -1,6 +1,6 @@
 // A plugin whose descriptor has null for every text.
 
-#include "core/plugin/abi.h"
+#include "core/kernel/plugin/abi.h"
 
 extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {
   static constexpr DrapePluginDescriptor descriptor = {

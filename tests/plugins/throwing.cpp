@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 
 DRAPE_PLUGIN(registry) {
   (void)registry;

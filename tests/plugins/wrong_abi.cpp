@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "core/plugin/abi.h"
+#include "core/kernel/plugin/abi.h"
 
 extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {
   static constexpr DrapePluginDescriptor descriptor = {

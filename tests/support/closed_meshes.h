@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/hierarchy/midpoint.h"
+#include "core/kernel/model/midpoint.h"
 
 // Closed meshes to blow up, triangles counter-clockwise seen from outside.
 

@@ -5,12 +5,12 @@
 #include <functional>
 #include <random>
 
-#include "core/numerics/element_energy.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/evaluate.h"
 
-// What every element kernel owes (see core/numerics/element_energy.h), for one state of one element. A state
-// is the column of its differences x_i - x_0.
+// What every element kernel owes (see core/kernel/elements/element_energy.h), for one state of one element. A
+// state is the column of its differences x_i - x_0.
 
 template <class Kernel>
 struct KernelCheck {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/membrane_kernel.h"
+#include "core/kernel/elements/membrane_kernel.h"
+#include "core/kernel/mesh/generate.h"
 #include "tests/support/kernel_check.h"
 
 /// Edge vectors of a triangle at rest, and a state of it as KernelCheck takes it.
@@ -30,9 +30,9 @@ inline std::vector<Eigen::Matrix<double, 6, 1>> deformed_triangles() {
   return all;
 }
 
-/// What every membrane owes (core/numerics/membrane_kernel.h). `density` is ψ(μ, λ, a, b) of a triangle
-/// stretched to 1 + a and 1 + b along its axes; `collapsed` says what the energy of one without area has to
-/// be.
+/// What every membrane owes (core/kernel/elements/membrane_kernel.h). `density` is ψ(μ, λ, a, b) of a
+/// triangle stretched to 1 + a and 1 + b along its axes; `collapsed` says what the energy of one without area
+/// has to be.
 template <template <class> class Law>
 void check_membrane(const drape::Energy& energy,
                     const std::function<long double(double, double, long double, long double)>& density,

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "core/mesh/generate.h"
-#include "core/model/metric.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/metric.h"
 
 // What tests of metrics share.
 

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/experiment/yaml_file.h"
-#include "core/plugin/loader.h"
-#include "core/plugin/make.h"
-#include "core/plugin/registry.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/plugin/loader.h"
+#include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/registry.h"
 #include "tests/support/folders.h"
 
 /// Everything that the build's plugins offer.

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "core/contact/stiffness.h"
+#include "core/kernel/contact/stiffness.h"
 
 inline constexpr double gravity = 9.81, dhat = 1e-3;
 

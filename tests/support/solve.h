@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/experiment/experiment.h"
+#include "core/app/experiment/experiment.h"
 #include "tests/support/registry.h"
 
 /// An experiment, its scene, and what one method made of it.

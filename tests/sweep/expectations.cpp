@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/report/run_table.h"
+#include "core/app/report/run_table.h"
 #include "tests/support/command.h"
 
 using namespace drape;

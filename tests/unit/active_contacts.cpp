@@ -1,12 +1,12 @@
-#include "core/model/active_contacts.h"
+#include "core/kernel/model/active_contacts.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "core/contact/barrier.h"
-#include "core/mesh/generate.h"
-#include "core/numerics/newton.h"
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/solve/newton.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
 

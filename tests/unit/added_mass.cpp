@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
-#include "core/model/level_model.h"
-#include "core/numerics/newton.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/level_model.h"
+#include "core/kernel/solve/newton.h"
 #include "tests/support/weight.h"
 
 using namespace drape;

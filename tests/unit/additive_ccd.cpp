@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <random>
 
-#include "core/contact/pair_contacts.h"
-#include "core/contact/pair_geometry.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 using namespace drape;
 using Eigen::Vector3d;

@@ -1,4 +1,4 @@
-#include "core/numerics/block_cholesky.h"
+#include "core/kernel/linear_algebra/block_cholesky.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;

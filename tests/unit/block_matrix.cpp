@@ -1,10 +1,10 @@
-#include "core/numerics/block_matrix.h"
+#include "core/kernel/linear_algebra/block_matrix.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;

@@ -1,10 +1,10 @@
-#include "core/contact/broad_phase.h"
+#include "core/kernel/contact/broad_phase.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/generate.h"
 #include "tests/support/processor_time.h"
 
 using namespace drape;

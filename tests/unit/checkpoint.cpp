@@ -1,6 +1,6 @@
 // The file that a run goes on from: what was saved is what is read, and nothing else is.
 
-#include "core/experiment/checkpoint.h"
+#include "core/app/run/checkpoint.h"
 
 #include <catch2/catch.hpp>
 

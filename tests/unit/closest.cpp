@@ -1,4 +1,4 @@
-#include "core/contact/closest.h"
+#include "core/kernel/contact/closest.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "core/contact/pair_geometry.h"
+#include "core/kernel/contact/pair_geometry.h"
 
 using namespace drape;
 using Eigen::Vector3d;

@@ -4,7 +4,7 @@
 #include <regex>
 #include <string>
 
-#include "core/cli/exit_codes.h"
+#include "core/app/experiment/exit_codes.h"
 #include "tests/support/folders.h"
 
 namespace fs = std::filesystem;

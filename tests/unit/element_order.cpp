@@ -1,11 +1,11 @@
-#include "core/numerics/element_order.h"
+#include "core/kernel/model/element_order.h"
 
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
 
-#include "core/hierarchy/level.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/level.h"
 
 using namespace drape;
 

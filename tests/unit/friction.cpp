@@ -1,4 +1,4 @@
-#include "core/contact/friction.h"
+#include "core/kernel/contact/friction.h"
 
 #include <algorithm>
 #include <random>

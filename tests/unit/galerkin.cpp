@@ -1,8 +1,8 @@
-#include "core/numerics/galerkin.h"
+#include "core/kernel/linear_algebra/galerkin.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/hierarchy/transfer.h"
+#include "core/kernel/model/transfer.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;

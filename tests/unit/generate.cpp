@@ -1,13 +1,13 @@
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "core/hierarchy/level.h"
-#include "core/hierarchy/midpoint.h"
-#include "core/mesh/check.h"
-#include "core/mesh/delaunay.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/delaunay.h"
+#include "core/kernel/model/level.h"
+#include "core/kernel/model/midpoint.h"
 
 using namespace drape;
 

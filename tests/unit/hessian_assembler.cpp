@@ -1,4 +1,4 @@
-#include "core/numerics/hessian_assembler.h"
+#include "core/kernel/model/hessian_assembler.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,10 +1,10 @@
-#include "core/hierarchy/hierarchy.h"
+#include "core/kernel/model/hierarchy.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/hierarchy/midpoint.h"
-#include "core/mesh/check.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/midpoint.h"
 
 using namespace drape;
 

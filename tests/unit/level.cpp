@@ -1,8 +1,8 @@
-#include "core/hierarchy/level.h"
+#include "core/kernel/model/level.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 
 using namespace drape;
 

@@ -1,9 +1,9 @@
-#include "core/model/level_model.h"
+#include "core/kernel/model/level_model.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/linear_energy.h"
+#include "core/kernel/elements/linear_energy.h"
+#include "core/kernel/mesh/generate.h"
 
 using namespace drape;
 

@@ -1,6 +1,6 @@
 // The live view's server against peers that take their time or send what no browser does.
 
-#include "core/view/live_server.h"
+#include "core/app/view/live_server.h"
 
 #include <arpa/inet.h>
 #include <poll.h>
@@ -11,7 +11,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/numerics/stopwatch.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
 
 using namespace drape;
 

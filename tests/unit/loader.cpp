@@ -1,4 +1,4 @@
-#include "core/plugin/loader.h"
+#include "core/kernel/plugin/loader.h"
 
 #include <elf.h>
 #include <link.h>
@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/model/refiner.h"
-#include "core/plugin/abi.h"
-#include "core/plugin/make.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/abi.h"
+#include "core/kernel/plugin/make.h"
 #include "tests/support/folders.h"
 
 using namespace drape;
@@ -118,7 +118,7 @@ TEST_CASE("a library that is no plugin, or no library, is refused with its path"
   CHECK_THROWS_WITH(load_plugins(registry, {plugins / "not_a_plugin"}),
                     library("not_a_plugin").string() +
                         ": is not a drape plugin: it exports no function drape_plugin"
-                        " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+                        " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   const TemporaryFolder folder;
   const fs::path file = folder.path / "broken.so";
   REQUIRE(std::fclose(std::fopen(file.c_str(), "w")) == 0);
@@ -139,7 +139,7 @@ TEST_CASE("a plugin that gives nothing where something is needed is refused with
   };
   CHECK(error_of("null_descriptor") == library("null_descriptor").string() +
                                            ": is not a drape plugin: its function drape_plugin returns null"
-                                           " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+                                           " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   CHECK(error_of("null_names") ==
         library("null_names").string() +
             ": does not fit this drape, rebuild it: the compiler is not given in the plugin and " +
@@ -149,7 +149,7 @@ TEST_CASE("a plugin that gives nothing where something is needed is refused with
   CHECK(error_of("null_entries") ==
         library("null_entries").string() +
             ": is not a drape plugin: its descriptor has no function that names its entries"
-            " (see DRAPE_PLUGIN in core/plugin/plugin.h)");
+            " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   CHECK(error_of("no_entries") ==
         library("no_entries").string() + ": names no entries; add some in its DRAPE_PLUGIN");
   CHECK(error_of("no_name") ==

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/mesh/check.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
 
 using namespace drape;
 using Faults = std::vector<std::string>;

@@ -9,8 +9,8 @@
 #include <limits>
 #include <sstream>
 
-#include "core/mesh/generate.h"
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
 
 using namespace drape;
 namespace fs = std::filesystem;

@@ -1,6 +1,6 @@
 // How texts of users and files appear in messages, and what is read of files at all.
 
-#include "core/mesh/message_text.h"
+#include "core/kernel/mesh/message_text.h"
 
 #include <sys/stat.h>
 
@@ -8,10 +8,10 @@
 #include <new>
 #include <system_error>
 
-#include "core/experiment/yaml_file.h"
-#include "core/mesh/file.h"
-#include "core/mesh/io.h"
-#include "core/plugin/string_utils.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/string_utils.h"
 #include "tests/support/command.h"
 
 using namespace drape;

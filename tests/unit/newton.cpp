@@ -1,10 +1,10 @@
-#include "core/numerics/newton.h"
+#include "core/kernel/solve/newton.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/newton_state.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/solve/newton_state.h"
 #include "tests/support/weight.h"
 
 using namespace drape;

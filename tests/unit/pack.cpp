@@ -1,4 +1,4 @@
-#include "core/numerics/pack.h"
+#include "core/kernel/linear_algebra/pack.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,10 +1,10 @@
-#include "core/contact/pair_contacts.h"
+#include "core/kernel/contact/pair_contacts.h"
 
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
 
-#include "core/contact/pair_geometry.h"
+#include "core/kernel/contact/pair_geometry.h"
 #include "tests/support/kernel_check.h"
 
 using namespace drape;

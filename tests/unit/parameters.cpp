@@ -1,12 +1,12 @@
-#include "core/plugin/parameters.h"
+#include "core/kernel/plugin/parameters.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
 #include <random>
 
-#include "core/experiment/yaml_file.h"
-#include "core/plugin/describe.h"
+#include "core/app/experiment/describe.h"
+#include "core/app/files/yaml_file.h"
 
 using namespace drape;
 

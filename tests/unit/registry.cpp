@@ -1,12 +1,12 @@
-#include "core/plugin/registry.h"
+#include "core/kernel/plugin/registry.h"
 
 #include <catch2/catch.hpp>
 #include <stdexcept>
 
-#include "core/experiment/yaml_file.h"
-#include "core/model/refiner.h"
-#include "core/plugin/describe.h"
-#include "core/plugin/make.h"
+#include "core/app/experiment/describe.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/make.h"
 
 using namespace drape;
 

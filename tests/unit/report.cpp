@@ -1,4 +1,4 @@
-#include "core/report/report.h"
+#include "core/app/report/report.h"
 
 #include <unistd.h>
 
@@ -9,15 +9,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "core/mesh/file.h"
-#include "core/mesh/io.h"
-#include "core/mesh/topology.h"
-#include "core/report/chart_data.h"
-#include "core/report/colours.h"
-#include "core/report/html.h"
-#include "core/report/pictures.h"
-#include "core/report/render.h"
-#include "core/report/tables.h"
+#include "core/app/report/chart_data.h"
+#include "core/app/report/pictures.h"
+#include "core/app/report/render.h"
+#include "core/app/report/tables.h"
+#include "core/app/view/colours.h"
+#include "core/app/view/html.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/topology.h"
 
 using namespace drape;
 namespace fs = std::filesystem;

@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/report/chart_data.h"
-#include "core/report/tables.h"
+#include "core/app/report/chart_data.h"
+#include "core/app/report/tables.h"
 
 using namespace drape;
 using Json = nlohmann::ordered_json;

@@ -1,10 +1,10 @@
-#include "core/hierarchy/rest_interpolation.h"
+#include "core/kernel/model/rest_interpolation.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/hierarchy/midpoint.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/midpoint.h"
 
 using namespace drape;
 

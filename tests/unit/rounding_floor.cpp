@@ -1,11 +1,11 @@
-#include "core/numerics/rounding_floor.h"
+#include "core/kernel/solve/rounding_floor.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/newton.h"
-#include "core/numerics/newton_state.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/solve/newton.h"
+#include "core/kernel/solve/newton_state.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/report/run_data.h"
+#include "core/app/report/run_data.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,13 +1,13 @@
-#include "core/numerics/safe_refinement.h"
+#include "core/kernel/solve/safe_refinement.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
-#include "core/model/stretch_limit.h"
-#include "core/numerics/newton_state.h"
-#include "core/numerics/progression.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/stretch_limit.h"
+#include "core/kernel/solve/newton_state.h"
+#include "core/kernel/solve/progression.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

@@ -1,4 +1,4 @@
-#include "core/experiment/size_estimate.h"
+#include "core/app/experiment/size_estimate.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,8 +1,8 @@
-#include "core/experiment/snapshots.h"
+#include "core/app/run/snapshots.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/mesh/file.h"
+#include "core/kernel/mesh/file.h"
 #include "tests/support/command.h"
 
 using namespace drape;

@@ -1,4 +1,4 @@
-#include "core/model/solver.h"
+#include "core/kernel/model/solver.h"
 
 #include <catch2/catch.hpp>
 

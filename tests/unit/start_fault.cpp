@@ -1,13 +1,13 @@
 // Messages about starts without finite energy or forces.
 
-#include "core/numerics/start_fault.h"
+#include "core/kernel/solve/start_fault.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/linear_energy.h"
-#include "core/numerics/newton.h"
+#include "core/kernel/elements/linear_energy.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/solve/newton.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/report/statistics.h"
+#include "core/app/report/statistics.h"
 
 #include <catch2/catch.hpp>
 

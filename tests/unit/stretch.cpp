@@ -1,4 +1,4 @@
-#include "core/numerics/stretch.h"
+#include "core/kernel/elements/stretch.h"
 
 #include <Eigen/SVD>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "core/numerics/symmetric_eigen.h"
+#include "core/kernel/linear_algebra/symmetric_eigen.h"
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>

@@ -5,7 +5,7 @@
 
 #include <sched.h>
 
-#include "core/numerics/stopwatch.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

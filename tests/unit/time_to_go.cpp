@@ -1,9 +1,9 @@
-#include "core/experiment/time_to_go.h"
+#include "core/app/run/time_to_go.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/experiment/progress.h"
+#include "core/app/run/progress.h"
 
 using namespace drape;
 

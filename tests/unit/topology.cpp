@@ -1,12 +1,12 @@
-#include "core/mesh/topology.h"
+#include "core/kernel/mesh/topology.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 #include <utility>
 
-#include "core/mesh/generate.h"
-#include "core/mesh/same_triangles.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/same_triangles.h"
 
 using namespace drape;
 

@@ -4,9 +4,9 @@
 #include <cstring>
 #include <limits>
 
-#include "core/view/surface_fields.h"
-#include "core/view/view_blocks.h"
-#include "core/view/view_document.h"
+#include "core/app/view/surface_fields.h"
+#include "core/app/view/view_blocks.h"
+#include "core/app/view/view_document.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/experiment/yaml_file.h"
+#include "core/app/files/yaml_file.h"
 
 #include <catch2/catch.hpp>
 #include <filesystem>

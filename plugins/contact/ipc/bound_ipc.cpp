@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/contact/averaged_contact_displacement.h"
-#include "core/contact/contact_kernel.h"
-#include "core/contact/contact_stack.h"
-#include "core/contact/stiffness.h"
-#include "core/mesh/intersections.h"
-#include "core/mesh/same_triangles.h"
+#include "core/kernel/contact/averaged_contact_displacement.h"
+#include "core/kernel/contact/contact_kernel.h"
+#include "core/kernel/contact/contact_stack.h"
+#include "core/kernel/contact/intersections.h"
+#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/mesh/same_triangles.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "plugins/contact/ipc/surface_contacts.h"
 #include "plugins/contact/ipc/weak_cache.h"

@@ -3,8 +3,8 @@
 #include <memory>
 #include <mutex>
 
-#include "core/contact/broad_phase.h"
-#include "core/model/smallest_gap.h"
+#include "core/kernel/contact/broad_phase.h"
+#include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/ipc/candidates.h"
 #include "plugins/contact/ipc/ipc.h"
 

@@ -10,8 +10,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/mesh/check.h"
-#include "core/mesh/intersections.h"
+#include "core/kernel/contact/intersections.h"
+#include "core/kernel/mesh/check.h"
 #include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/plugin/parameters.h"
+#include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/contact/pair_geometry.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::ipc {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/contact/pair_contacts.h"
-#include "core/mesh/topology.h"
+#include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/mesh/topology.h"
 #include "plugins/contact/ipc/nearest_features.h"
 #include "plugins/contact/ipc/obstacle.h"
 #include "plugins/contact/ipc/surface.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/plugin/bounds.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/weak_cache.h"
 
@@ -32,7 +32,7 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
       .description(
           "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
           "weight per area")
-      .source("core/contact/stiffness.h");
+      .source("core/kernel/contact/stiffness.h");
   d.add("friction_smoothing_distance", &P::friction_smoothing_distance)
       .unit("m")
       .at_least(1e-12)

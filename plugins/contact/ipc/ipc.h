@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/contact/broad_phase.h"
-#include "core/model/contact_model.h"
+#include "core/kernel/contact/broad_phase.h"
+#include "core/kernel/model/contact_model.h"
 #include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "core/contact/pair_geometry.h"
+#include "core/kernel/contact/pair_geometry.h"
 
 namespace drape::ipc {
 

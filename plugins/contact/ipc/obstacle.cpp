@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/mesh/message_text.h"
-#include "core/mesh/rotation.h"
-#include "core/plugin/bounds.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/mesh/rotation.h"
+#include "core/kernel/plugin/bounds.h"
 
 namespace drape::ipc {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/plugin/parameters.h"
+#include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/dihedrals.h"
 #include "plugins/contact/ipc/surface.h"

@@ -4,11 +4,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/contact/nonlinear_ccd.h"
-#include "core/contact/pair_geometry.h"
-#include "core/mesh/rotation.h"
-#include "core/mesh/same_triangles.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/nonlinear_ccd.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/rotation.h"
+#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape::ipc {
 namespace {

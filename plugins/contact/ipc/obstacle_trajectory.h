@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/broad_phase.h"
+#include "core/kernel/contact/broad_phase.h"
 #include "plugins/contact/ipc/candidates.h"
 
 namespace drape::ipc {
@@ -40,7 +40,7 @@ class ObstacleTrajectory {
   TrajectorySegment segment(double begin, double end) const;
 
   /// The largest collision-free step with the cloth at x, which leaves the minimum gap of
-  /// core/contact/nonlinear_ccd.h. The limit names the blocking pair.
+  /// core/kernel/contact/nonlinear_ccd.h. The limit names the blocking pair.
   StepLimit max_step(const Surface& cloth, const Positions& x, double dhat, BroadPhaseKind broad_phase) const;
 
  private:

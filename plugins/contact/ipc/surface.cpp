@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::ipc {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/contact/box.h"
-#include "core/mesh/topology.h"
+#include "core/kernel/contact/box.h"
+#include "core/kernel/mesh/topology.h"
 
 namespace drape::ipc {
 

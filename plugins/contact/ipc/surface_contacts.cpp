@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/contact/barrier.h"
-#include "core/contact/friction.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/friction.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::ipc {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/contact/pair_contacts.h"
+#include "core/kernel/contact/pair_contacts.h"
 #include "plugins/contact/ipc/nearest_features.h"
 
 namespace drape::ipc {

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
-#include "core/mesh/intersections.h"
-#include "core/mesh/io.h"
+#include "core/kernel/contact/intersections.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
 

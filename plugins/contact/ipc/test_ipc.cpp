@@ -3,9 +3,9 @@
 #include <random>
 #include <set>
 
-#include "core/contact/pair_geometry.h"
-#include "core/contact/stiffness.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/processor_time.h"

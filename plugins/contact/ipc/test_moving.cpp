@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/mesh/generate.h"
-#include "core/mesh/intersections.h"
-#include "core/mesh/io.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/intersections.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "tests/support/command.h"

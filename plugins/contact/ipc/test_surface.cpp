@@ -5,9 +5,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/contact/barrier.h"
-#include "core/contact/pair_geometry.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/contact/ipc/surface_contacts.h"
 #include "tests/support/evaluate.h"
 

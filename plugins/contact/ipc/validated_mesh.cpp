@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/mesh/check.h"
-#include "core/mesh/io.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/io.h"
 #include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {

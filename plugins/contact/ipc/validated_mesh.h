@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "core/mesh/topology.h"
+#include "core/kernel/mesh/topology.h"
 
 namespace drape::ipc {
 

@@ -1,5 +1,5 @@
-#include "core/model/contact_model.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/contact_model.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/contact/contact_stack.h"
-#include "core/contact/nonlinear_ccd.h"
-#include "core/model/smallest_gap.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/contact_stack.h"
+#include "core/kernel/contact/nonlinear_ccd.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
 #include "plugins/contact/shapes/solid_trajectory.h"

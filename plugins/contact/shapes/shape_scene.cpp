@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::shapes {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/contact/pair_contacts.h"
+#include "core/kernel/contact/pair_contacts.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/vertex_contacts.h"

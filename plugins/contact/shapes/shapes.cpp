@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "core/contact/stiffness.h"
-#include "core/plugin/bounds.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/contact/shapes/bound_shapes.h"
 
 namespace drape::shapes {

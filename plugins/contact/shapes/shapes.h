@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/model/contact_model.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/contact_model.h"
+#include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

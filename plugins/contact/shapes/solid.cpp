@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/mesh/rotation.h"
+#include "core/kernel/mesh/rotation.h"
 
 namespace drape::shapes {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/contact/averaged_contact_displacement.h"
-#include "core/contact/contact_kernel.h"
-#include "core/contact/nonlinear_ccd.h"
+#include "core/kernel/contact/averaged_contact_displacement.h"
+#include "core/kernel/contact/contact_kernel.h"
+#include "core/kernel/contact/nonlinear_ccd.h"
 
 namespace drape::shapes {
 

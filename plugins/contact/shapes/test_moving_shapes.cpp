@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
 

@@ -3,9 +3,9 @@
 #include <limits>
 #include <random>
 
-#include "core/contact/barrier.h"
-#include "core/contact/stiffness.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
@@ -329,7 +329,7 @@ TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
       CHECK(g.leftCols(2).norm() <= 1e-12 * g.norm());
     }
     CHECK(energy_at(*bound, lifted(level, 1.001 * dhat)) == 0);
-    // The material's own stiffness leaves the gap that core/contact/stiffness.h tells.
+    // The material's own stiffness leaves the gap that core/kernel/contact/stiffness.h tells.
     Shapes::Parameters own = with({level_with(kind)});
     own.stiffness.reset();
     const Material cotton;

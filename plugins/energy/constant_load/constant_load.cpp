@@ -1,7 +1,7 @@
 #include "plugins/energy/constant_load/constant_load.h"
 
-#include "core/numerics/linear_energy.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/elements/linear_energy.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 

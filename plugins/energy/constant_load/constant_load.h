@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "core/model/energy.h"
-#include "core/plugin/bounds.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/energy.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -3,8 +3,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/numerics/element_energy.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
 
 namespace drape {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/numerics/dihedral_angle.h"
+#include "core/kernel/elements/dihedral_angle.h"
 
 namespace drape {
 

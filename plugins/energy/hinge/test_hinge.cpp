@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/energy/hinge/hinge.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
 #include "tests/support/kernel_check.h"

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/numerics/dihedral_angle.h"
-#include "core/numerics/element_energy.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/elements/dihedral_angle.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape {
 namespace {

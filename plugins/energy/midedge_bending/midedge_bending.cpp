@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 
 namespace drape {

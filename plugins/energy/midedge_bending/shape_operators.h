@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/hierarchy/level.h"
+#include "core/kernel/model/level.h"
 
 namespace drape {
 

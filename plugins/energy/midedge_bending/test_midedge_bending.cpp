@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/mesh/generate.h"
-#include "core/numerics/dihedral_angle.h"
+#include "core/kernel/elements/dihedral_angle.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/energy/midedge_bending/midedge_bending.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/support/kernel_check.h"

@@ -1,6 +1,6 @@
 #include "plugins/energy/neo_hookean/neo_hookean.h"
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"
 
 namespace drape {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/numerics/membrane_kernel.h"
+#include "core/kernel/elements/membrane_kernel.h"
 
 namespace drape {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "core/numerics/element_order.h"
-#include "core/numerics/parallel.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/element_order.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/model/energy.h"
-#include "core/plugin/bounds.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/energy.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -2,7 +2,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
 #include "plugins/energy/pressure/pressure.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/kernel_check.h"

@@ -3,8 +3,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/numerics/element_energy.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 
 namespace drape {

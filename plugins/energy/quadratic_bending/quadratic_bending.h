@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/model/energy.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/energy.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

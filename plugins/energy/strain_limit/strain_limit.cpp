@@ -3,10 +3,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/model/stretch_limit.h"
-#include "core/numerics/element_energy.h"
-#include "core/numerics/parallel.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/elements/element_energy.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/stretch_limit.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/strain_limit/strain_limit_law.h"
 #include "plugins/energy/strain_limit/stretch_path.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/stretch_kernel.h"
+#include "core/kernel/elements/stretch_kernel.h"
 
 namespace drape {
 

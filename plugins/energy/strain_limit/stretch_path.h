@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "core/numerics/stretch.h"
+#include "core/kernel/elements/stretch.h"
 
 namespace drape {
 

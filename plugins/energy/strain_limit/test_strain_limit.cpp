@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/mesh/generate.h"
-#include "core/model/stretch_limit.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/stretch_limit.h"
 #include "plugins/energy/strain_limit/strain_limit.h"
 #include "plugins/energy/strain_limit/strain_limit_law.h"
 #include "plugins/energy/strain_limit/stretch_path.h"

@@ -1,6 +1,6 @@
 #include "plugins/energy/stvk/stvk.h"
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/stvk/stvk_law.h"
 
 namespace drape {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/numerics/membrane_kernel.h"
+#include "core/kernel/elements/membrane_kernel.h"
 
 namespace drape {
 

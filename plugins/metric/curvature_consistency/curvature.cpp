@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
 
 namespace drape {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 #include "plugins/metric/curvature_consistency/curvature.h"
 
 namespace drape {

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/closest.h"
-#include "core/numerics/parallel.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/contact/closest.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 namespace {

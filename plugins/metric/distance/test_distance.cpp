@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/contact/closest.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/contact/closest.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "plugins/metric/distance/distance.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/metric_check.h"

@@ -1,6 +1,6 @@
-#include "core/model/level_model.h"
-#include "core/model/metric.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/level_model.h"
+#include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "core/model/level_model.h"
-#include "core/model/metric.h"
-#include "core/numerics/block_cholesky.h"
-#include "core/plugin/bounds.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/kernel/model/level_model.h"
+#include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 

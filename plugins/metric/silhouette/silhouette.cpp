@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/numerics/parallel.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "core/model/metric.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

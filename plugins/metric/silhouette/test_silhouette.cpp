@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/hierarchy/midpoint.h"
-#include "core/numerics/parallel.h"
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/midpoint.h"
 #include "plugins/metric/silhouette/silhouette.h"
 #include "tests/support/metric_check.h"
 

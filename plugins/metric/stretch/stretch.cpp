@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/numerics/stretch.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/elements/stretch.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 

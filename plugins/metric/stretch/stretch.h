@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/model/metric.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

@@ -1,6 +1,6 @@
 #include "plugins/refiner/loop/loop.h"
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::LoopRefiner>(

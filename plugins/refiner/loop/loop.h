@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
-#include "core/hierarchy/midpoint.h"
-#include "core/model/refiner.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/midpoint.h"
+#include "core/kernel/model/refiner.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

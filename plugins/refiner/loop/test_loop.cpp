@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "core/hierarchy/hierarchy.h"
-#include "core/mesh/check.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/hierarchy.h"
 #include "plugins/refiner/loop/loop.h"
 
 using namespace drape;

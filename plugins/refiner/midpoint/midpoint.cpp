@@ -1,6 +1,6 @@
 #include "plugins/refiner/midpoint/midpoint.h"
 
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Refiner, drape::MidpointRefiner>(

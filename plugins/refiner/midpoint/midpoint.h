@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/hierarchy/midpoint.h"
-#include "core/plugin/parameters.h"
+#include "core/kernel/model/midpoint.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 

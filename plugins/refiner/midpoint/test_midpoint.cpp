@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "core/hierarchy/hierarchy.h"
-#include "core/mesh/generate.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/hierarchy.h"
 #include "plugins/refiner/midpoint/midpoint.h"
 
 using namespace drape;

@@ -1,6 +1,6 @@
-#include "core/numerics/newton_state.h"
-#include "core/numerics/progression.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
+#include "core/kernel/solve/progression.h"
+#include "core/kernel/solve/resumable_solver.h"
 
 namespace drape {
 

@@ -1,7 +1,7 @@
-#include "core/numerics/newton.h"
+#include "core/kernel/solve/newton.h"
 
-#include "core/numerics/newton_state.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
+#include "core/kernel/solve/resumable_solver.h"
 
 namespace drape {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 
-#include "core/numerics/newton_state.h"
-#include "core/numerics/progression.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
+#include "core/kernel/solve/progression.h"
+#include "core/kernel/solve/resumable_solver.h"
 #include "plugins/solver/pcs/proxy_parts.h"
 
 namespace drape {

@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/hierarchy/transfer.h"
-#include "core/model/objective.h"
-#include "core/model/solver.h"
-#include "core/numerics/galerkin.h"
+#include "core/kernel/linear_algebra/galerkin.h"
+#include "core/kernel/model/objective.h"
+#include "core/kernel/model/solver.h"
+#include "core/kernel/model/transfer.h"
 
 namespace drape {
 

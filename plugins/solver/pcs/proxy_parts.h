@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "core/plugin/parameters.h"
+#include "core/kernel/plugin/parameters.h"
 #include "plugins/solver/pcs/proxy_objective.h"
 
 namespace drape {

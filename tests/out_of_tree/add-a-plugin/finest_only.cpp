@@ -1,5 +1,5 @@
-#include "core/numerics/newton.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/plugin/plugin.h"
+#include "core/kernel/solve/newton.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
-#include "core/contact/barrier.h"
-#include "core/contact/stiffness.h"
-#include "core/model/contact_model.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/model/contact_model.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

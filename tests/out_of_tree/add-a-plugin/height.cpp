@@ -1,5 +1,5 @@
-#include "core/model/metric.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
-#include "core/hierarchy/midpoint.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/midpoint.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
-#include "core/model/energy.h"
-#include "core/plugin/plugin.h"
+#include "core/kernel/model/energy.h"
+#include "core/kernel/plugin/plugin.h"
 
 namespace {
 

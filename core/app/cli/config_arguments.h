@@ -1,0 +1,46 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/app/experiment/experiment.h"
+#include "core/app/experiment/size_estimate.h"
+
+namespace drape {
+
+/// Validates a positive integer option: an error text, or "".
+std::string positive_integer(const std::string& text);
+
+/// Prints the errors and returns the exit code.
+int report_errors(const ConfigErrors& errors);
+
+/// An experiment file and its overrides on the command line.
+struct ConfigArguments {
+  std::string config;
+  std::vector<std::string> sets;
+  int levels = 0;
+  bool allow_start_repair = false;
+  bool allow_memory = false;
+  CLI::Option* config_option = nullptr;
+
+  void add_to(CLI::App& command);
+  Overrides overrides() const;
+  LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }
+};
+
+/// An experiment and its scene; both empty, with errors printed, if they are not valid.
+struct Loaded {
+  std::optional<Experiment> experiment;
+  std::unique_ptr<Scene> scene;
+  int exit_code = 0;
+
+  Loaded(const ConfigArguments& arguments, const Registry& registry);
+
+ private:
+  void repair(ConfigErrors& errors);
+};
+
+}  // namespace drape

@@ -1,0 +1,292 @@
+// The `drape` command. Its exit codes are in exit_codes.h.
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "core/app/cli/config_arguments.h"
+#include "core/app/cli/run_command.h"
+#include "core/app/cli/sweep_command.h"
+#include "core/app/experiment/describe.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/experiment/size_estimate.h"
+#include "core/app/files/machine.h"
+#include "core/app/report/compare.h"
+#include "core/app/report/report.h"
+#include "core/app/report/run_collection.h"
+#include "core/app/report/run_table.h"
+#include "core/app/report/runs_report.h"
+#include "core/app/report/tables.h"
+#include "core/app/run/runner.h"
+#include "core/app/sweep/sweep.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/loader.h"
+#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/version.h"
+
+namespace {
+
+using namespace drape;
+
+constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metric"};
+
+int check(const ConfigArguments& arguments, const Registry& registry) {
+  Loaded loaded(arguments, registry);
+  if (loaded.exit_code) return loaded.exit_code;
+  std::cout << arguments.config << ": valid.";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
+  std::cout << "\nMemory to solve them, at most about:";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\n";
+  return exit_done;
+}
+
+int list(const std::string& kind, const Registry& registry) {
+  const std::vector<std::string> all(std::begin(kinds), std::end(kinds));
+  if (!kind.empty() && std::find(all.begin(), all.end(), kind) == all.end())
+    throw std::runtime_error("there is no kind \"" + excerpt(kind) + "\"; the kinds are " + joined(all));
+  for (const char* k : kinds) {
+    if (!kind.empty() && kind != k) continue;
+    std::cout << k << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(k))
+      std::cout << "  " << entry->name << std::string(std::max<int>(25 - int(entry->name.size()), 1), ' ')
+                << entry->summary << "\n";
+  }
+  return exit_done;
+}
+
+int describe_plugin(const std::string& name, const Registry& registry) {
+  if (name == "experiment") {
+    std::cout << describe(schema_of<ExperimentParameters>("experiment"));
+    return exit_done;
+  }
+  if (name == "sweep") {
+    std::cout << describe_sweep();
+    return exit_done;
+  }
+  std::vector<std::string> names = {"experiment", "sweep"};
+  bool found = false;
+  for (const auto& entry : registry.entries()) {
+    names.push_back(entry->name);
+    if (entry->name != name) continue;
+    std::cout << (found ? "\n" : "") << describe(*entry);
+    found = true;
+  }
+  if (found) return exit_done;
+  const std::string near = nearest_word(name, names);
+  std::cerr << "error: no plugin is called \"" << excerpt(name) << "\"; "
+            << (near.empty() ? "`drape list` names them all" : "did you mean \"" + near + "\"?") << "\n";
+  return exit_bad_input;
+}
+
+/// Writes every plugin's parameters into FOLDER/KIND/NAME/README.md, if that exists.
+int reference_into(const std::filesystem::path& folder, const Registry& registry) {
+  int pages = 0;
+  for (const auto& entry : registry.entries()) {
+    const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
+    if (!std::filesystem::exists(file)) continue;
+    write_file(file, with_parameters(read_file(file), *entry));
+    ++pages;
+  }
+  if (pages == 0)
+    throw std::runtime_error("--readmes " + folder.string() +
+                             ": no KIND/NAME/README.md of a plugin there; give the folder `plugins`");
+  std::cout << pages << " pages written\n";
+  return exit_done;
+}
+
+int reference(const Registry& registry) {
+  std::cout << "# Configuration reference\n\nMade by `drape reference`; do not edit.\n\n## Experiment\n\n"
+            << describe_markdown(schema_of<ExperimentParameters>("experiment"));
+  for (const char* kind : kinds) {
+    std::cout << "\n## Kind: " << kind << "\n";
+    for (const RegistryEntry* entry : registry.of_kind(kind)) std::cout << "\n" << describe_markdown(*entry);
+  }
+  std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
+  return exit_done;
+}
+
+int report(const std::vector<std::filesystem::path>& folders, std::filesystem::path page) {
+  const bool several = folders.size() > 1 || is_sweep(folders.front());
+  if (!several && !page.empty())
+    throw std::runtime_error(
+        "--out is for the page of several runs; a run's own is report.html in its folder");
+  if (page.empty()) page = folders.front() / "report.html";
+  if (folders.size() > 1 && page == folders.front() / "report.html")
+    throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
+  if (several)
+    write_runs_report(folders, page);
+  else
+    write_report(folders.front());
+  std::cout << "report: " << page.string() << "\n";
+  return exit_done;
+}
+
+nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
+  nlohmann::ordered_json schema = json_schema(schema_of<ExperimentParameters>("experiment"), &registry);
+  schema["properties"]["methods"].update(named_plugins_schema("solver", registry));
+  return schema;
+}
+
+void require_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    if (!command->get_group().empty()) commands.push_back(command->get_name());
+  }
+  const std::string near = nearest_word(word, commands);
+  throw std::runtime_error(
+      "there is no command \"" + excerpt(word) + "\"; " +
+      (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
+}
+
+/// The footer of every help page.
+std::string exit_codes_help() {
+  std::string text = "Exit codes:\n";
+  for (const ExitCode& code : exit_codes) {
+    const std::string number = std::to_string(code.code);
+    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
+  }
+  return text;
+}
+
+int main_checked(int argc, char** argv) {
+  CLI::App app("drape: progressive cloth quasistatics", "drape");
+  app.footer(exit_codes_help());
+  app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
+  app.require_subcommand(1);
+  app.failure_message([](const CLI::App* app, const CLI::Error& error) {
+    const std::string command =
+        app->get_subcommands().empty() ? "" : " " + app->get_subcommands()[0]->get_name();
+    return "error: " + printable(error.what()) + "; see `drape" + command + " --help`\n";
+  });
+
+  const RunCommand run(app);
+
+  ConfigArguments check_arguments;
+  CLI::App* check_command = app.add_subcommand("check", "check an experiment without running it");
+  check_arguments.add_to(*check_command);
+
+  const SweepCommand sweep(app);
+
+  std::string kind, plugin, out, run_folder, schema_kind = "experiment";
+  CLI::App* list_command = app.add_subcommand("list", "list plugins");
+  list_command->add_option("kind", kind, "only this kind");
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
+  describe_command->add_option("plugin", plugin, "name of the plugin")->required();
+  std::vector<std::string> report_folders, compared, bounds, columns;
+  TableFormat format = TableFormat::markdown;
+  CLI::App* report_command =
+      app.add_subcommand("report", "write the report of a run, of several runs or of a sweep");
+  report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
+  report_command->add_option("--out", out, "page of several runs (default: report.html in a sweep's folder)");
+  CLI::App* compare_command = app.add_subcommand(
+      "compare", "compare two runs or sweeps: what became faster, slower, better or worse");
+  compare_command->add_option("runs", compared, "the former and the new one")->required()->expected(2);
+  compare_command
+      ->add_option("--bound", bounds,
+                   "exit with 1 if a quantity exceeds RATIO times its former value; may be repeated")
+      ->type_name("KEY=RATIO")
+      ->allow_extra_args(false);
+  CLI::App* table_command = app.add_subcommand(
+      "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass");
+  table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
+  table_command->add_option("--format", format, "md, csv or json")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
+          {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}}));
+  table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  CLI::App* table1_command =
+      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
+  table1_command->add_option("folder", run_folder, "results folder")->required();
+  CLI::App* schema_command =
+      app.add_subcommand("schema", "print the JSON Schema of experiments (or sweeps), for editors");
+  schema_command->add_option("kind", schema_kind, "experiment or sweep")
+      ->check(CLI::IsMember({"experiment", "sweep"}));
+  CLI::App* reference_command =
+      app.add_subcommand("reference", "print the configuration reference (Markdown)");
+  reference_command->add_option("--readmes", run_folder,
+                                "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
+
+  if (argc < 2) {
+    std::cerr << app.help();
+    return exit_bad_input;
+  }
+  if (argv[1][0] != '-') require_command(app, argv[1]);
+  try {
+    app.parse(argc, argv);
+    run.check();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_bad_input;
+  }
+
+  if (*report_command) {
+    return report({report_folders.begin(), report_folders.end()}, out);
+  }
+  if (*compare_command) {
+    const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
+    std::cout << printable_lines(comparison.text());
+    return comparison.broken() ? exit_bound_broken : exit_done;
+  }
+  if (*table_command) {
+    const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
+    const std::string table = table_text(rows, columns, format);
+    std::cout << (format == TableFormat::json ? table : printable_lines(table));
+    return all_pass(rows) ? exit_done : exit_not_converged;
+  }
+  if (*table1_command) {
+    std::cout << printable_lines(table1_text(read_run(run_folder)));
+    return exit_done;
+  }
+  if (sweep.job_chosen()) return sweep.run_job();
+  Registry registry;
+  load_plugins(registry, plugin_directories());
+  if (run.chosen()) return run.run(registry);
+  if (sweep.chosen()) return sweep.run(registry);
+  if (*check_command) return check(check_arguments, registry);
+  if (*list_command) return list(kind, registry);
+  if (*describe_command) return describe_plugin(plugin, registry);
+  if (*schema_command) {
+    if (schema_kind == "sweep")
+      std::cout << sweep_json_schema().dump(2) << "\n";
+    else
+      std::cout << experiment_json_schema(registry).dump(2) << "\n";
+    return exit_done;
+  }
+  if (*reference_command)
+    return run_folder.empty() ? reference(registry) : reference_into(run_folder, registry);
+  return exit_bad_input;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Exceeding a file size limit is reported as an error instead of ending the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const auto end = [](const std::string& message, int exit_code) {
+    std::cerr << "error: " << printable(message) << "\n";
+    return exit_code;
+  };
+  try {
+    const int exit_code = main_checked(argc, argv);
+    if (!std::cout.flush()) return end("standard output cannot be written to", exit_aborted);
+    return exit_code;
+  } catch (const RunAborted& error) {
+    return end(error.what(), exit_aborted);
+  } catch (const WriteError& error) {
+    return end(error.what(), exit_aborted);
+  } catch (const nlohmann::json::exception& error) {
+    return end(std::string("a results file is not as drape writes it (") + error.what() +
+                   "); run the experiment again",
+               exit_bad_input);
+  } catch (const std::exception& error) {
+    return end(reason_of(error), exit_bad_input);
+  }
+}

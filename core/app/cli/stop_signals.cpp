@@ -1,0 +1,28 @@
+#include "core/app/cli/stop_signals.h"
+
+#include <csignal>
+#include <cstdlib>
+
+#include "core/app/experiment/exit_codes.h"
+
+namespace drape {
+
+namespace {
+
+volatile std::sig_atomic_t received = 0;
+
+void on_signal(int number) {
+  if (received) std::_Exit(exit_by_signal + number);
+  received = number;
+}
+
+}  // namespace
+
+void stop_on_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+int stop_signal() { return received; }
+
+}  // namespace drape

@@ -1,0 +1,129 @@
+#include "core/app/experiment/boundary_conditions.h"
+
+#include "core/kernel/mesh/rotation.h"
+#include "core/kernel/model/position_penalty.h"
+
+namespace drape {
+
+namespace {
+
+void check_selection(const std::string& word, std::size_t number, const VertexSelection& p,
+                     const Location& where, const Level& coarsest, ConfigErrors& errors) {
+  const std::string name = word + " " + std::to_string(number) + " (" + p.region + ")";
+  const bool by_index = p.region == "vertices";
+  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
+    errors.push_back({where, name + " selects no vertex of the coarsest level; " +
+                                 (by_index ? "list some under \"vertices\"" : "widen its region")});
+  for (int v : p.vertices)
+    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
+      errors.push_back({where, name + " names vertex " + std::to_string(v) +
+                                   ", but those of the coarsest level go from 0 to " +
+                                   std::to_string(coarsest.vertex_count() - 1)});
+}
+
+/// Soft positions: κ_B/2 Σ m_k ‖x_k − x̃_k‖² (supplement, section 4). Departure: each handle's masses are
+/// scaled to their sum on the coarsest level, where one vertex stands for many: all levels are equally stiff.
+class Handles final : public Energy {
+ public:
+  Handles(const ExperimentParameters& p, const Level& coarsest)
+      : handles_(p.handles), start_(p.start), coarsest_(coarsest) {}
+
+  EnergyRole role() const override { return EnergyRole::position; }
+
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
+    std::vector<PositionPenalty::Term> terms;
+    for (const HandleParameters& handle : handles_) {
+      const std::vector<int> own = selected_vertices(handle, level, coarsest_);
+      double own_area = 0, coarse_area = 0;
+      for (int v : own) own_area += level.vertex_area[v];
+      for (int v : selected_vertices(handle, coarsest_, coarsest_)) coarse_area += coarsest_.vertex_area[v];
+      const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
+      for (int v : own)
+        terms.push_back(
+            {v,
+             handle.has_transform() ? handle.target(level.rest.vertices.row(v))
+                                    : start_.transformed(level.rest.vertices.row(v)),
+             stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
+    }
+    return std::make_unique<PositionPenalty>(std::move(terms));
+  }
+
+ private:
+  std::vector<HandleParameters> handles_;
+  StartParameters start_;
+  const Level& coarsest_;
+};
+
+}  // namespace
+
+Eigen::Vector3d VertexSelection::target(const Eigen::Vector3d& rest) const {
+  const Eigen::Vector3d rotated =
+      rotate ? Eigen::Vector3d(rotation_matrix(*rotate) * (rest - centre) + centre) : rest;
+  return translate ? Eigen::Vector3d(rotated + *translate) : rotated;
+}
+
+Eigen::Vector3d StartParameters::transformed(const Eigen::Vector3d& rest, double noise) const {
+  Eigen::Vector3d p = rest.cwiseProduct(scale);
+  p.z() += noise;
+  return rotation_matrix(rotate) * p + translate;
+}
+
+std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
+                                   const Level& coarsest) {
+  std::vector<int> selected;
+  if (selection.region == "nearest") {
+    Eigen::Index nearest = 0;
+    (coarsest.rest.vertices.rowwise() - selection.point.transpose())
+        .rowwise()
+        .squaredNorm()
+        .minCoeff(&nearest);
+    return {static_cast<int>(nearest)};
+  }
+  if (selection.region == "vertices") {
+    // Children of coarse vertices keep their index on every level.
+    for (int v : selection.vertices)
+      if (v >= 0 && v < coarsest.vertex_count()) selected.push_back(v);
+    return selected;
+  }
+  for (int i = 0; i < level.vertex_count(); ++i) {
+    const Eigen::Vector3d p = level.rest.vertices.row(i);
+    const bool in_ball = (p - selection.point).norm() <= selection.radius * (1 + 1e-12);
+    const bool in_box = (p.array() >= selection.lower.array() - 1e-12).all() &&
+                        (p.array() <= selection.upper.array() + 1e-12).all();
+    if (selection.region == "border" ? level.topology.on_border[i]
+        : selection.region == "ball" ? in_ball
+                                     : in_box)
+      selected.push_back(i);
+  }
+  return selected;
+}
+
+void check_boundary_conditions(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const ExperimentParameters& p = e.parameters;
+  const auto location = [&](const char* key, std::size_t k) { return e.source.find(key)->items[k].where; };
+  for (std::size_t k = 0; k < p.pins.size(); ++k)
+    check_selection("pin", k, p.pins[k], location("pins", k), coarsest, errors);
+  for (std::size_t k = 0; k < p.handles.size(); ++k)
+    check_selection("handle", k, p.handles[k], location("handles", k), coarsest, errors);
+}
+
+std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
+                                                const Level& coarsest, const Positions& start) {
+  std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
+  for (std::size_t k = 0; k < p.pins.size(); ++k)
+    for (int v : selected_vertices(p.pins[k], level, coarsest))
+      by_vertex[v] = {v,
+                      p.pins[k].has_transform() ? p.pins[k].target(level.rest.vertices.row(v))
+                                                : Eigen::Vector3d(start.row(v)),
+                      static_cast<int>(k)};
+  std::vector<DirichletVertex> dirichlet;
+  for (const DirichletVertex& h : by_vertex)
+    if (h.vertex >= 0) dirichlet.push_back(h);
+  return dirichlet;
+}
+
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest) {
+  return p.handles.empty() ? nullptr : std::make_shared<Handles>(p, coarsest);
+}
+
+}  // namespace drape

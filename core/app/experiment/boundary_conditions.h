@@ -1,0 +1,25 @@
+#pragma once
+
+#include "core/app/experiment/experiment.h"
+
+namespace drape {
+
+/// The selected vertices of a level, ascending. "nearest" selects the vertex of the coarsest level that is
+/// nearest to the point, and on finer levels its child, which has the same index.
+std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
+                                   const Level& coarsest);
+
+/// Appends an error for every pin and handle that selects no vertex of the coarsest level, or one that does
+/// not exist.
+void check_boundary_conditions(const Experiment& experiment, const Level& coarsest, ConfigErrors& errors);
+
+/// The Dirichlet vertices of a level with their targets [m]. The last pin that selects a vertex decides; a
+/// pin without a transform keeps it at its position in `start` (n×3).
+std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
+                                                const Level& coarsest, const Positions& start);
+
+/// The penalty energy of all handles, equally stiff on every level; null without a handle. `coarsest` must
+/// outlive it.
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& parameters, const Level& coarsest);
+
+}  // namespace drape

@@ -1,0 +1,135 @@
+#include "core/app/experiment/describe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+namespace {
+
+struct Row {
+  int depth = 0;
+  std::string path;  ///< "section.name"
+  const Parameter* parameter = nullptr;
+  std::string type, initial, range;
+};
+
+std::string range_text(const Parameter& p) {
+  std::vector<std::string> parts;
+  const auto bound = [&](const char* sign, double value) {
+    if (std::isfinite(value)) parts.push_back(sign + ConfigNode::of(value).scalar);
+  };
+  bound(p.open_minimum ? "> " : ">= ", p.minimum);
+  bound(p.open_maximum ? "< " : "<= ", p.maximum);
+  if (!p.choices.empty()) parts.push_back(joined(p.choices));
+  return joined(parts);
+}
+
+std::string type_text(const Parameter& p) {
+  const bool list = p.type.starts_with("list of ");
+  std::string type = p.type;
+  if (!p.plugin_kind.empty()) type = (list ? "list of plugins, " : "plugin, ") + p.plugin_kind;
+  if (list && p.size) type = std::to_string(p.size) + type.substr(std::string("list of").size());
+  return type + (p.nullable ? " or null" : "");
+}
+
+/// Every parameter in order; a section is followed by its parameters.
+void collect(const Schema& schema, const ConfigNode& defaults, int depth, const std::string& prefix,
+             std::vector<Row>& rows) {
+  for (const Parameter& p : schema.parameters) {
+    const ConfigNode* initial = defaults.find(p.name);
+    Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p)};
+    if (p.required)
+      row.initial = "required";
+    else if (p.type != "section" && initial)
+      row.initial = initial->one_line();
+    rows.push_back(row);
+    if (p.type == "section") collect(*p.section, *initial, depth + 1, row.path + ".", rows);
+    if (p.type == "list of sections")
+      collect(*p.section, p.section->write(p.section->fresh().get()), depth + 1, row.path + "[].", rows);
+  }
+}
+
+std::vector<Row> rows_of(const Schema& schema) {
+  std::vector<Row> rows;
+  collect(schema, schema.write(schema.fresh().get()), 0, "", rows);
+  return rows;
+}
+
+std::string unit_of(const Parameter& p) { return p.unit == "1" ? "" : p.unit; }
+
+/// The number of code points: units contain ², ρ and the like.
+size_t width(const std::string& text) {
+  size_t n = 0;
+  for (const char c : text) n += (c & 0xC0) != 0x80;
+  return n;
+}
+
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) escaped += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
+  return " " + escaped + " |";
+}
+
+}  // namespace
+
+std::string describe(const Schema& schema) {
+  std::vector<std::array<std::string, 5>> table = {{"name", "type", "default", "unit", "range"}};
+  const std::vector<Row> rows = rows_of(schema);
+  for (const Row& row : rows)
+    table.push_back({std::string(2 * size_t(row.depth), ' ') + row.parameter->name, row.type, row.initial,
+                     unit_of(*row.parameter), row.range});
+  if (rows.empty()) return "  no parameters\n";
+  std::array<size_t, 5> widths{};
+  for (const auto& line : table)
+    for (size_t k = 0; k < 5; ++k) widths[k] = std::max(widths[k], width(line[k]));
+  std::string text;
+  for (size_t i = 0; i < table.size(); ++i) {
+    std::string line = "  ";
+    for (size_t k = 0; k < 5; ++k) line += table[i][k] + std::string(widths[k] - width(table[i][k]) + 2, ' ');
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    if (i == 0) continue;
+    const Parameter& p = *rows[i - 1].parameter;
+    std::string note = p.description;
+    if (!p.source.empty()) note += (note.empty() ? "[" : " [") + p.source + "]";
+    if (!note.empty()) text += "      " + std::string(2 * size_t(rows[i - 1].depth), ' ') + note + "\n";
+  }
+  return text;
+}
+
+std::string describe(const RegistryEntry& entry) {
+  return entry.kind + " " + entry.name + ": " + entry.summary + "\nfrom " + entry.library + "\n\n" +
+         describe(entry.schema);
+}
+
+std::string describe_markdown(const Schema& schema) {
+  const std::vector<Row> rows = rows_of(schema);
+  if (rows.empty()) return "No parameters.\n";
+  std::string text =
+      "| name | type | default | unit | range | description | source |\n|---|---|---|---|---|---|---|\n";
+  for (const Row& row : rows) {
+    const Parameter& p = *row.parameter;
+    const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
+    text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
+            cell(row.range) + cell(p.description) + cell(p.source) + "\n";
+  }
+  return text;
+}
+
+std::string describe_markdown(const RegistryEntry& entry) {
+  return "### " + entry.kind + " `" + entry.name + "`\n\n" + entry.summary + "\n\n" +
+         describe_markdown(entry.schema);
+}
+
+std::string with_parameters(const std::string& page, const RegistryEntry& entry) {
+  static const std::string heading = "## Parameters\n";
+  const std::size_t at = page.find("\n" + heading);
+  const std::size_t next = at == std::string::npos ? at : page.find("\n## ", at + heading.size());
+  const std::string before = at == std::string::npos ? page + "\n" : page.substr(0, at + 1);
+  return before + heading + "\nMade by `drape reference --readmes`; do not edit.\n\n" +
+         describe_markdown(entry.schema) + (next == std::string::npos ? "" : page.substr(next));
+}
+
+}  // namespace drape

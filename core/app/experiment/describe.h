@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/kernel/plugin/registry.h"
+
+namespace drape {
+
+/// A terminal page: a row per parameter with type, default and range, its description and source below;
+/// parameters of sections are indented.
+std::string describe(const Schema& schema);
+std::string describe(const RegistryEntry& entry);  ///< with the entry's name, summary and library above
+
+/// A Markdown table for the reference page; parameters of sections appear as `section.name`.
+std::string describe_markdown(const Schema& schema);
+std::string describe_markdown(const RegistryEntry& entry);  ///< with a heading and the summary above
+
+/// A plugin's README with its section "## Parameters" replaced; the section is appended if there was none.
+std::string with_parameters(const std::string& page, const RegistryEntry& entry);
+
+/// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
+nlohmann::ordered_json json_value(const ConfigNode& node);
+
+/// The JSON Schema of configs with this schema, for editors. With a registry, nodes that choose a plugin
+/// accept the registered names and parameters; without, anything.
+nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registry = nullptr);
+
+/// The JSON Schema of a map from names to plugins of a kind, as an experiment's methods; `type` defaults to
+/// the name.
+nlohmann::ordered_json named_plugins_schema(const std::string& kind, const Registry& registry);
+
+}  // namespace drape

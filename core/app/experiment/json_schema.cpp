@@ -1,0 +1,112 @@
+#include <cmath>
+
+#include "core/app/experiment/describe.h"
+
+namespace drape {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json scalar_schema(const std::string& type, const Parameter& p) {
+  static const std::map<std::string, std::string> words = {
+      {"number", "number"}, {"integer", "integer"}, {"boolean", "boolean"}, {"text", "string"}};
+  const std::string& word = words.at(type);
+  Json json = {{"type", word}};
+  if (std::isfinite(p.minimum)) json[p.open_minimum ? "exclusiveMinimum" : "minimum"] = p.minimum;
+  if (std::isfinite(p.maximum)) json[p.open_maximum ? "exclusiveMaximum" : "maximum"] = p.maximum;
+  if (!p.choices.empty()) json["enum"] = p.choices;
+  return json;
+}
+
+/// A plugin's name, or a map with its name and parameters.
+Json plugin_schema(const std::string& kind, const Registry& registry) {
+  Json names = Json::array();
+  Json alternatives = Json::array();
+  for (const RegistryEntry* entry : registry.of_kind(kind)) {
+    names.push_back(entry->name);
+    Json section = json_schema(section_schema(*entry), &registry);
+    section["description"] = entry->summary;
+    alternatives.push_back(section);
+  }
+  alternatives.insert(alternatives.begin(), Json{{"enum", names}});
+  return {{"anyOf", alternatives}};
+}
+
+Json item_schema(const std::string& type, const Parameter& p, const Registry* registry) {
+  if (type == "section") return json_schema(*p.section, registry);
+  if (type != "node") return scalar_schema(type, p);
+  return registry && !p.plugin_kind.empty() ? plugin_schema(p.plugin_kind, *registry) : Json::object();
+}
+
+Json parameter_schema(const Parameter& p, const Registry* registry) {
+  const std::string list = "list of ";
+  Json json;
+  if (p.type.starts_with(list)) {
+    const std::string type = p.type.substr(list.size(), p.type.size() - list.size() - 1);
+    json = {{"type", "array"}, {"items", item_schema(type, p, registry)}};
+    if (p.size) {
+      json["minItems"] = p.size;
+      json["maxItems"] = p.size;
+    }
+  } else {
+    json = item_schema(p.type, p, registry);
+    if (p.or_list) json = {{"anyOf", Json::array({json, Json{{"type", "array"}, {"items", json}}})}};
+  }
+  if (!p.shorthand_key.empty()) json = {{"anyOf", Json::array({json, Json{{"type", "string"}}})}};
+  if (p.nullable) json = {{"anyOf", Json::array({json, Json{{"type", "null"}}})}};
+  std::string description = p.description;
+  if (!p.unit.empty() && p.unit != "1") description += (description.empty() ? "[" : " [") + p.unit + "]";
+  if (!description.empty()) json["description"] = description;
+  return json;
+}
+
+}  // namespace
+
+Json json_value(const ConfigNode& node) {
+  Json json;
+  switch (node.kind) {
+    case ConfigNode::Kind::null:
+      break;
+    case ConfigNode::Kind::list:
+      json = Json::array();
+      for (const ConfigNode& item : node.items) json.push_back(json_value(item));
+      break;
+    case ConfigNode::Kind::map:
+      json = Json::object();
+      for (const auto& [key, value] : node.entries) json[key] = json_value(value);
+      break;
+    case ConfigNode::Kind::scalar:
+      if (node.quoted) return node.scalar;
+      if (const auto integer = parse_integer(node.scalar)) return *integer;
+      if (const auto number = parse_number(node.scalar)) return *number;
+      if (node.scalar == "true" || node.scalar == "false") return node.scalar == "true";
+      return node.scalar;
+  }
+  return json;
+}
+
+Json json_schema(const Schema& schema, const Registry* registry) {
+  Json properties = Json::object();
+  Json required = Json::array();
+  const ConfigNode defaults = schema.write(schema.fresh().get());
+  for (const Parameter& p : schema.parameters) {
+    Json& property = properties[p.name] = parameter_schema(p, registry);
+    if (p.required)
+      required.push_back(p.name);
+    else if (p.type != "section")
+      property["default"] = json_value(*defaults.find(p.name));
+  }
+  Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+  if (!required.empty()) json["required"] = required;
+  return json;
+}
+
+Json named_plugins_schema(const std::string& kind, const Registry& registry) {
+  Json one = plugin_schema(kind, registry);
+  for (Json& alternative : one["anyOf"])
+    if (alternative.contains("required")) alternative["required"].erase(0);  // the type, which comes first
+  one["anyOf"].push_back({{"type", "null"}});
+  return {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", one}};
+}
+
+}  // namespace drape

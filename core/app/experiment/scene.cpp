@@ -1,0 +1,210 @@
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "core/app/experiment/boundary_conditions.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/experiment/reference_file.h"
+#include "core/app/experiment/schedule.h"
+#include "core/app/experiment/size_estimate.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/mesh/same_triangles.h"
+
+namespace drape {
+
+namespace {
+
+TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
+  const GridSize counts = grid_size(c);
+  if (c.triangulation == "equilateral") return equilateral(size, counts.columns, counts.rows);
+  return grid(size, counts.columns, counts.rows,
+              c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
+}
+
+TriangleMesh make_cloth(const Experiment& e) {
+  const ClothParameters& c = e.parameters.cloth;
+  if (c.shape == "file") {
+    if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
+    return read_mesh(c.file);
+  }
+  if (c.shape == "disc") return disc(c.radius, c.vertices);
+  if (c.shape == "polygon") {
+    std::vector<std::vector<Eigen::Vector2d>> loops;
+    for (std::size_t k = 0; k < c.loops.size(); ++k) {
+      const auto& p = c.loops[k].points;
+      if (p.size() % 2 != 0)
+        throw std::runtime_error("loop " + std::to_string(k) + " has an odd number of coordinates");
+      auto& loop = loops.emplace_back();
+      for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
+    }
+    if (loops.empty()) throw std::runtime_error("\"shape: polygon\" needs \"loops\", its outline and holes");
+    return delaunay_polygon(loops, c.vertices, c.seed);
+  }
+  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
+  if (c.triangulation == "random") return random_triangulation(size, c.vertices, c.seed);
+  return make_grid(c, size);
+}
+
+/// Smooth noise with values about ±1, a sum of plane waves that depends on position and seed alone.
+class Noise {
+ public:
+  Noise(double wavelength, int seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed));
+    // Not a std:: distribution, whose values differ between libraries.
+    auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    for (Wave& w : waves_) {
+      const double angle = 2 * M_PI * uniform(), k = 2 * M_PI / (wavelength * (0.75 + 0.5 * uniform()));
+      w = {k * std::cos(angle), k * std::sin(angle), 2 * M_PI * uniform()};
+    }
+  }
+  double at(double x, double y) const {
+    double sum = 0;
+    for (const Wave& w : waves_) sum += std::sin(w.kx * x + w.ky * y + w.phase);
+    return sum / std::sqrt(8.0);
+  }
+
+ private:
+  struct Wave {
+    double kx, ky, phase;
+  } waves_[8];
+};
+
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  try {
+    const TriangleMesh mesh = read_mesh(file);
+    for (const std::string& fault : check_coordinates(mesh.vertices))
+      errors.push_back({e.location_of("start"), file + ": " + fault});
+    if (mesh.vertices.rows() == coarsest.vertex_count() &&
+        same_triangles(mesh.triangles, coarsest.rest.triangles))
+      return mesh.vertices;
+    errors.push_back(
+        {e.location_of("start"), "\"start\": " + file +
+                                     " has other vertices or triangles than the coarsest level; take a "
+                                     "mesh like rest/l0.ply of a run's folder"});
+  } catch (const std::exception& problem) {
+    errors.push_back({e.location_of("start"), reason_of(problem)});
+  }
+  return coarsest.rest.vertices;
+}
+
+/// The untransformed initial shape of every level: the rest shape, or that of the file.
+std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierarchy, ConfigErrors& errors) {
+  const std::string& file = e.parameters.start.file;
+  std::vector<Positions> shapes;
+  for (const Level& level : hierarchy.levels)
+    shapes.push_back(file.empty()       ? level.rest.vertices
+                     : level.index == 0 ? read_start(e, level, errors)
+                                        : Positions(hierarchy.midpoints[level.index - 1] * shapes.back()));
+  return shapes;
+}
+
+/// The initial state of a level: its shape, transformed, with noise that depends on the rest positions.
+Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
+                     double perturbation) {
+  const Noise noise(s.perturbation_wavelength, s.seed);
+  Positions x(rest.rows(), 3);
+  for (Eigen::Index i = 0; i < rest.rows(); ++i) {
+    const double across = perturbation > 0 ? perturbation * noise.at(rest(i, 0), rest(i, 1)) : 0;
+    x.row(i) = s.transformed(shape.row(i), across).transpose();
+  }
+  return x;
+}
+
+/// Whether every initial coordinate is within bounds; appends the faults.
+bool check_start(const Experiment& e, const Level& level, const Positions& x, ConfigErrors& errors) {
+  const std::vector<std::string> faults = check_coordinates(x);
+  for (const std::string& fault : faults)
+    errors.push_back(
+        {e.location_of("start"), "the start of level " + std::to_string(level.index) + ": " + fault});
+  return faults.empty();
+}
+
+}  // namespace
+
+void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
+                               ConfigErrors& errors) {
+  constexpr std::size_t most_said = 3;
+  for (const auto& contact : model.contacts()) {
+    const std::vector<Intersection> touches = contact->intersections(start);
+    for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
+      errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
+                                                    " touches: " + to_string(touches[k])});
+    if (touches.size() > most_said)
+      errors.push_back({e.location_of("start"), "… and " + std::to_string(touches.size() - most_said) +
+                                                    " more pairs; move the start and the obstacle apart"});
+  }
+}
+
+const Solver& Experiment::solver_of(const std::string& method) const {
+  for (const auto& [name, solver] : methods)
+    if (name == method) return *solver;
+  throw std::logic_error("no method " + method);
+}
+
+Location Experiment::location_of(const std::string& key) const {
+  const ConfigNode* node = source.find(key);
+  return node ? node->where : source.where;
+}
+
+Problem Scene::problem() const {
+  Problem p{hierarchy, {}, starts, schedule.get()};
+  for (const auto& model : models) p.models.push_back(model.get());
+  return p;
+}
+
+std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
+                                   IntersectingStart intersecting) {
+  const ExperimentParameters& p = e.parameters;
+  TriangleMesh cloth;
+  try {
+    cloth = make_cloth(e);
+  } catch (const std::exception& error) {
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
+    return nullptr;
+  }
+  const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
+  for (const std::string& fault : check_mesh(cloth)) errors.push_back({e.location_of("cloth"), file + fault});
+  if (!errors.empty()) return nullptr;
+
+  auto scene = std::make_unique<Scene>();
+  try {
+    scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
+  } catch (const std::exception& error) {
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
+    return nullptr;
+  }
+  const Level& coarsest = scene->hierarchy.levels[0];
+  check_boundary_conditions(e, coarsest, errors);
+  const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
+  if (!errors.empty()) return nullptr;
+  scene->energies = e.energies;
+  if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
+  for (const Level& level : scene->hierarchy.levels) {
+    const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
+    std::vector<DirichletVertex> dirichlet =
+        dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+    Positions start = make_start(rest, shape, p.start, p.start.perturbation);
+    for (const DirichletVertex& h : dirichlet) start.row(h.vertex) = h.target.transpose();
+    if (!check_start(e, level, start, errors)) return nullptr;
+    scene->starts.push_back(std::move(start));
+    try {
+      scene->models.push_back(
+          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(dirichlet), e.contacts));
+    } catch (const std::exception& error) {
+      errors.push_back({e.location_of("energies"), reason_of(error)});
+      return nullptr;
+    }
+    if (intersecting == IntersectingStart::refused)
+      refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
+    if (!errors.empty()) return nullptr;
+  }
+  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<Schedule>(e, *scene);
+  scene->reference = read_reference(e, scene->hierarchy, errors);
+  return errors.empty() ? std::move(scene) : nullptr;
+}
+
+}  // namespace drape

@@ -1,0 +1,117 @@
+#include "core/app/experiment/size_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/app/files/machine.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/bounds.h"
+
+namespace drape {
+
+namespace {
+
+/// A hinge's Hessian takes 16 blocks and a vertex has 3 hinges: their numbers must fit an int.
+constexpr double max_finest_vertices = 4e7;
+/// A grid is refused if its number of vertices differs from the requested one by more than this factor.
+constexpr double max_vertex_ratio = 2;
+
+// Peak memory is 0.1 GB for the program and then grows as n log₂ n, as factors of plane meshes do. The
+// constant is the largest of 29 runs of Table 1's scenes with 6K to 224K vertices
+// (benchmarks/results/table1.json and table1_levels_2.json, peak_memory_bytes): 980 to 1410 bytes without
+// much contact, 2000 around the cube.
+constexpr double program = 1e8, bytes_each = 2000;
+
+std::string about(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, number < 1e6 ? "%.0f" : "%.2g", number);
+  return text;
+}
+
+bool is_grid(const ClothParameters& c) {
+  return (c.shape == "square" || c.shape == "rectangle") && c.triangulation != "random";
+}
+
+}  // namespace
+
+GridSize grid_size(const ClothParameters& c) {
+  const Eigen::Vector2d size = c.shape == "square" ? Eigen::Vector2d(c.side, c.side) : c.size;
+  const double density = std::sqrt(c.vertices / size.prod());
+  const auto along = [&](int set, double length) {
+    return set > 0 ? set : std::max(2.0, std::round(density * length));
+  };
+  double columns = along(c.columns, size.x()), rows = along(c.rows, size.y());
+  if (c.triangulation == "equilateral") {
+    const Eigen::Vector2i counts = equilateral_counts(size, c.vertices, c.columns, c.rows);
+    columns = counts.x();
+    rows = counts.y();
+  }
+  const double all = columns * rows;
+  const std::string made = about(columns) + " × " + about(rows);
+  if (c.columns == 0 && c.rows == 0 &&
+      (all > max_vertex_ratio * c.vertices || max_vertex_ratio * all < c.vertices))
+    throw std::runtime_error(c.shape + ": about " + std::to_string(c.vertices) +
+                             " vertices are asked for, but its grid of even cells has " + made + " = " +
+                             about(all) + "; set columns and rows, or ask for another number of vertices");
+  if (all > bounds::most_vertices)
+    throw std::runtime_error(c.shape + ": a grid of " + made +
+                             " vertices is too large; a coarsest level has at most " +
+                             about(bounds::most_vertices));
+  return {static_cast<int>(columns), static_cast<int>(rows)};
+}
+
+std::vector<double> estimated_vertices(const ExperimentParameters& p) {
+  std::vector<double> vertices;
+  try {
+    const bool grid = is_grid(p.cloth);
+    const GridSize size = grid ? grid_size(p.cloth) : GridSize();
+    const double coarsest = p.cloth.shape == "file"
+                                ? static_cast<double>(read_mesh(p.cloth.file).vertices.rows())
+                                : p.cloth.vertices;
+    for (int l = 0; l < p.levels; ++l) {
+      const double cells = std::pow(2.0, l);  // of the level, along a cell of the coarsest one
+      vertices.push_back(grid ? (cells * (size.columns - 1) + 1) * (cells * (size.rows - 1) + 1)
+                              : cells * cells * coarsest);
+    }
+  } catch (const std::exception&) {
+    vertices.clear();
+  }
+  return vertices;
+}
+
+double estimated_memory(double vertices) {
+  return program + bytes_each * vertices * std::log2(std::max(vertices, 2.0));
+}
+
+std::string memory_text(double bytes) {
+  char text[32];
+  std::snprintf(text, sizeof text, bytes < 9.95e9 ? "%.1f GB" : "%.0f GB", bytes / 1e9);
+  return text;
+}
+
+void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors) {
+  const std::vector<double> vertices = estimated_vertices(e.parameters);
+  if (vertices.empty()) return;
+  const double machine = machine_memory();
+  const auto fits = [&](double n) {
+    return n <= max_finest_vertices && (large == LargeMemory::allowed || estimated_memory(n) <= machine);
+  };
+  const auto fitting = std::find_if_not(vertices.begin(), vertices.end(), fits) - vertices.begin();
+  if (fitting == std::ssize(vertices)) return;
+  const double finest = vertices.back();
+  std::string why =
+      "level " + std::to_string(vertices.size() - 1) + " would have about " + about(finest) + " vertices";
+  if (finest > max_finest_vertices)
+    why += ", more than the " + about(max_finest_vertices) + " that can be counted";
+  else
+    why += " and take about " + memory_text(estimated_memory(finest)) +
+           " of memory, where this machine has " + memory_text(machine);
+  why += fitting > 0 ? "; take at most " + std::to_string(fitting) + (fitting == 1 ? " level" : " levels")
+                     : "; ask for fewer vertices";
+  if (finest <= max_finest_vertices) why += ", or allow it with --allow-memory";
+  errors.push_back({e.location_of(e.source.find("levels") ? "levels" : "cloth"), why});
+}
+
+}  // namespace drape

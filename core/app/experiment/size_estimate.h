@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "core/app/experiment/experiment.h"
+
+namespace drape {
+
+/// Columns and rows of vertices of a square's or rectangle's grid: as set, otherwise about `vertices`
+/// vertices with square cells.
+struct GridSize {
+  int columns = 0, rows = 0;
+};
+
+/// Throws std::runtime_error if the result is far from the requested vertices or too large for a coarsest
+/// level.
+GridSize grid_size(const ClothParameters& cloth);
+
+/// Estimated vertices of each level, without building any; reads only a mesh file. Empty if the cloth cannot
+/// be made, which build_scene reports.
+std::vector<double> estimated_vertices(const ExperimentParameters& p);
+
+/// Estimated peak memory of a run whose finest level has so many vertices [bytes].
+double estimated_memory(double vertices);
+
+std::string memory_text(double bytes);  ///< "2.3 GB"
+
+/// Appends an error for levels with more vertices than indices can count and, unless allowed, for a run that
+/// may need more memory than this machine has.
+enum class LargeMemory { refused, allowed };
+void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors);
+
+}  // namespace drape

@@ -1,0 +1,43 @@
+#include "core/app/files/csv.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <sstream>
+
+#include "core/kernel/mesh/file.h"
+
+namespace drape {
+
+Csv::Csv(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return;
+  std::istringstream lines(read_file(path));
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> cells;
+    std::istringstream rest(line + ",");
+    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
+    if (columns_.empty()) {
+      for (std::size_t k = 0; k < cells.size(); ++k) columns_[cells[k]] = k;
+    } else if (cells.size() >= columns_.size()) {
+      rows_.push_back(std::move(cells));
+    }
+  }
+}
+
+std::string Csv::text(std::size_t row, const std::string& column) const {
+  const auto found = columns_.find(column);
+  return found == columns_.end() ? "" : rows_[row][found->second];
+}
+
+OptionalNumber Csv::number(std::size_t row, const std::string& column) const {
+  return number_of(text(row, column));
+}
+
+OptionalNumber number_of(const std::string& cell) {
+  char* end = nullptr;
+  const double value = std::strtod(cell.c_str(), &end);
+  if (end == cell.c_str() || !std::isfinite(value)) return {};
+  return value;
+}
+
+}  // namespace drape

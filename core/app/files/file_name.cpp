@@ -1,0 +1,30 @@
+#include "core/app/files/file_name.h"
+
+#include <nlohmann/json.hpp>
+
+namespace drape {
+
+namespace {
+
+/// Most file systems allow 255 bytes; the rest is for endings that a run appends.
+constexpr std::size_t most_bytes = 200;
+
+bool is_utf8(const std::string& text) {
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+std::string fault_of_file_name(const std::string& name) {
+  if (!is_utf8(name)) return "is no UTF-8, which results.json needs";
+  if (name.size() > most_bytes)
+    return "has " + std::to_string(name.size()) + " bytes, and may have " + std::to_string(most_bytes);
+  return "";
+}
+
+}  // namespace drape

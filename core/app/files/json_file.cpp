@@ -1,0 +1,71 @@
+#include "core/app/files/json_file.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+namespace {
+
+using Json = JsonFile::Json;
+
+/// Null where the key is absent.
+const Json& value_of(const Json& object, const std::string& key) {
+  static const Json absent;
+  if (!object.is_object()) return absent;
+  const auto found = object.find(key);
+  return found != object.end() ? *found : absent;
+}
+
+}  // namespace
+
+void JsonFile::refuse(const std::string& fault) const {
+  throw std::runtime_error(path_.string() + ": " + fault + "; " + remedy_);
+}
+
+void JsonFile::refuse(const std::string& key, const std::string& kind, const Json& value) const {
+  const std::string found = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  refuse("\"" + key + "\" must be " + kind + ", not " + excerpt(found));
+}
+
+template <>
+std::optional<bool> JsonFile::find(const Json& object, const std::string& key) const {
+  const Json& value = value_of(object, key);
+  if (value.is_null()) return {};
+  if (!value.is_boolean()) refuse(key, "true or false", value);
+  return value.get<bool>();
+}
+
+template <>
+std::optional<double> JsonFile::find(const Json& object, const std::string& key) const {
+  const Json& value = value_of(object, key);
+  if (value.is_null()) return {};
+  if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(key, "a number", value);
+  return value.get<double>();
+}
+
+template <>
+std::optional<int> JsonFile::find(const Json& object, const std::string& key) const {
+  const Json& value = value_of(object, key);
+  if (value.is_null()) return {};
+  const std::optional<int> whole = value.is_number() ? whole_number(value.get<double>()) : std::nullopt;
+  if (!whole) refuse(key, "a whole number", value);
+  return whole;
+}
+
+template <>
+std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const {
+  const Json& value = value_of(object, key);
+  if (value.is_null()) return {};
+  if (!value.is_string()) refuse(key, "a text", value);
+  return value.get<std::string>();
+}
+
+std::optional<int> whole_number(double value) {
+  if (!(value >= 0 && value <= std::numeric_limits<int>::max()) || value != std::floor(value)) return {};
+  return static_cast<int>(value);
+}
+
+}  // namespace drape

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/kernel/plugin/config_node.h"
+
+namespace drape {
+
+/// Reads a file whose top level is a map. Anchors and aliases are supported; Schema::read reports repeated
+/// keys. Returns a null node, with an error and its location appended, for a missing, unreadable or malformed
+/// file.
+ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors);
+
+/// The same from a text; locations have `name` as their file.
+ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigErrors& errors);
+
+/// The node in block style, lists of scalars on one line; parse_yaml gives the node back.
+std::string to_yaml(const ConfigNode& node);
+
+/// Sets the node at a path to a YAML value. A path consists of keys and, in lists, of indices from 0, types
+/// or names ("metrics.0.type", "energies.gravity.acceleration"). Missing maps are made; a plugin's bare name
+/// becomes `{type: name}`. Locations are named "--set <path>". Returns false, with an error appended, if the
+/// path does not exist.
+bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors);
+
+/// The same with a parsed value, which keeps its locations; `where` is the location of the path.
+bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,
+              ConfigErrors& errors);
+
+}  // namespace drape

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/app/report/run_data.h"
+
+namespace drape {
+
+/// The data of a run's charts, as JSON that is safe inside a <script> element: series per method and level
+/// (iteration, seconds, force residual, energy above the best; cost and errors), seconds by phase, energy by
+/// part.
+std::string chart_data(const RunData& run);
+
+/// Six digits, enough for drawing; null if absent.
+nlohmann::ordered_json rounded(const OptionalNumber& value);
+
+/// JSON made safe inside a script element.
+std::string script_json(const nlohmann::ordered_json& data);
+
+}  // namespace drape

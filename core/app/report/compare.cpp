@@ -1,0 +1,224 @@
+#include "core/app/report/compare.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "core/app/report/pair_measures.h"
+#include "core/app/report/run_rows.h"
+#include "core/app/report/text_table.h"
+#include "core/app/view/html.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+constexpr double time_noise = 0.10;      // smaller relative differences of times count as equal
+constexpr double least_seconds = 0.05;   // smaller differences of times count as equal [s]
+constexpr double relative_noise = 0.01;  // the same for all other quantities
+
+struct Key {
+  const char* name;
+  OptionalNumber LevelRecord::*of;  ///< null for quantities of pairs of levels and of whole methods
+};
+constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
+                              {"iterations", &LevelRecord::newton_iterations},
+                              {"flops", &LevelRecord::flops},
+                              {"energy", &LevelRecord::energy_on_finest},
+                              {"largest_stretch", &LevelRecord::largest_stretch},
+                              {"intersections", &LevelRecord::intersections},
+                              {"smallest_gap", &LevelRecord::smallest_gap}};
+
+std::vector<std::string> known_keys() {
+  std::vector<std::string> keys;
+  const auto add = [&](const char* name) {
+    if (std::find(keys.begin(), keys.end(), name) == keys.end()) keys.emplace_back(name);
+  };
+  for (const Key& key : level_keys) add(key.name);
+  for (const PairMeasure& measure : pair_measures) add(measure.name);
+  for (const RowQuantity& f : row_quantities()) add(f.name);
+  return keys;
+}
+
+bool is_time(const std::string& key) { return key == "seconds" || key == "preview_seconds"; }
+bool is_work(const std::string& key) { return key == "iterations" || key == "flops"; }
+bool higher_is_better(const std::string& key) {
+  for (const PairMeasure& measure : pair_measures)
+    if (key == measure.name) return measure.better == Better::higher;
+  return key == "smallest_gap";
+}
+
+/// Values by level and key, in file order, and whether each method converged.
+struct Sheet {
+  std::vector<std::tuple<std::string, std::string, double>> entries;
+  std::vector<std::pair<std::string, bool>> converged;
+
+  void add(const std::string& where, const std::string& key, const OptionalNumber& value) {
+    if (value) entries.emplace_back(where, key, *value);
+  }
+  const double* find(const std::string& where, const std::string& key) const {
+    for (const auto& [w, k, value] : entries)
+      if (w == where && k == key) return &value;
+    return nullptr;
+  }
+};
+
+void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, const MethodRecord& method) {
+  const std::string name = prefix + method.name;
+  sheet.converged.emplace_back(name, has_converged(method.status));
+  for (const RowQuantity& f : row_quantities()) sheet.add(name, f.name, f.of(run, method));
+  if (method.levels.size() > 1)
+    for (const LevelRecord& level : method.levels)
+      for (const Key& key : level_keys)
+        sheet.add(name + ", level " + std::to_string(level.level), key.name, level.*key.of);
+  else if (!method.levels.empty())
+    for (const char* key : {"intersections", "smallest_gap"})
+      for (const Key& k : level_keys)
+        if (std::string(k.name) == key) sheet.add(name, key, method.levels.front().*k.of);
+  for (const ConsistencyRecord& pair : method.consistency)
+    for (const PairMeasure& measure : pair_measures)
+      sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine),
+                measure.name, pair.*measure.value);
+}
+
+Sheet sheet_of(const RunCollection& collection, bool named) {
+  Sheet sheet;
+  for (const RunRecord& run : collection.runs) {
+    std::string prefix;
+    if (named) prefix = run.variation + (run.seed ? ", seed " + html::count(run.seed) : "") + ": ";
+    if (!run.data) continue;
+    for (const MethodRecord& method : run.data->methods) add_method(sheet, prefix, *run.data, method);
+  }
+  return sheet;
+}
+
+std::string verdict(const Change& c) {
+  const double difference = c.after - c.before;
+  const double noise = is_time(c.key) ? time_noise : relative_noise;
+  if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
+  if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
+  const bool good = (difference < 0) != higher_is_better(c.key);
+  if (is_time(c.key)) return good ? "faster" : "slower";
+  if (is_work(c.key)) return good ? "less work" : "more work";
+  return good ? "better" : "worse";
+}
+
+/// Energies may be negative and counts zero: a ratio is relative to the absolute value.
+bool holds(const Change& c, double ratio) {
+  if (is_time(c.key) && c.after - c.before < least_seconds) return true;
+  if (higher_is_better(c.key)) return c.after * ratio >= c.before;
+  return c.after <= c.before + (ratio - 1) * std::abs(c.before);
+}
+
+std::string change_of(const Change& c) {
+  if (c.before > 0 && c.after > 0) return "×" + html::number_text(c.after / c.before);
+  return (c.after > c.before ? "+" : "") + html::number_text(c.after - c.before);
+}
+
+}  // namespace
+
+std::vector<Bound> parse_bounds(const std::vector<std::string>& texts) {
+  std::vector<Bound> bounds;
+  const std::vector<std::string> known = known_keys();
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw std::runtime_error("--bound " + text + ": write it as KEY=RATIO, as in --bound seconds=1.1");
+    const std::string key = text.substr(0, equals);
+    if (std::find(known.begin(), known.end(), key) == known.end()) {
+      const std::string near = nearest_word(key, known);
+      throw std::runtime_error(
+          "--bound " + excerpt(text) + ": there is no quantity \"" + excerpt(key) + "\"; " +
+          (near.empty() ? "there are " + joined(known) : "did you mean \"" + near + "\"?"));
+    }
+    const std::optional<double> ratio = parse_number(text.substr(equals + 1));
+    if (!ratio || !std::isfinite(*ratio) || *ratio <= 0)
+      throw std::runtime_error("--bound " + text + ": the ratio must be a number above 0, as in --bound " +
+                               key + "=1.1");
+    bounds.push_back({key, *ratio});
+  }
+  return bounds;
+}
+
+Comparison::Comparison(const RunCollection& before, const RunCollection& after,
+                       const std::vector<Bound>& bounds)
+    : bounds_(bounds.size()) {
+  const bool named = before.runs.size() > 1 || after.runs.size() > 1;
+  const Sheet a = sheet_of(before, named), b = sheet_of(after, named);
+  for (const auto& [where, key, value] : a.entries)
+    if (const double* now = b.find(where, key)) {
+      Change& change = changes_.emplace_back(Change{where, key, value, *now, "", false});
+      change.verdict = verdict(change);
+    }
+  if (changes_.empty())
+    throw std::runtime_error("nothing of " + before.name + " is in " + after.name + " too: no method" +
+                             (named ? ", variation and seed" : "") + " in common");
+  const auto method_lists = [](const Sheet& from, const Sheet& in, std::vector<std::string>& list) {
+    for (const auto& [name, converged] : from.converged)
+      if (std::none_of(in.converged.begin(), in.converged.end(),
+                       [&n = name](const auto& other) { return other.first == n; }))
+        list.push_back(name);
+  };
+  method_lists(a, b, lost_);
+  method_lists(b, a, gained_);
+
+  for (const Bound& bound : bounds) {
+    int met = 0;
+    for (Change& change : changes_) {
+      if (change.key != bound.key) continue;
+      ++met;
+      if (holds(change, bound.ratio)) continue;
+      change.broken = true;
+      broken_.push_back(change.where + ": " + bound.key + " went from " + html::number_text(change.before) +
+                        " to " + html::number_text(change.after) + ", more than the bound of " +
+                        ConfigNode::of(bound.ratio).scalar +
+                        (higher_is_better(bound.key) ? " lets it fall" : " allows"));
+    }
+    if (met == 0)
+      throw std::runtime_error("--bound " + bound.key + ": no match has this quantity on both sides");
+  }
+  if (bounds.empty()) return;
+  for (const std::string& name : lost_) broken_.push_back(name + ": is in the first alone; no bound holds");
+  for (const auto& [name, was] : a.converged)
+    for (const auto& [other, is] : b.converged)
+      if (name == other && was && !is)
+        broken_.push_back(name + ": converged before and does not now; no bound holds");
+}
+
+std::string Comparison::text() const {
+  std::map<std::string, int> counts;
+  std::vector<std::vector<std::string>> rows = {
+      {"where", "quantity", "before", "after", "change", "verdict"}};
+  for (const Change& c : changes_) {
+    ++counts[c.verdict];
+    if (!c.verdict.empty() || c.broken)
+      rows.push_back({c.where, c.key, html::number_text(c.before), html::number_text(c.after), change_of(c),
+                      c.verdict + (c.broken ? " (bound broken)" : "")});
+  }
+  std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";
+  for (const char* word : {"faster", "slower", "less work", "more work", "better", "worse", ""})
+    if (counts.count(word))
+      text += (text.empty() || text.back() == '\n' ? "" : ", ") + std::to_string(counts[word]) + " " +
+              (*word ? word : "the same");
+  text +=
+      ". Times within 10 % or 0.05 s of each other, and other quantities within 1 %, count as the same.\n";
+  const auto list = [&](const char* where, const std::vector<std::string>& names) {
+    constexpr std::size_t most_listed = 40;
+    for (std::size_t k = 0; k < std::min(names.size(), most_listed); ++k)
+      text += std::string("only in the ") + where + ": " + names[k] + "\n";
+    if (names.size() > most_listed)
+      text += std::string("only in the ") + where + ": and " + std::to_string(names.size() - most_listed) +
+              " more\n";
+  };
+  list("first", lost_);
+  list("second", gained_);
+  for (const std::string& line : broken_) text += "broken: " + line + "\n";
+  if (bounds_ > 0 && broken_.empty()) text += bounds_ == 1 ? "The bound holds.\n" : "All bounds hold.\n";
+  return text;
+}
+
+}  // namespace drape

@@ -1,0 +1,198 @@
+#include "core/app/report/report_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "core/app/view/embedded.h"
+#include "core/app/view/html.h"
+#include "core/app/view/view_blocks.h"
+#include "core/app/view/view_document.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
+
+constexpr const char* section_open =
+    "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
+    "JavaScript.</p></noscript>\n"
+    "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
+    "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
+
+/// The snapshots of a level: float32 positions, one after the other.
+struct Snapshots {
+  std::string bytes;
+  Json iterations, seconds;
+  std::size_t count = 0;
+
+  Positions positions(std::size_t snapshot, Eigen::Index n) const {
+    using Floats = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const auto* first = reinterpret_cast<const float*>(bytes.data()) + snapshot * 3 * n;
+    return Eigen::Map<const Floats>(first, n, 3).cast<double>();
+  }
+};
+
+Snapshots recorded_snapshots(const RunData& run, const Json& level, Eigen::Index n) {
+  if (!level.contains("snapshots") || !level["snapshots"].is_object()) return {};
+  const Json& entry = level["snapshots"];
+  Snapshots snapshots{read_file(run.folder / entry.at("file").get<std::string>()), entry.at("iterations"),
+                      entry.at("seconds")};
+  snapshots.count = snapshots.iterations.size();
+  if (snapshots.seconds.size() != snapshots.count || snapshots.bytes.size() != snapshots.count * n * 12)
+    throw std::runtime_error((run.folder / entry["file"].get<std::string>()).string() + ": holds " +
+                             std::to_string(snapshots.bytes.size()) + " bytes, not " +
+                             std::to_string(snapshots.count) + " snapshots of " + std::to_string(n) +
+                             " vertices");
+  return snapshots;
+}
+
+/// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
+/// state, which is always shown.
+std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> chosen;
+  if (count < 2) return chosen;
+  const std::size_t shown = std::min(count - 1, most);
+  for (std::size_t k = 0; k < shown; ++k) chosen.push_back(k * (count - 1) / shown);
+  return chosen;
+}
+
+class ReportViewMaker {
+ public:
+  explicit ReportViewMaker(const RunData& run)
+      : run_(run), results_(Json::parse(read_file(run.folder / "results.json"))) {}
+
+  ReportView make() {
+    for (int l = 0; l <= run_.finest_level(); ++l)
+      levels_.push_back(Level::of(l, read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"))));
+    for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
+    document_.emplace(levels_, obstacles_, run_.has_contact(),
+                      [this](const std::string& name, const std::string& bytes) { embed(name, bytes); });
+    read_states();
+    if (states_.empty()) return {};
+    Json methods = Json::array();
+    for (std::size_t m = 0; m < run_.methods.size(); ++m) methods.push_back(method_entry(m));
+    std::string json =
+        document_->document(run_.experiment, methods).dump(-1, ' ', true, Json::error_handler_t::replace);
+    for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
+    return {section_open + std::string(Embedded::viewer_html()) + "</section>\n\n",
+            "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n" + blocks_ +
+                viewer_scripts(),
+            notes_};
+  }
+
+ private:
+  struct State {
+    Positions x;
+    SurfaceFields fields;
+  };
+
+  void embed(const std::string& name, const std::string& bytes) {
+    blocks_ += "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" +
+               html::base64(deflated(bytes)) + "</script>\n";
+  }
+
+  void read_states() {
+    std::vector<const SurfaceFields*> shown;
+    for (std::size_t m = 0; m < run_.methods.size(); ++m)
+      for (const LevelRecord& level : run_.methods[m].levels) {
+        if (level.mesh.empty() || !std::filesystem::is_regular_file(run_.folder / level.mesh)) continue;
+        State state;
+        try {
+          state.x = read_mesh(run_.folder / level.mesh).vertices;
+          if (state.x.rows() != levels_[level.level].vertex_count()) continue;
+          state.fields = document_->fields(level.level, state.x);
+          add_H_difference(run_.methods[m], level.level, state);
+        } catch (const std::exception&) {
+          continue;  // the pictures name it
+        }
+        shown.push_back(&states_.insert_or_assign({m, level.level}, std::move(state)).first->second.fields);
+      }
+    document_->set_ranges(shown);
+  }
+
+  /// As it was recorded on the finest mesh, at the vertices that it shares with the coarse level: those come
+  /// first. The finest level does not differ from itself.
+  void add_H_difference(const MethodRecord& method, int level, State& state) const {
+    const int finest = run_.finest_level();
+    const ConsistencyRecord* pair = method.pair(level, finest);
+    if (level == finest && !method.consistency.empty())
+      state.fields.emplace_back("H_difference", Eigen::VectorXd::Zero(state.x.rows()));
+    if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run_.folder / pair->fields))
+      return;
+    for (const VertexField& field : read_ply_fields(run_.folder / pair->fields))
+      if (field.name == "H_difference" && field.values.size() >= state.x.rows())
+        state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
+  }
+
+  /// The recorded snapshots; empty, with a note, if they cannot be read.
+  Snapshots snapshots_of(const Json& level, Eigen::Index n) {
+    try {
+      return recorded_snapshots(run_, level, n);
+    } catch (const std::exception& error) {
+      notes_.push_back("3D viewer: " + reason_of(error));
+      return {};
+    }
+  }
+
+  Json method_entry(std::size_t m) {
+    const MethodRecord& method = run_.methods[m];
+    Json levels = Json::array();
+    // Finer levels may use the rest of a coarse level's share.
+    std::size_t left = most_snapshot_bytes / run_.methods.size();
+    for (std::size_t k = 0; k < method.levels.size(); ++k) {
+      const LevelRecord& level = method.levels[k];
+      const auto state = states_.find({m, level.level});
+      if (state == states_.end()) continue;
+      const std::string name = "m" + std::to_string(m) + "l" + std::to_string(level.level);
+      Json states = Json::array();
+      const Eigen::Index n = state->second.x.rows();
+      const Snapshots snapshots = snapshots_of(results_.at("methods").at(method.name).at("levels").at(k), n);
+      const std::size_t bytes = document_->state_bytes(level.level),
+                        share = left / (method.levels.size() - k);
+      for (const std::size_t f : chosen_snapshots(snapshots.count, share / bytes)) {
+        const Positions x = snapshots.positions(f, n);
+        Json snapshot =
+            document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
+        snapshot["iteration"] = snapshots.iterations[f];
+        snapshot["seconds"] = snapshots.seconds[f];
+        states.push_back(snapshot);
+        left -= bytes;
+      }
+      Json last = document_->state(name, state->second.x, state->second.fields);
+      last["iteration"] = level.newton_iterations ? Json(*level.newton_iterations) : Json();
+      states.push_back(last);
+      levels.push_back({{"level", level.level}, {"status", level.status}, {"states", states}});
+    }
+    return {{"name", method.name}, {"levels", levels}};
+  }
+
+  const RunData& run_;
+  const Json results_;
+  std::vector<Level> levels_;
+  std::vector<TriangleMesh> obstacles_;
+  std::optional<ViewDocument> document_;
+  std::map<std::pair<std::size_t, int>, State> states_;  // by number of the method, and level
+  std::string blocks_;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+ReportView report_view(const RunData& run) {
+  if (run.finest_level() < 0) return {};
+  try {
+    return ReportViewMaker(run).make();
+  } catch (const std::exception& error) {
+    return {"", "", {"3D viewer: " + reason_of(error)}};
+  }
+}
+
+}  // namespace drape

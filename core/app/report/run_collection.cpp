@@ -1,0 +1,166 @@
+#include "core/app/report/run_collection.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/files/csv.h"
+#include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/mesh/file.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::string text_at(const Json& json, const char* key) {
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+void read_sweep(const fs::path& folder, RunCollection& collection) {
+  const fs::path path = folder / "sweep.json";
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array())
+    throw std::runtime_error(path.string() + ": not a sweep's list of runs; is it cut short?");
+  const JsonFile file(path, "run the sweep again, which writes it");
+  const auto complete = json.find("complete");
+  collection.complete =
+      collection.complete && complete != json.end() && complete->is_boolean() && complete->get<bool>();
+  collection.name += (collection.name.empty() ? "" : ", ") + text_at(json, "sweep");
+  for (const Json& entry : json["runs"]) {
+    if (!entry.is_object()) continue;
+    RunRecord run;
+    run.sweep = text_at(json, "sweep");
+    run.variation = text_at(entry, "name");
+    run.status = text_at(entry, "status");
+    if (run.status == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
+    if (run.status == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
+    run.error = text_at(entry, "error");
+    run.exit_code = file.find<int>(entry, "exit_code").value_or(0);
+    if (const auto expect = entry.find("expect"); expect != entry.end() && expect->is_object()) {
+      run.expected = text_at(*expect, "outcome");
+      run.expected_message = text_at(*expect, "message");
+    }
+    run.folder = folder / text_at(entry, "folder");
+    if (const auto seed = entry.find("seed"); seed != entry.end() && seed->is_number())
+      run.seed = seed->get<double>();
+    // Running and failed runs may have written files; only complete ones have results.
+    const bool has_results = run.status == "converged" || run.status == "not_converged";
+    if (has_results && fs::is_regular_file(run.folder / "results.json")) run.data = read_run(run.folder);
+    collection.runs.push_back(std::move(run));
+  }
+}
+
+/// The configuration without its seed, which is returned in `seed`.
+std::string config_but_seed(const RunData& run, OptionalNumber& seed) {
+  ConfigErrors errors;
+  ConfigNode config = parse_yaml(run.configuration, "config.yaml", errors);
+  for (auto& [key, value] : config.entries) {
+    if (key != "start") continue;
+    for (auto& [own, node] : value.entries)
+      if (own == "seed") {
+        seed = number_of(node.scalar);
+        node.scalar.clear();
+      }
+  }
+  return errors.empty() ? to_yaml(config) : run.folder.string();
+}
+
+std::string folder_name(const fs::path& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
+void read_single_runs(const std::vector<fs::path>& folders, RunCollection& collection) {
+  std::map<std::string, std::set<std::string>> configs_of;  // by the experiment's name
+  std::map<std::string, int> folders_of;                    // by the folder's
+  std::vector<std::string> configs;
+  const std::size_t first = collection.runs.size();
+  for (const fs::path& folder : folders) {
+    RunRecord run;
+    run.folder = folder;
+    run.data = read_run(folder);
+    configs.push_back(config_but_seed(*run.data, run.seed));
+    configs_of[run.data->experiment].insert(configs.back());
+    ++folders_of[folder_name(folder)];
+    bool converged = run.data->complete;
+    for (const MethodRecord& m : run.data->methods) converged = converged && has_converged(m.status);
+    run.status = converged ? "converged" : "not_converged";
+    collection.runs.push_back(std::move(run));
+  }
+  std::map<std::string, std::string> name_of;  // a configuration's
+  for (std::size_t k = 0; k < folders.size(); ++k) {
+    RunRecord& run = collection.runs[first + k];
+    const std::string& experiment = run.data->experiment;
+    const std::string folder = folder_name(folders[k]);
+    const std::string own = configs_of[experiment].size() == 1 ? experiment
+                            : folders_of[folder] > 1           ? folders[k].string()
+                                                               : folder;
+    run.variation = name_of.emplace(configs[k], own).first->second;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> RunCollection::variations() const {
+  std::vector<std::string> names;
+  for (const RunRecord& run : runs)
+    if (std::find(names.begin(), names.end(), run.variation) == names.end()) names.push_back(run.variation);
+  return names;
+}
+
+std::vector<std::string> RunCollection::methods() const {
+  std::vector<std::string> names;
+  for (const RunRecord& run : runs)
+    if (run.data)
+      for (const MethodRecord& m : run.data->methods)
+        if (std::find(names.begin(), names.end(), m.name) == names.end()) names.push_back(m.name);
+  return names;
+}
+
+std::vector<const RunRecord*> RunCollection::of(const std::string& variation) const {
+  std::vector<const RunRecord*> found;
+  for (const RunRecord& run : runs)
+    if (run.variation == variation) found.push_back(&run);
+  return found;
+}
+
+bool RunRecord::refused() const {
+  return status == "failed" && exit_code == exit_bad_input && !fs::exists(folder / "results.json");
+}
+
+bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }
+
+RunCollection read_runs(const std::vector<fs::path>& folders) {
+  RunCollection collection;
+  std::vector<fs::path> single;
+  for (const fs::path& folder : folders) {
+    if (is_sweep(folder)) {
+      read_sweep(folder, collection);
+    } else if (fs::is_regular_file(folder / "results.json")) {
+      single.push_back(folder);
+    } else {
+      throw std::runtime_error(
+          folder.string() +
+          ": neither results.json nor sweep.json here; give the folder of a run or a sweep");
+    }
+  }
+  read_single_runs(single, collection);
+  if (collection.name.empty()) {
+    std::vector<std::string> names;
+    for (const RunRecord& run : collection.runs)
+      if (std::find(names.begin(), names.end(), run.data->experiment) == names.end())
+        names.push_back(run.data->experiment);
+    for (const std::string& name : names) collection.name += (collection.name.empty() ? "" : ", ") + name;
+  }
+  return collection;
+}
+
+}  // namespace drape

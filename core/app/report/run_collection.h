@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/app/report/run_data.h"
+
+namespace drape {
+
+/// One of several runs: a variation with a seed.
+struct RunRecord {
+  std::string sweep;  ///< its name; empty for a run by itself
+  std::string variation;
+  OptionalNumber seed;
+  std::string status;  ///< as sweep.json has it: "converged", "not_converged", "failed", …
+  std::string error;   ///< message of a failed run
+  int exit_code = 0;   ///< exit code of its process
+  std::string expected = "converged", expected_message;  ///< expected outcome, and a part of the message
+  std::filesystem::path folder;                          ///< relative to the current folder
+  std::optional<RunData> data;                           ///< empty without results
+
+  bool refused() const;  ///< refused before any computation
+};
+
+/// Runs that are reported together: those of a sweep, or of several folders.
+struct RunCollection {
+  std::string name;
+  bool complete = true;
+  std::vector<RunRecord> runs;
+
+  std::vector<std::string> variations() const;  ///< in order of appearance
+  std::vector<std::string> methods() const;     ///< likewise
+  std::vector<const RunRecord*> of(const std::string& variation) const;
+};
+
+/// Whether it is a sweep's folder.
+bool is_sweep(const std::filesystem::path& folder);
+
+/// Reads runs and sweeps. Runs whose configs differ only by the seed form a variation, which is named after
+/// the experiment or, if that is ambiguous, after the folder. Throws std::runtime_error with one line for a
+/// folder that is neither a run nor a sweep.
+RunCollection read_runs(const std::vector<std::filesystem::path>& folders);
+
+}  // namespace drape

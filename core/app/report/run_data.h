@@ -1,0 +1,128 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/app/experiment/error_measures.h"
+#include "core/app/files/optional_number.h"
+#include "core/kernel/model/solver.h"
+
+namespace drape {
+
+/// Numbers by name, in file order.
+using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
+
+/// One level of one method, as results.json has it (SI units).
+struct LevelRecord {
+  int level = 0;
+  std::string status, message;
+  OptionalNumber vertices, triangles, steps, newton_iterations, seconds, flops;
+  bool from_initial_state = false;           ///< earlier levels do not contribute
+  OptionalNumber energy, energy_on_finest;   ///< [J]
+  OptionalNumber decrement, force_residual;  ///< [m/s], [1]
+  OptionalNumber largest_stretch, intersections, smallest_gap;
+  OptionalNumber contacts;  ///< in the last iteration
+  NamedNumbers seconds_by_phase, energy_parts;
+  std::string mesh;  ///< relative to the run's folder; may be empty
+};
+
+/// Measures of a state against a finer level's.
+struct PairValues {
+  OptionalNumber d_H_fit, d_H_ddg, d_K_fit, d_K_ddg;  ///< [1], [1], [1/m²], [1/m²]
+  OptionalNumber distance_rms;                        ///< in diagonals of the rest shape
+  OptionalNumber silhouette_overlap;                  ///< [1]; higher is better
+  OptionalNumber energy_above_end;                    ///< [J]
+};
+
+/// Measures of a coarse state, prolonged, against a finer one.
+struct ConsistencyRecord : PairValues {
+  int coarse = 0, fine = 0;
+  PairValues of_start;  ///< the same for the scene's initial state in place of the coarse one
+  std::string fields;   ///< relative to the run's folder; may be empty
+};
+
+struct MethodRecord {
+  std::string name, status;
+  OptionalNumber seconds, peak_memory_bytes;
+  OptionalNumber step_size;         ///< h of the first implicit step, and of the static form's decrement [s]
+  std::vector<LevelRecord> levels;  ///< coarse to fine
+  std::vector<ConsistencyRecord> consistency;
+
+  /// Cost of the last state: the sum of the known values over the levels that it builds on.
+  OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
+  const LevelRecord* level(int index) const;
+  const ConsistencyRecord* pair(int coarse, int fine) const;
+};
+
+/// One row of steps.csv.
+struct StepRow {
+  OptionalNumber seconds, energy, decrement, force_residual, step_length, proxy_energy, step_size;
+  OptionalNumber contacts, smallest_gap, intersections;
+};
+
+/// All rows of one level of one method, in order.
+struct IterationSeries {
+  std::string method;
+  int level = 0;
+  std::vector<StepRow> rows;
+};
+
+/// One load increment, at its end.
+struct IncrementRecord {
+  OptionalNumber time, steps, energy;  ///< pseudo-time; the others as in LevelRecord
+};
+
+/// All increments of one level of one method, in order.
+struct IncrementSeries {
+  std::string method;
+  int level = 0;
+  std::vector<IncrementRecord> rows;
+};
+
+/// One row of errors.csv: a state's cost, and its error against each target in each measure.
+struct ErrorRow {
+  std::array<OptionalNumber, error_costs.size()> cost;
+  std::array<std::array<OptionalNumber, error_measures.size()>, error_targets.size()> error;
+};
+
+struct ErrorSeries {
+  std::string method;
+  int level = 0;
+  std::vector<ErrorRow> rows;
+};
+
+/// Everything a finished or interrupted run has written, except meshes.
+struct RunData {
+  std::filesystem::path folder;
+  std::string experiment, description, version, cpu, table1_scene, configuration;
+  bool complete = false;
+  std::string aborted;  ///< why the run was aborted; empty if it was not
+  OptionalNumber cores, threads, force_tolerance;
+  std::vector<std::string> obstacles;  ///< meshes, relative to the folder
+  std::vector<MethodRecord> methods;
+  std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
+  std::vector<ErrorSeries> errors;          ///< likewise
+  std::vector<IncrementSeries> increments;  ///< likewise; empty without a schedule
+  std::string reference;                    ///< method or file of the state that errors are measured against
+  bool reference_is_lowest = false;         ///< it was chosen for its lowest energy
+  OptionalNumber reference_tolerance;       ///< force tolerance to which it was solved
+
+  /// Whether the run had contact: otherwise it has no gaps and intersections.
+  bool has_contact() const;
+  int coarsest_level() const;              ///< over all methods; -1 without levels
+  int finest_level() const;                ///< over all methods; -1 without levels
+  std::vector<int> level_indices() const;  ///< of all methods, ascending
+  /// (coarse, fine) of all methods, ascending.
+  std::vector<std::pair<int, int>> pairs() const;
+};
+
+/// Reads results.json (required), steps.csv and config.yaml (optional). Null values are absent.
+/// Throws std::runtime_error with one line if results.json is missing or is not JSON.
+RunData read_run(const std::filesystem::path& folder);
+
+}  // namespace drape

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/app/report/run_collection.h"
+#include "core/app/report/statistics.h"
+
+namespace drape {
+
+/// A method of a run.
+struct Repeat {
+  const RunRecord* run;
+  const MethodRecord* method;
+};
+
+/// One method under one variation, with its repeats over seeds.
+struct RunRow {
+  std::string variation, method;
+  std::vector<Repeat> repeats;  ///< those with results
+  int converged = 0;
+
+  std::string title(bool several_variations) const;
+};
+
+/// Rows by variation, then method, in order of appearance.
+std::vector<RunRow> rows_of(const RunCollection& collection);
+
+/// A quantity of a row, by the name that tables and comparisons use.
+struct RowQuantity {
+  const char* name;   ///< "seconds"
+  const char* title;  ///< HTML
+  OptionalNumber (*of)(const RunData& run, const MethodRecord& method);
+};
+
+/// Cost and quality of a method's final state and of its preview, the last state of its coarsest level.
+const std::vector<RowQuantity>& row_quantities();
+
+/// Median and range over the repeats that converged.
+std::optional<Spread> spread_of(const RunRow& row, const RowQuantity& quantity);
+
+/// Error over cost in one measure, for the states of the levels that a method's last state builds on.
+std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t cost,
+                                   std::size_t target, std::size_t measure);
+
+/// A run with the median consistency measures of a variation's runs.
+RunData median_consistency(const RunCollection& collection, const std::string& variation);
+
+/// HTML: medians and ranges per row, with a verdict relative to the first variation or row.
+std::string rows_table(const RunCollection& collection);
+/// HTML: failed and missing runs with their errors; empty without any.
+std::string failures_table(const RunCollection& collection);
+/// In words: the numbers of runs and the best rows.
+std::string collection_summary(const RunCollection& collection);
+/// The data of the page's charts, as JSON.
+std::string rows_chart_data(const RunCollection& collection);
+
+}  // namespace drape

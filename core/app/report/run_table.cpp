@@ -1,0 +1,132 @@
+#include "core/app/report/run_table.h"
+
+#include <algorithm>
+
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/report/tables.h"
+#include "core/app/view/html.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
+
+Json sum_of(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
+  OptionalNumber sum;
+  for (const LevelRecord& level : method.levels)
+    if (level.*member) sum = sum.value_or(0) + *(level.*member);
+  return json_of(sum);
+}
+
+/// What the iterations of a method tell beyond its levels.
+struct IterationSummary {
+  int shortened_steps = 0;
+  OptionalNumber smallest_gap, intersections;
+
+  IterationSummary(const RunData& run, const std::string& method) {
+    for (const IterationSeries& series : run.iterations) {
+      if (series.method != method) continue;
+      for (const StepRow& row : series.rows) {
+        shortened_steps += row.step_length.value_or(1) < 1;
+        if (row.smallest_gap)
+          smallest_gap = std::min(smallest_gap.value_or(*row.smallest_gap), *row.smallest_gap);
+        if (row.intersections) intersections = intersections.value_or(0) + *row.intersections;
+      }
+    }
+  }
+};
+
+/// The outcomes of the levels, or the one that all have.
+std::string outcomes(const MethodRecord& method) {
+  std::vector<std::string> words;
+  for (const LevelRecord& level : method.levels) words.push_back(level.status);
+  const bool same =
+      std::all_of(words.begin(), words.end(), [&](const auto& w) { return w == method.status; });
+  return same ? method.status : joined(words);
+}
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+Json row_of(const RunData& run, const MethodRecord& method) {
+  IterationSummary iterations(run, method.name);
+  OptionalNumber stretch;
+  std::string fault, remark;
+  for (const LevelRecord& level : method.levels) {
+    if (level.smallest_gap)
+      iterations.smallest_gap =
+          std::min(iterations.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
+    if (level.intersections)
+      iterations.intersections = iterations.intersections.value_or(0) + *level.intersections;
+    if (level.largest_stretch) stretch = std::max(stretch.value_or(0), *level.largest_stretch);
+    if (level.message.empty()) continue;
+    (succeeded(level.status) ? remark : fault) +=
+        (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
+        "\n";
+  }
+  const ConsistencyRecord* pair = method.levels.size() > 1
+                                      ? method.pair(method.levels.front().level, method.levels.back().level)
+                                      : nullptr;
+  Json row = {{"method", method.name}, {"pass", false}, {"outcome", outcomes(method)}};
+  row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
+  row["steps"] = sum_of(method, &LevelRecord::steps);
+  row["iterations"] = sum_of(method, &LevelRecord::newton_iterations);
+  row["shortened_steps"] = iterations.shortened_steps;
+  row["seconds"] = sum_of(method, &LevelRecord::seconds);
+  row["energy"] = json_of(final_energy(run, method));
+  row["smallest_gap"] = json_of(iterations.smallest_gap);
+  row["largest_stretch"] = json_of(stretch);
+  row["intersections"] = json_of(iterations.intersections);
+  row["d_H_fit"] = pair ? json_of(pair->d_H_fit) : Json();
+  row["message"] = first_line(fault + remark);
+  return row;
+}
+
+std::string outcome_without_results(const RunRecord& run) {
+  if (run.status != "failed") return run.status;
+  return run.refused()                    ? "refused"
+         : run.exit_code == exit_too_slow ? "timeout"
+         : run.exit_code > exit_by_signal ? "crash"
+                                          : "failed";
+}
+
+bool passes(const RunRecord& run, const std::string& outcome, const TableRow& row) {
+  const Json energy = row.value("energy", Json()), crossing = row.value("intersections", Json());
+  if (run.data && (energy.is_null() || (crossing.is_number() && crossing > 0))) return false;
+  const bool expected = outcome == run.expected || (run.expected == "converged" && has_converged(outcome));
+  return expected && row.value("message", "").find(run.expected_message) != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<TableRow> table_rows(const RunCollection& collection) {
+  std::vector<TableRow> rows;
+  for (const RunRecord& run : collection.runs) {
+    const bool repeated = collection.of(run.variation).size() > 1 && run.seed;
+    const Json name = {{"sweep", run.sweep},
+                       {"run", run.variation + (repeated ? ", seed " + html::fixed(run.seed, 0) : "")}};
+    const auto add = [&](const std::string& outcome, const Json& cells) {
+      TableRow row = name;
+      row.update(cells);
+      row["pass"] = passes(run, outcome, row);
+      rows.push_back(row);
+    };
+    if (run.data)
+      for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
+    else
+      add(outcome_without_results(run), {{"method", ""},
+                                         {"pass", false},
+                                         {"outcome", outcome_without_results(run)},
+                                         {"message", run.error}});
+  }
+  return rows;
+}
+
+bool all_pass(const std::vector<TableRow>& rows) {
+  return std::all_of(rows.begin(), rows.end(), [](const TableRow& row) { return row["pass"] == true; });
+}
+
+}  // namespace drape

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/app/report/run_table.h"
+#include "core/app/view/html.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string cell_text(const Json& value, bool rounded) {
+  if (value.is_null()) return "";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "NO";
+  if (value.is_string()) return value.get<std::string>();
+  return rounded ? html::number_text(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+std::string markdown_cell(const Json& value) {
+  const bool counted = value.is_number() && value.get<double>() == std::floor(value.get<double>()) &&
+                       std::abs(value.get<double>()) < 1e9;
+  return replaced(replaced(cell_text(value, !counted), "|", "\\|"), "\n", "; ");
+}
+
+std::string csv_cell(const Json& value) {
+  const std::string text = cell_text(value, false);
+  return text.find_first_of(",\"\n") == std::string::npos ? text : "\"" + replaced(text, "\"", "\"\"") + "\"";
+}
+
+bool is_text(const std::string& column) {
+  return column == "sweep" || column == "run" || column == "method" || column == "outcome" ||
+         column == "pass" || column == "message";
+}
+
+std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
+                                    const std::vector<std::string>& chosen) {
+  const std::vector<std::string> known = table_columns();
+  for (const std::string& column : chosen) {
+    if (std::find(known.begin(), known.end(), column) != known.end()) continue;
+    if (column == "cuts") throw std::runtime_error("column \"cuts\" is now called \"shortened_steps\"");
+    const std::string near = nearest_word(column, known);
+    throw std::runtime_error(
+        "there is no column \"" + excerpt(column) + "\"; " +
+        (near.empty() ? "the columns are " + joined(known) : "did you mean \"" + near + "\"?"));
+  }
+  if (!chosen.empty()) return chosen;
+  std::vector<std::string> columns;
+  for (const std::string& column : known)
+    if (std::any_of(rows.begin(), rows.end(), [&](const TableRow& row) {
+          const auto cell = row.find(column);
+          return cell != row.end() && !cell->is_null() && !cell_text(*cell, true).empty();
+        }))
+      columns.push_back(column);
+  return columns;
+}
+
+}  // namespace
+
+std::vector<std::string> table_columns() {
+  return {"sweep",           "run",           "method",          "pass",    "outcome", "vertices",
+          "steps",           "iterations",    "shortened_steps", "seconds", "energy",  "smallest_gap",
+          "largest_stretch", "intersections", "d_H_fit",         "message"};
+}
+
+std::string table_text(const std::vector<TableRow>& rows, std::vector<std::string> columns,
+                       TableFormat format) {
+  columns = columns_of(rows, columns);
+  if (format == TableFormat::json) {
+    Json chosen = Json::array();
+    for (const TableRow& row : rows) {
+      Json& one = chosen.emplace_back(Json::object());
+      for (const std::string& column : columns) one[column] = row.value(column, Json());
+    }
+    return chosen.dump(1) + "\n";
+  }
+  const bool csv = format == TableFormat::csv;
+  const auto line = [&](const auto& cell_of) {
+    std::string text;
+    for (const std::string& column : columns)
+      text += (csv ? (text.empty() ? "" : ",") : "| ") + cell_of(column) + (csv ? "" : " ");
+    return text + (csv ? "\n" : "|\n");
+  };
+  std::string text = line([](const std::string& column) { return column; });
+  if (!csv)
+    text += line([](const std::string& column) { return std::string(is_text(column) ? "---" : "---:"); });
+  for (const TableRow& row : rows)
+    text += line([&](const std::string& column) {
+      const Json value = row.value(column, Json());
+      return csv ? csv_cell(value) : markdown_cell(value);
+    });
+  return text;
+}
+
+}  // namespace drape

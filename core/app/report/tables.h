@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/app/report/run_data.h"
+#include "core/app/report/table1.h"
+
+namespace drape {
+
+/// How the run ended and which method is best, in one or two sentences of HTML.
+std::string outcome_sentence(const RunData& run);
+
+/// Whether the checked states are free of intersections, in one or two sentences of plain text.
+struct Verdict {
+  bool intersection_free = true;
+  std::string text;
+};
+
+/// The verdict on all recorded states; empty without contact.
+std::optional<Verdict> intersection_verdict(const RunData& run);
+
+/// HTML list of the messages of levels that did not converge; empty without any.
+std::string troubles(const RunData& run);
+
+/// The energy of the finest model in the last state of a method [J].
+OptionalNumber final_energy(const RunData& run, const MethodRecord& method);
+
+/// A method compared with the others that converged, in a few words.
+std::string method_verdict(const RunData& run, const MethodRecord& method);
+
+/// One row per method: status, cost and quality of its final state.
+std::string summary_table(const RunData& run);
+
+/// One row per level and method.
+std::string level_table(const RunData& run);
+
+/// One row per pair of levels and measure, one column per method and one for the scene's initial state in
+/// place of the coarse one. The best of a row is bold, unless the initial state scores as well. Has the
+/// published columns if `published` is not null.
+std::string consistency_table(const RunData& run, const Table1Block* published);
+
+/// The same as plain text for a terminal, with the verdict on intersections below.
+std::string table1_text(const RunData& run);
+
+/// The published block alone, in the same layout.
+std::string published_table(const Table1Block& block);
+
+/// Parts of the energy, one row per level and method [J].
+std::string energy_table(const RunData& run);
+
+}  // namespace drape

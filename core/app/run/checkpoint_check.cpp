@@ -1,0 +1,171 @@
+// Whether a checkpoint's values fit the experiment. The checksum detects damage; these checks detect files
+// that another program or another version of drape wrote.
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/app/run/checkpoint.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Strictly ascending.
+template <class Values, class Key>
+bool ascends(const Values& values, const Key& key) {
+  return std::adjacent_find(values.begin(), values.end(),
+                            [&](const auto& a, const auto& b) { return !(key(a) < key(b)); }) == values.end();
+}
+
+class Check {
+ public:
+  Check(const Checkpoint& checkpoint, const Experiment& experiment, const Scene& scene)
+      : c_(checkpoint), experiment_(experiment), scene_(scene) {}
+
+  void all() const {
+    methods();
+    levels();
+    if (c_.own_start) positions(*c_.own_start, c_.first_level, "where the methods begin");
+    if (c_.state.under_way) under_way(*c_.state.under_way);
+    recorder(c_.recorder);
+  }
+
+ private:
+  static void require(bool fits, const std::string& what) {
+    if (!fits)
+      throw std::runtime_error("the checkpoint does not fit its experiment: " + what +
+                               "; run the experiment again");
+  }
+  bool is_level(int level) const { return level >= 0 && level < scene_.hierarchy.level_count(); }
+
+  void positions(const Positions& x, int level, const std::string& what) const {
+    require(is_level(level) && x.rows() == scene_.hierarchy.levels[level].vertex_count(),
+            what + ": not as many vertices as the level has");
+    require(x.allFinite(), what + ": not finite");
+  }
+
+  void methods() const {
+    require(c_.method >= 0 && c_.method < static_cast<int>(c_.methods.size()), "the method under way");
+    for (const std::string& name : c_.methods)
+      require(std::any_of(experiment_.methods.begin(), experiment_.methods.end(),
+                          [&](const auto& method) { return method.first == name; }),
+              "the experiment has no method " + name);
+  }
+
+  void levels() const {
+    const MethodState& s = c_.state;
+    require(is_level(c_.first_level), "the level that the methods begin with");
+    require(s.level >= c_.first_level && (s.level == scene_.hierarchy.level_count() || is_level(s.level)),
+            "the level under way");
+    int last = -1;
+    for (const LevelResult& level : s.finished) {
+      require(level.level > last, "the levels are not in order");
+      result(level);
+      last = level.level;
+    }
+    require(s.finished.empty() || last == s.level - 1, "the level before the one under way");
+  }
+
+  void result(const LevelResult& r) const {
+    positions(r.x, r.level, "the state of level " + std::to_string(r.level));
+    require(r.steps >= 0 && r.iterations >= 0 && r.factorisations >= 0 && r.analyses >= 0, "negative counts");
+    load_stepping(r.load_stepping);
+  }
+
+  void load_stepping(const LoadSteppingState& s) const {
+    if (!scene_.schedule) return;
+    require(s.increment >= 0 && s.increment <= scene_.schedule->increment_count() &&
+                s.values.size() == scene_.schedule->state().values.size(),
+            "the schedule's increment");
+  }
+
+  void under_way(const NewtonState& s) const {
+    const int level = c_.state.level, n = static_cast<int>(s.so_far.x.rows());
+    require(s.so_far.level == level, "the level under way");
+    result(s.so_far);
+    const std::size_t held = scene_.models[level]->dirichlet().size();
+    for (const int k : s.dirichlet.unsatisfied)
+      require(k >= 0 && static_cast<std::size_t>(k) < held, "a Dirichlet vertex out of range");
+    require(s.step_size > 0 && s.iterations_of_step > 0 && s.factor_age >= 0 && s.psd_blend >= 0 &&
+                s.psd_blend < psd_blend_count,
+            "the settings of the step");
+    for (const Positions* x : {&s.response.from, &s.response.predicted})
+      if (x->rows() > 0) positions(*x, level, "the response to an increment");
+    contacts(s.contacts, level);
+    const HessianAssembler::ExtraPattern& extra = s.pattern.extra;
+    require(extra.blocks.size() == extra.idle.size() &&
+                ascends(extra.blocks, [](const auto& block) { return block; }),
+            "the matrix's pattern");
+    for (const auto& [i, j] : extra.blocks) require(i >= 0 && i < j && j < n, "the matrix's pattern");
+    factor(s, n);
+  }
+
+  void contacts(const ContactMemory& memory, int level) const {
+    const BoundContacts& models = scene_.models[level]->contacts();
+    if (models.empty()) return;
+    for (const Positions* x : {&memory.reference, &memory.candidates_begin, &memory.candidates_end})
+      positions(*x, level, "the contacts");
+    require(memory.tangential_displacements.size() == models.size(),
+            "the contacts' tangential displacements");
+    for (const TangentialDisplacements& displacements : memory.tangential_displacements)
+      require(ascends(displacements, [](const TangentialDisplacement& d) { return d.contact; }),
+              "the contacts' tangential displacements");
+  }
+
+  void factor(const NewtonState& s, int n) const {
+    const BlockCholesky::Analysis& a = s.analysis;
+    require(a.count >= 0, "the factor's ordering");
+    if (a.count == 0) return;
+    require(static_cast<int>(a.fixed.size()) == n, "the factor's ordering");
+    for (const std::vector<int>* ordering : {&a.reused_ordering, &a.ordering}) {
+      if (ordering->empty()) continue;
+      std::vector<int> sorted = *ordering, free;
+      std::sort(sorted.begin(), sorted.end());
+      for (int v = 0; v < n; ++v)
+        if (!a.fixed[v]) free.push_back(v);
+      require(sorted == free, "the factor's ordering");
+    }
+    require(s.factor_values.empty() || !s.pattern.invalidated, "the factor");
+  }
+
+  void recorder(const RecorderState& s) const {
+    const Json results = Json::parse(s.results, nullptr, false);
+    const bool has_methods =
+        results.is_object() && results.contains("methods") && results["methods"].is_object();
+    require(has_methods, "results.json as it was");
+    for (const auto& [name, method] : results["methods"].items())
+      require(method.is_object() && method.contains("levels") && method["levels"].is_array() &&
+                  method.contains("seconds") && method["seconds"].is_number() &&
+                  method.contains("peak_memory_bytes") && method["peak_memory_bytes"].is_number(),
+              "results.json as it was, of method " + name);
+    const auto& entries = results["methods"];
+    require(s.method.empty() || (entries.contains(s.method) && s.method == c_.methods[c_.method] &&
+                                 entries[s.method]["levels"].size() == c_.state.finished.size()),
+            "results.json as it was, of the method under way");
+    for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
+    require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
+    if (is_level(c_.state.level))
+      for (const Snapshot& snapshot : s.snapshots.snapshots)
+        positions(snapshot.x, c_.state.level, "the snapshots");
+    for (const LevelSnapshots& level : s.measured) {
+      positions(level.last, level.level, "the snapshots");
+      require(level.cost.size() == level.iterations.size() && level.cost.size() == level.energies.size() &&
+                  !level.cost.empty(),
+              "the snapshots");
+    }
+  }
+
+  const Checkpoint& c_;
+  const Experiment& experiment_;
+  const Scene& scene_;
+};
+
+}  // namespace
+
+void require_fitting(const Checkpoint& checkpoint, const Experiment& experiment, const Scene& scene) {
+  Check(checkpoint, experiment, scene).all();
+}
+
+}  // namespace drape

@@ -1,0 +1,226 @@
+#include "core/app/run/checkpoint_manager.h"
+
+#include <algorithm>
+
+#include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
+#include "core/app/report/run_data.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/version.h"
+
+namespace drape {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The interval is at least this many times the time to save.
+constexpr double save_time_ratio = 100;
+
+std::string program() { return "drape " + std::string(version()) + " (" + commit() + ")"; }
+
+/// A file's bytes, or those of the files in a folder, in the order of their names.
+FileFingerprint fingerprint_of(const fs::path& path) {
+  std::string bytes;
+  if (fs::is_directory(path)) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(path))
+      if (entry.is_regular_file()) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const fs::path& file : files) bytes += file.filename().string() + "\n" + read_file(file);
+  } else {
+    bytes = read_file(path);
+  }
+  return {path.string(), bytes.size(), checksum_of(bytes)};
+}
+
+std::string mesh_name(const std::string& method, int level) {
+  return "levels/" + method + "_l" + std::to_string(level) + ".ply";
+}
+
+nlohmann::ordered_json results_of(const fs::path& folder) {
+  const fs::path file = folder / "results.json";
+  if (!fs::exists(file))
+    throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
+  nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  const bool valid = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
+                     (!results.contains("complete") || results["complete"].is_boolean());
+  if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
+  return results;
+}
+
+}  // namespace
+
+CheckpointManager::CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun,
+                                     double interval)
+    : folder_(folder.path()),
+      recorder_(recorder),
+      now_(std::move(begun)),
+      interval_(interval),
+      method_clock_(now_.state.seconds) {
+  now_.program = program();
+}
+
+void CheckpointManager::method_started(int method) {
+  now_.method = method;
+  now_.state = {};
+  now_.state.level = now_.first_level;
+  method_clock_ = Stopwatch();
+  save();
+}
+
+void CheckpointManager::method_finished(bool converged) {
+  now_.all_converged = now_.all_converged && converged;
+}
+
+void CheckpointManager::level_finished(const LevelResult& result) {
+  if (result.outcome == Outcome::cancelled) return;
+  now_.state.finished.push_back(result);
+  now_.state.level = result.level + 1;
+  now_.state.under_way.reset();
+  save();
+}
+
+bool CheckpointManager::due(bool stopping) const {
+  return stopping || interval_ == 0 || since_.seconds() > std::max(interval_, save_time_ratio * cost_);
+}
+
+void CheckpointManager::save(const NewtonState& under_way) {
+  now_.state.level = under_way.so_far.level;
+  now_.state.under_way = under_way;
+  save();
+}
+
+void CheckpointManager::save() {
+  const Stopwatch watch;
+  now_.state.seconds = method_clock_.seconds();
+  now_.recorder = recorder_.state();
+  save_checkpoint(folder_, now_);
+  cost_ = watch.seconds();
+  since_ = Stopwatch();
+}
+
+std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
+  std::vector<FileFingerprint> fingerprints;
+  // Paths in the saved config are absolute, except those of copies in the folder.
+  const std::string& path = saved.scalar;
+  if (path.starts_with('/') && fs::exists(path)) fingerprints.push_back(fingerprint_of(path));
+  for (const char* copy : {"rest/l0.ply", "reference.ply", "start.ply"})
+    if (path == copy) fingerprints.push_back(fingerprint_of(folder / copy)), fingerprints.back().path = copy;
+  const auto add = [&](const ConfigNode& part) {
+    for (FileFingerprint& fingerprint : fingerprints_of_files(part, folder))
+      fingerprints.push_back(std::move(fingerprint));
+  };
+  for (const ConfigNode& item : saved.items) add(item);
+  for (const auto& entry : saved.entries) add(entry.second);
+  return fingerprints;
+}
+
+bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }
+
+bool all_methods_succeeded(const fs::path& folder) {
+  const RunData run = read_run(folder);
+  return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
+                                     [](const MethodRecord& m) { return succeeded(m.status); });
+}
+
+void refuse_damaged_results(const fs::path& folder) {
+  std::vector<std::string> damaged;
+  const auto results = results_of(folder);
+  const JsonFile file(folder / "results.json", "run the experiment again");
+  for (const auto& [name, method] : results["methods"].items()) {
+    if (!method.is_object() || !method.contains("levels")) file.refuse("\"levels\" is missing");
+    for (const auto& level : method["levels"]) {
+      const auto checksum = file.find<double>(level, "mesh_checksum");
+      if (!checksum) continue;  // of a level that failed
+      const auto mesh = file.at<std::string>(level, "mesh");
+      if (!fs::is_regular_file(folder / mesh) || checksum_of(read_file(folder / mesh)) != *checksum)
+        damaged.push_back(mesh);
+    }
+  }
+  if (!damaged.empty())
+    throw std::runtime_error(folder.string() + ": the run is complete, but files are damaged or missing: " +
+                             joined(damaged) + "; run the experiment again, as in drape run " +
+                             (folder / "config.yaml").string() + " --out ANOTHER");
+}
+
+Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
+  results_of(folder);
+  Checkpoint checkpoint = load_checkpoint(folder, warning);
+  const fs::path config = folder / "config.yaml";
+  if (!fs::exists(config) || read_file(config) != checkpoint.config)
+    throw std::runtime_error(config.string() +
+                             ": is not the one that the checkpoint was made with; put that one back, or "
+                             "change parameters with --set KEY=VALUE --out ANOTHER");
+  for (const FileFingerprint& was : checkpoint.files) {
+    const fs::path path = was.path.starts_with('/') ? fs::path(was.path) : folder / was.path;
+    if (!fs::exists(path))
+      throw std::runtime_error(path.string() + ": is missing, but the run reads it; put it back");
+    if (const FileFingerprint is = fingerprint_of(path); is.bytes != was.bytes || is.checksum != was.checksum)
+      throw std::runtime_error(
+          path.string() +
+          ": is not what it was when the run began; put that file back, or run the experiment again");
+  }
+  if (checkpoint.program != program())
+    warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
+                                                program() + ": the last bits may differ");
+  return checkpoint;
+}
+
+SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {
+  const nlohmann::ordered_json results = results_of(folder);
+  SavedState state{method, 0, {}};
+  std::optional<Checkpoint> checkpoint;
+  if (!results.value("complete", false)) {
+    std::string warning;
+    checkpoint = load_checkpoint(folder, warning);
+    if (state.method.empty()) state.method = checkpoint->methods.at(checkpoint->method);
+  }
+  if (state.method.empty())
+    for (const auto& [name, entry] : results["methods"].items()) state.method = name;
+  const bool current = checkpoint && checkpoint->methods.at(checkpoint->method) == state.method;
+  const std::optional<NewtonState>& under_way = current ? checkpoint->state.under_way : std::nullopt;
+  std::vector<int> levels;
+  for (int l = 0; l < 32; ++l)
+    if (fs::exists(folder / mesh_name(state.method, l)) || (under_way && checkpoint->state.level == l))
+      levels.push_back(l);
+  const std::string whose = folder.string() + ": holds no state of method " + state.method;
+  if (levels.empty()) throw std::runtime_error(whose + "; name another with --method");
+  state.level = level.value_or(levels.back());
+  if (std::find(levels.begin(), levels.end(), state.level) == levels.end())
+    throw std::runtime_error(whose + " on level " + std::to_string(state.level) +
+                             "; the last level that it has is " + std::to_string(levels.back()));
+  state.x = under_way && checkpoint->state.level == state.level
+                ? under_way->so_far.x
+                : read_mesh(folder / mesh_name(state.method, state.level)).vertices;
+  return state;
+}
+
+void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level,
+                        ConfigErrors& errors) {
+  for (const char* key : {"cloth", "refiner"})
+    if (to_yaml(*before.resolved.find(key)) != to_yaml(*changed.resolved.find(key)))
+      errors.push_back(
+          {changed.location_of(key), "\"" + std::string(key) +
+                                         "\" cannot be changed: the saved state is one of the cloth "
+                                         "as it was; run the changed experiment from its start"});
+  if (changed.parameters.levels <= level)
+    errors.push_back(
+        {changed.location_of("levels"), "\"levels\" must be at least " + std::to_string(level + 1) +
+                                            ", for the saved state is one of level " + std::to_string(level) +
+                                            "; choose a coarser one with --level"});
+}
+
+void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                      ConfigErrors& errors) {
+  const LevelModel& model = *scene.models[level];
+  if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
+  scene.starts[level] = x;
+  refuse_intersecting_start(experiment, model, x, errors);
+  for (std::size_t l = level + 1; l < scene.starts.size(); ++l)
+    scene.starts[l] = scene.hierarchy.midpoints[l - 1] * scene.starts[l - 1];
+}
+
+}  // namespace drape

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/app/run/checkpoint.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
+
+namespace drape {
+
+/// Saves checkpoints of a run: at the beginning of every method and level, on a stop request, and about every
+/// `interval` seconds, less often if saving would take more than 1 % of the time. Results do not depend on
+/// it.
+class CheckpointManager {
+ public:
+  /// `begun` is the run's initial state.
+  CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval);
+
+  void method_started(int method);
+  void method_finished(bool converged);
+  /// Saves the state after the level, unless it was cancelled.
+  void level_finished(const LevelResult& result);
+  bool due(bool stopping) const;
+  void save(const NewtonState& under_way);
+
+ private:
+  void save();
+
+  const std::filesystem::path folder_;
+  const Recorder& recorder_;
+  Checkpoint now_;
+  double interval_, cost_ = 0;
+  Stopwatch method_clock_, since_;
+};
+
+/// Fingerprints of the files that the config.yaml of a results folder names; files inside have relative
+/// paths.
+std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved,
+                                                   const std::filesystem::path& folder);
+
+/// Whether the run in the folder is complete.
+bool is_complete(const std::filesystem::path& folder);
+
+/// Whether the run is complete and every method succeeded.
+bool all_methods_succeeded(const std::filesystem::path& folder);
+
+/// Throws std::runtime_error naming every mesh of a complete run whose checksum differs from results.json.
+void refuse_damaged_results(const std::filesystem::path& folder);
+
+/// The checkpoint to resume the run in the folder from. `warning` reports harmless differences. Throws
+/// std::runtime_error with the reason if the run cannot be resumed.
+Checkpoint checkpoint_to_resume(const std::filesystem::path& folder, std::string& warning);
+
+/// A saved state of a run.
+struct SavedState {
+  std::string method;
+  int level = 0;
+  Positions x;
+};
+
+/// The state of a method and level, by default the last ones, of the interrupted or complete run in the
+/// folder. Throws std::runtime_error if there is none.
+SavedState saved_state(const std::filesystem::path& folder, const std::string& method,
+                       std::optional<int> level);
+
+/// Appends an error for every change of the experiment that a saved state does not fit.
+void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level, ConfigErrors& errors);
+
+/// Replaces the scene's initial states by x on that level and by the same surface, refined at midpoints, on
+/// finer ones. Dirichlet vertices move from there to their targets. Appends the intersections of x.
+void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
+                      ConfigErrors& errors);
+
+}  // namespace drape

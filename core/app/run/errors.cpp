@@ -1,0 +1,122 @@
+#include "core/app/run/errors.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+/// The metric value behind each measure; an overlap counts as 1 − overlap. The energy gap needs no metric.
+constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit", "silhouette_overlap"};
+static_assert(metric_values.size() + 1 == error_measures.size());
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return std::isfinite(value) ? text : "";
+}
+
+std::string cells(const StateError& error) {
+  std::string text;
+  for (const auto& value : error) text += "," + (value ? number(*value) : "");
+  return text;
+}
+
+}  // namespace
+
+double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
+                        const Positions& x) {
+  return scene.models.back()->value(
+      scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1, weights));
+}
+
+StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
+                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault) {
+  StateError error;
+  for (const auto& [name, metric] : experiment.metrics) {
+    if (metric->scope() != MetricScope::pair) continue;
+    try {
+      const MetricResult result =
+          metric->evaluate({scene.hierarchy.levels.back(), *scene.models.back(), target.x, &x});
+      for (const MetricValue& v : result.values)
+        for (std::size_t k = 0; k < metric_values.size(); ++k)
+          if (v.name == metric_values[k]) error[k] = v.better == Better::higher ? 1 - v.value : v.value;
+    } catch (const std::exception& problem) {
+      fault(name + ": " + reason_of(problem));
+    }
+  }
+  if (target.energy != 0) error.back() = (energy - target.energy) / std::abs(target.energy);
+  return error;
+}
+
+nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelResult& result,
+                                       const std::vector<Snapshot>& snapshots, const Cost& before,
+                                       const Cost& spent) {
+  LevelSnapshots level;
+  level.method = method;
+  level.level = result.level;
+  level.file = "snapshots/" + method + "_l" + std::to_string(result.level) + ".bin";
+  level.last = result.x;
+  level.converged = has_converged(result.outcome);
+  const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
+  nlohmann::ordered_json entry = {{"file", level.file}};
+  for (const Snapshot& snapshot : snapshots) {
+    level.cost.push_back(before + snapshot.cost);
+    level.iterations.push_back(snapshot.cost.iterations);
+    level.energies.push_back(energy_on_finest(scene_, weights, result.level, snapshot.x));
+    entry["iterations"].push_back(snapshot.cost.iterations);
+    entry["seconds"].push_back(spent.seconds + snapshot.cost.seconds);
+  }
+  make_folder(folder_.file("snapshots"));
+  level.checksum = write_snapshots(folder_.file(level.file), snapshots);
+  sync_to_disk(folder_.file(level.file));
+  levels_.push_back(std::move(level));
+  return entry;
+}
+
+void ErrorTable::write(const Positions* reference, const std::function<bool()>& stop,
+                       const std::function<void(const std::string&)>& fault) {
+  const int finest = scene_.hierarchy.level_count() - 1;
+  std::string text = "method,level,iteration,seconds,iterations,flops,vertices";
+  for (const char* target : error_targets)
+    for (const char* measure : error_measures) text += "," + std::string(target) + "_" + measure;
+  text += "\n";
+  std::optional<ErrorTarget> standard;
+  if (reference) standard = {*reference, scene_.models.back()->value(*reference)};
+  for (const LevelSnapshots& level : levels_) {
+    std::optional<ErrorTarget> own;
+    for (const LevelSnapshots& other : levels_)
+      if (other.method == level.method && other.level == finest && other.converged)
+        own = {other.last, other.energies.back()};
+    const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
+    const bool same = own && standard && own->x == standard->x;
+    const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
+    std::vector<Positions> states;
+    try {
+      states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
+    } catch (const std::exception& error) {
+      fault(error.what());  // there is no copy of them
+      continue;
+    }
+    if (states.size() != level.cost.size()) continue;
+    states.back() = level.last;
+    for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
+      const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
+      const auto against = [&](const std::optional<ErrorTarget>& target) {
+        return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
+      };
+      const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
+      const Cost& cost = level.cost[k];
+      text += level.method + "," + std::to_string(level.level) + "," + std::to_string(level.iterations[k]) +
+              "," + number(cost.seconds) + "," + std::to_string(cost.iterations) + "," + number(cost.flops) +
+              "," + std::to_string(vertices) + cells(to_own) + cells(to_standard) + "\n";
+    }
+  }
+  folder_.write_text("errors.csv", text);
+}
+
+}  // namespace drape

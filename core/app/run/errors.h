@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/app/experiment/error_measures.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/run/run_folder.h"
+#include "core/app/run/snapshots.h"
+
+namespace drape {
+
+/// One value per measure; absent if the experiment has no metric for it.
+using StateError = std::array<std::optional<double>, error_measures.size()>;
+
+/// A state on the finest level that others are measured against.
+struct ErrorTarget {
+  Positions x;
+  double energy = 0;  ///< of the finest level there, without limits and contact [J]
+};
+
+/// The error of a state x of the finest level, whose energy is given [J]. A metric that throws is reported to
+/// `fault`; its values stay absent.
+StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
+                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault);
+
+/// The finest level's energy [J] of a state that these prolongation matrices, [l]: n_{l+1} × n_l, refine to
+/// it.
+double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
+                        const Positions& x);
+
+/// The snapshots of one level.
+struct LevelSnapshots {
+  std::string method, file;
+  int level = 0;
+  std::vector<Cost> cost;        ///< of each snapshot, with what it builds on
+  std::vector<int> iterations;   ///< of the level
+  std::vector<double> energies;  ///< on the finest level [J]
+  Positions last;                ///< last state in full precision
+  bool converged = false;
+  std::uint32_t checksum = 0;  ///< of the file
+};
+
+/// Collects the snapshots of a run and measures them all once the methods have ended, so that no method's
+/// time has the measuring in it.
+class ErrorTable {
+ public:
+  ErrorTable(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
+      : folder_(folder), experiment_(experiment), scene_(scene) {}
+
+  /// Adds a level's snapshots: writes their file, evaluates their energies and returns their entry for
+  /// results.json. `before` is the cost that the level builds on; `spent` all that the method
+  /// has done before it.
+  nlohmann::ordered_json add(const std::string& method, const LevelResult& result,
+                             const std::vector<Snapshot>& snapshots, const Cost& before, const Cost& spent);
+
+  /// Measures every snapshot against the finest state of its method, where that converged, and against the
+  /// reference, and writes errors.csv, without those whose file is damaged or gone; `fault` is told. Ends
+  /// early, without the rest, when `stop` says so.
+  void write(const Positions* reference, const std::function<bool()>& stop,
+             const std::function<void(const std::string&)>& fault);
+
+  bool empty() const { return levels_.empty(); }
+  const std::vector<LevelSnapshots>& levels() const { return levels_; }
+  /// Takes in what an earlier table of the same run had collected; its files are there.
+  void restore(std::vector<LevelSnapshots> levels) { levels_ = std::move(levels); }
+
+ private:
+  const RunFolder& folder_;
+  const Experiment& experiment_;
+  const Scene& scene_;
+  std::vector<LevelSnapshots> levels_;
+};
+
+}  // namespace drape

@@ -1,0 +1,113 @@
+#include "core/app/run/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+/// "gravity.acceleration", "pins.0.translate, contact.dhat", "pins.0.translate and 3 more".
+std::string first_two(const std::vector<std::string>& names) {
+  if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
+  return names.empty() ? "" : names[0] + (names.size() == 2 ? ", " + names[1] : "");
+}
+
+}  // namespace
+
+Progress::Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping,
+                   std::vector<std::string> changing)
+    : tolerance_(tolerance),
+      levels_(levels),
+      quiet_(quiet),
+      terminal_(isatty(STDERR_FILENO)),
+      load_stepping_(load_stepping),
+      changing_(first_two(changing)) {}
+
+void Progress::method_started(const std::string& method) { method_ = method; }
+
+void Progress::level_started(int) {
+  level_clock_ = Stopwatch();
+  last_draw_ = 0;
+  first_residual_ = 0;
+  done_ = 0;
+  to_go_ = TimeToGo();
+}
+
+void Progress::iteration(const IterationRow& row, const Positions&) {
+  take_note(row);
+  const double now = level_clock_.seconds();
+  to_go_.note(now, done_);
+  if (quiet_ || now - last_draw_ < (terminal_ ? 0.1 : 10)) return;
+  last_draw_ = now;
+  draw(row);
+}
+
+/// Updates the finished fraction of the level: by the logarithm of the residual towards the tolerance, and
+/// under load stepping by increments, the initial equilibrium included.
+void Progress::take_note(const IterationRow& row) {
+  const bool scheduled = load_stepping_ && row.time;
+  const int increment = scheduled ? load_stepping_->increment() : 0,
+            last = scheduled ? load_stepping_->increment_count() : 0;
+  if (first_residual_ == 0 || increment != increment_) first_residual_ = best_residual_ = row.force_residual;
+  increment_ = increment;
+  best_residual_ = std::min(best_residual_, row.force_residual);
+  const bool is_solved = !scheduled || load_stepping_->equilibrates() || increment == last;
+  const double decades = std::log(first_residual_ / tolerance_);
+  const double part = decades > 0 ? std::log(first_residual_ / best_residual_) / decades : 1;
+  done_ = std::max(done_, (increment + (is_solved ? std::clamp(part, 0.0, 1.0) : 0)) / (last + 1));
+}
+
+std::string Progress::line(const IterationRow& row) const {
+  constexpr int width = 16;
+  std::string bar, increment, to_go;
+  for (int k = 0; k < width; ++k) bar += k < done_ * width ? "█" : "░";
+  char text[256];
+  if (load_stepping_ && row.time) {
+    std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, load_stepping_->increment_count());
+    increment = text + changing_ + " ";
+  }
+  if (const std::optional<double> seconds = to_go_.seconds()) {
+    std::snprintf(text, sizeof text, "  about %.0f s to go", *seconds);
+    to_go = text;
+  }
+  std::snprintf(text, sizeof text, "step %-4d residual %.2e  energy %.6g J", row.step, row.force_residual,
+                row.energy);
+  const std::string level = "level " + std::to_string(row.level) + "/" + std::to_string(levels_ - 1) + " ";
+  return method_ + std::string(method_.size() < 10 ? 10 - method_.size() : 1, ' ') + level + increment + bar +
+         " " + text + to_go;
+}
+
+void Progress::draw(const IterationRow& row) {
+  clear_line();
+  std::fprintf(stderr, "%s%s", line(row).c_str(), terminal_ ? "" : "\n");
+  std::fflush(stderr);
+  drawn_ = terminal_;
+}
+
+void Progress::clear_line() {
+  if (drawn_) std::fputs("\r\033[K", stderr);
+  drawn_ = false;
+}
+
+void Progress::level_finished(const LevelResult& r) {
+  if (quiet_) return;
+  clear_line();
+  std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s  residual %.2e%s%s\n", method_.c_str(),
+               r.level, levels_ - 1, to_string(r.outcome), r.steps, r.seconds, r.force_residual,
+               r.message.empty() ? "" : "  ", r.message.c_str());
+}
+
+void Progress::method_failed(int level, const std::string& cause) {
+  if (quiet_) return;
+  clear_line();
+  std::fprintf(stderr, "%-9s level %d/%d %-12s %s\n", method_.c_str(), level, levels_ - 1, "failed",
+               printable(cause).c_str());
+}
+
+}  // namespace drape

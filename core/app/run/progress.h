@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/app/run/time_to_go.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/model/solver.h"
+
+namespace drape {
+
+/// Shows a run on the terminal: one line that is rewritten while a level is solved (a new line now and then
+/// if standard error is no terminal), and a permanent one for every finished level.
+class Progress : public Observer {
+ public:
+  /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping
+  /// (`load_stepping`, which changes the parameters `changing`) it is full after the last increment.
+  Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping = nullptr,
+           std::vector<std::string> changing = {});
+
+  void method_started(const std::string& method);
+  void level_started(int level) override;
+  void iteration(const IterationRow& row, const Positions& x) override;
+  void level_finished(const LevelResult& result) override;
+  void method_failed(int level, const std::string& cause);
+
+  /// The line after an iteration.
+  std::string line(const IterationRow& row) const;
+
+ private:
+  void take_note(const IterationRow& row);
+  void draw(const IterationRow& row);
+  void clear_line();
+
+  double tolerance_;
+  int levels_;
+  bool quiet_, terminal_, drawn_ = false;
+  const LoadStepping* load_stepping_;
+  std::string changing_, method_;
+  Stopwatch level_clock_;
+  double last_draw_ = 0;
+  int increment_ = 0;                              // that the residuals belong to
+  double first_residual_ = 0, best_residual_ = 0;  // of the current increment; 0 before the first
+  double done_ = 0;                                // fraction of the level, in [0, 1]
+  TimeToGo to_go_;
+};
+
+}  // namespace drape

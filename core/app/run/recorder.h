@@ -1,0 +1,123 @@
+#pragma once
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/app/experiment/experiment.h"
+#include "core/app/run/errors.h"
+#include "core/app/run/run_folder.h"
+#include "core/app/run/snapshots.h"
+
+namespace drape {
+
+/// A level's final state, as in levels/.
+struct RecordedState {
+  std::string method;
+  int level = 0;
+  Positions x;
+};
+
+/// A recorder's state, with the sizes of its files.
+struct RecorderState {
+  std::string results;  ///< contents of results.json
+  std::string method;
+  bool intersection_free = true, method_intersection_free = true;
+  std::vector<RecordedState> states;  ///< all levels so far, in order
+  SnapshotRecorder::State snapshots;
+  std::vector<LevelSnapshots> measured;
+  Cost spent, last;
+  double overhead = 0;
+  std::uint64_t steps_bytes = 0, log_bytes = 0;
+};
+
+/// Why a method that threw has failed.
+struct MethodFailure {
+  int level = 0;  ///< the current one
+  std::string cause;
+};
+
+/// Writes a run's results while it proceeds: steps.csv, log.jsonl, levels/*.ply and results.json. Every
+/// function throws WriteError if a file cannot be written.
+class Recorder : public Observer {
+ public:
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
+
+  /// Resumes from another recorder's state: truncates the files to their former sizes and restores damaged or
+  /// missing ones.
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+           const RecorderState& state);
+  /// Flushes the files to the disk before it returns.
+  RecorderState state() const;
+  /// The files that were restored.
+  const std::vector<std::string>& restored() const { return restored_; }
+  /// Records the origin of a warm start in results.json.
+  void warm_started_from(const std::string& where);
+
+  void method_started(const std::string& method);
+  /// Evaluates the metrics on all finished levels and pairs of them, and writes results.json. A failed method
+  /// keeps the results of its earlier levels.
+  void method_finished(const std::vector<LevelResult>& results,
+                       const std::optional<MethodFailure>& failure = std::nullopt);
+  /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
+  /// method's finest state and of every snapshot. False if it was stopped.
+  bool measure_errors(Observer& observer, bool cancelled);
+  void run_finished(bool complete);
+
+  void level_started(int level) override;
+  void iteration(const IterationRow& row, const Positions& x) override;
+  void increment_finished(const IncrementRow& row, const Positions& x) override;
+  void level_finished(const LevelResult& result) override;
+
+  /// Whether no checked state had an intersection.
+  bool intersection_free() const { return intersection_free_; }
+
+ private:
+  using Json = nlohmann::ordered_json;
+
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
+           std::ios::openmode mode);
+  using Names = std::vector<std::string>;  // of files
+  // These return the names of files that were missing or different.
+  Names write_scene();
+  Names write_state(const RecordedState& state) const;
+  /// The states of a method as a ParaView collection.
+  Names write_collection(const std::string& method) const;
+  Names write_again();
+  /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
+  void require_written(const std::ofstream& stream, const char* name) const;
+  Json& method_entry() { return results_["methods"][method_]; }
+  std::string file_of(const std::string& method, int level, const char* extension) const;
+  Json state_entry(const LevelResult& result);
+  /// Counts intersecting pairs and logs the first ones; null without contact.
+  Json intersections(int level, const Positions& x);
+  /// A metric's result; the error of a metric that throws goes to `entry`.
+  MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
+  Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
+  /// All states on the finest level.
+  std::vector<const RecordedState*> finest_states() const;
+  /// The finest state that the experiment chooses as reference; null without one.
+  const RecordedState* reference_state() const;
+  /// The state that errors are measured against; null without one.
+  const Positions* find_reference(Observer& observer, bool cancelled);
+  void log(Json entry);
+  void save() const;
+
+  const RunFolder& folder_;
+  const Experiment& experiment_;
+  const Scene& scene_;
+  std::ofstream steps_, log_;
+  Json results_;
+  std::string method_;
+  bool intersection_free_ = true, method_intersection_free_ = true;
+  std::vector<RecordedState> states_;  // all levels so far
+  std::vector<std::string> restored_;
+  SnapshotRecorder snapshots_;
+  ErrorTable errors_;
+  Cost spent_;           // of the method's levels before this one
+  Cost last_;            // of this level up to its last iteration
+  double overhead_ = 0;  // time that recording took between the levels of a method [s]
+  std::optional<LevelResult> solved_reference_;
+};
+
+}  // namespace drape

@@ -1,0 +1,132 @@
+#include "core/app/run/recorder_files.h"
+
+#include <chrono>
+#include <fstream>
+
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io_formats.h"
+
+namespace drape {
+
+namespace {
+
+std::uint64_t size_of(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uint64_t bytes = std::filesystem::file_size(file, error);
+  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
+  return bytes;
+}
+
+/// Truncates a file to so many bytes.
+void cut(const std::filesystem::path& file, std::uint64_t bytes) {
+  std::error_code error;
+  std::filesystem::resize_file(file, bytes, error);
+  if (error) throw WriteError("cannot write " + file.string() + ": " + error.message());
+}
+
+}  // namespace
+
+std::string json_text(const nlohmann::ordered_json& json, int indent) {
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+double wall_clock() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder) {
+  return {size_of(folder.file("steps.csv")), size_of(folder.file("log.jsonl"))};
+}
+
+void cut_files(const RunFolder& folder, const RecorderState& state) {
+  cut(folder.file("steps.csv"), state.steps_bytes);
+  cut(folder.file("log.jsonl"), state.log_bytes);
+}
+
+std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene) {
+  std::vector<std::string> written;
+  make_folder(folder.file("rest"));
+  for (const Level& level : scene.hierarchy.levels) {
+    const std::string name = "rest/l" + std::to_string(level.index) + ".ply";
+    if (write_where_other(folder.file(name), ply_bytes(level.rest))) written.push_back(name);
+  }
+  return written;
+}
+
+void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
+  for (const auto& [name, bytes] :
+       {std::pair("steps.csv", state.steps_bytes), {"log.jsonl", state.log_bytes}}) {
+    const std::filesystem::path file = folder.file(name);
+    std::error_code error;
+    const std::uint64_t now = std::filesystem::file_size(file, error);
+    if (error || now < bytes)
+      throw std::runtime_error(file.string() +
+                               ": is shorter than when the checkpoint was made; it was changed since, and "
+                               "the run cannot be resumed: run the experiment again");
+  }
+}
+
+void record_abort(const RunFolder& folder, const std::string& cause) {
+  try {
+    auto results = nlohmann::ordered_json::parse(read_file(folder.file("results.json")));
+    results["aborted"] = cause;
+    for (auto& [name, method] : results.at("methods").items())
+      if (method.at("status") == "running") method["status"] = "aborted";
+    folder.write_text("results.json", json_text(results, 1) + "\n");
+    std::ofstream(folder.file("log.jsonl"), std::ios::app)
+        << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
+  } catch (const std::exception&) {
+    // The cause of the abort may prevent this write too; message and exit code remain.
+  }
+}
+
+Recorder::Names Recorder::write_scene() {
+  Names written = write_rest(folder_, scene_);
+  const auto write = [&](const std::string& name, const TriangleMesh& mesh) {
+    if (write_where_other(folder_.file(name), ply_bytes(mesh))) written.push_back(name);
+  };
+  if (scene_.reference)
+    write("reference.ply", {*scene_.reference, scene_.hierarchy.levels.back().rest.triangles});
+  results_["obstacles"] = Json::array();
+  for (const auto& contact : scene_.models.back()->contacts())
+    for (const TriangleMesh& obstacle : contact->obstacles()) {
+      const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
+      write(name, obstacle);
+      results_["obstacles"].push_back(name);
+    }
+  return written;
+}
+
+Recorder::Names Recorder::write_state(const RecordedState& state) const {
+  Names written;
+  const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
+  for (const char* extension : {".ply", ".vtp"}) {
+    const std::string name = file_of(state.method, state.level, extension);
+    const bool ply = extension == std::string_view(".ply");
+    if (write_where_other(folder_.file(name), ply ? ply_bytes(mesh) : vtp_text(mesh)))
+      written.push_back(name);
+    sync_to_disk(folder_.file(name));  // later checkpoints rely on it
+  }
+  return written;
+}
+
+Recorder::Names Recorder::write_collection(const std::string& method) const {
+  std::vector<std::pair<double, std::string>> meshes;
+  for (const RecordedState& state : states_)
+    if (state.method == method)
+      meshes.emplace_back(state.level, file_of(method, state.level, ".vtp").substr(7));
+  const std::string name = "levels/" + method + ".pvd";
+  return write_where_other(folder_.file(name), pvd_text(meshes)) ? Names{name} : Names();
+}
+
+Recorder::Names Recorder::write_again() {
+  for (const char* part : {"levels", "fields", "obstacles"}) make_folder(folder_.file(part));
+  Names all = write_scene();
+  const auto add = [&](const Names& names) { all.insert(all.end(), names.begin(), names.end()); };
+  for (const RecordedState& state : states_) add(write_state(state));
+  for (const auto& [name, method] : results_["methods"].items())
+    if (method["status"] != "running") add(write_collection(name));
+  return all;
+}
+
+}  // namespace drape

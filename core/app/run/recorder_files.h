@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/app/run/recorder.h"
+
+namespace drape {
+
+// Operations on a run's files. All throw WriteError if a file cannot be written.
+
+/// The JSON text; bytes that are not UTF-8, as in file names, are replaced.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
+/// Seconds since 1970.
+double wall_clock();
+
+/// Sizes of steps.csv and log.jsonl [bytes].
+std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
+/// Truncates them to the sizes of the state.
+void cut_files(const RunFolder& folder, const RecorderState& state);
+
+/// Writes the rest shapes that differ from their files, and returns their names.
+std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
+
+/// Throws std::runtime_error if steps.csv or log.jsonl is shorter than in the state.
+void refuse_short_files(const RunFolder& folder, const RecorderState& state);
+
+/// Records in the folder that the run was aborted, and why, as far as it is still writable.
+void record_abort(const RunFolder& folder, const std::string& cause);
+
+}  // namespace drape

@@ -1,0 +1,162 @@
+#include "core/app/run/run_folder.h"
+
+#include <unistd.h>
+
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/kernel/mesh/file.h"
+
+namespace drape {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Names that a run writes, the only ones that --overwrite may remove.
+constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv",
+                                     "log.jsonl",   "levels",       "fields",       "rest",
+                                     "pictures",    "obstacles",    "snapshots",    "errors.csv",
+                                     "start.ply",   "checkpoint",   "reference.ply"};
+constexpr const char* lock_name = "checkpoint/lock";
+/// Longest ending of a method's file names, which begin with the method's name.
+constexpr const char* longest_ending = "_l10_l11_H_difference.png.part";
+
+/// Whether it is a run's folder: a run creates its lock first and never removes it.
+bool is_of_a_run(const RunFolder& folder) {
+  return fs::exists(folder.file("results.json")) || fs::exists(folder.file(lock_name));
+}
+
+/// A non-empty file or folder with one of a run's names; "" without one.
+fs::path left_there(const RunFolder& folder) {
+  for (const char* own : own_names) {
+    const fs::path path = folder.file(own);
+    if (!fs::is_directory(path)) {
+      if (fs::exists(path)) return path;
+      continue;
+    }
+    for (const auto& entry : fs::directory_iterator(path))
+      if (entry.path() != folder.file(lock_name)) return path;
+  }
+  return {};
+}
+
+/// Files may be replaced only if they are a run's and `overwrite` is set.
+void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
+  const fs::path left = left_there(folder);
+  if (left.empty()) return;
+  if (!is_of_a_run(folder))
+    throw std::runtime_error(left.string() +
+                             ": is there already, and not from a run; "
+                             "name another results folder with --out");
+  if (!overwrite)
+    throw std::runtime_error(folder.path().string() +
+                             ": holds the results of another run; name another folder with --out, or "
+                             "replace them with --overwrite");
+}
+
+/// The missing folders of the path, innermost first.
+std::vector<fs::path> missing_folders(const fs::path& folder) {
+  std::vector<fs::path> missing;
+  std::error_code error;
+  for (fs::path p = fs::absolute(folder); !fs::exists(p, error) && p.has_relative_path(); p = p.parent_path())
+    missing.push_back(p);
+  return missing;
+}
+
+void make_writable(const RunFolder& folder) {
+  const std::string name = folder.path().string();
+  std::error_code error;
+  fs::create_directories(folder.path(), error);
+  if (error || !fs::is_directory(folder.path()))
+    throw std::runtime_error(name + ": cannot make the results folder" +
+                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+  const fs::path probe = folder.file("writable.part");
+  const bool writable = bool(std::ofstream(probe).put('\n').flush());
+  fs::remove(probe, error);
+  if (!writable)
+    throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
+}
+
+void clear(const RunFolder& folder) {
+  std::error_code error;
+  for (const char* own : own_names)
+    if (own != std::string_view("checkpoint")) fs::remove_all(folder.file(own), error);
+  for (const auto& entry : fs::directory_iterator(folder.file("checkpoint")))
+    if (entry.path() != folder.file(lock_name)) fs::remove_all(entry.path(), error);
+}
+
+}  // namespace
+
+void refuse_long_names(const fs::path& folder, const std::vector<std::string>& methods) {
+  std::error_code error;
+  fs::path there = fs::absolute(folder);
+  while (!fs::exists(there, error) && there.has_relative_path()) there = there.parent_path();
+  const auto limit = [&](int which, std::size_t usual) {
+    const long most = pathconf(there.c_str(), which);
+    return most > 0 ? static_cast<std::size_t>(most) : usual;
+  };
+  const std::size_t most_in_name = limit(_PC_NAME_MAX, 255), most_in_path = limit(_PC_PATH_MAX, 4096);
+  for (const fs::path& part : folder)
+    if (part.string().size() > most_in_name)
+      throw std::runtime_error("the results folder's name \"" + part.string() + "\" has " +
+                               std::to_string(part.string().size()) + " bytes, and the file system takes " +
+                               std::to_string(most_in_name) + "; name another with --out");
+  for (const std::string& method : methods) {
+    const std::size_t name = method.size() + std::strlen(longest_ending);
+    if (name > most_in_name)
+      throw std::runtime_error("method \"" + method + "\" would have files with names of " +
+                               std::to_string(name) + " bytes, and the file system takes " +
+                               std::to_string(most_in_name) + "; give it a shorter name");
+    const std::size_t path = fs::absolute(folder).string().size() + std::strlen("/pictures/") + name;
+    if (path >= most_in_path)
+      throw std::runtime_error("method \"" + method + "\" would have files with paths of " +
+                               std::to_string(path) + " bytes, and the system takes " +
+                               std::to_string(most_in_path - 1) +
+                               "; name a results folder less deep with --out");
+  }
+}
+
+RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+  const std::vector<fs::path> made = missing_folders(path_);
+  try {
+    make_writable(*this);
+    refuse_what_is_there(*this, overwrite);
+  } catch (...) {
+    std::error_code error;
+    for (const fs::path& folder : made) fs::remove(folder, error);  // removes only empty ones
+    throw;
+  }
+  lock();
+  refuse_what_is_there(*this, overwrite);  // by another run that has just finished
+  clear(*this);
+  for (const char* folder : {"levels", "fields", "rest", "obstacles"}) make_folder(file(folder));
+}
+
+RunFolder RunFolder::of_run(std::filesystem::path path) {
+  RunFolder folder(std::move(path));
+  if (!std::filesystem::exists(folder.file("results.json")))
+    throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
+  folder.lock();
+  // A pipe in their place would block the resumed run.
+  for (const char* name : {"steps.csv", "log.jsonl"})
+    if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
+      throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment again");
+  return folder;
+}
+
+void RunFolder::lock() {
+  std::filesystem::create_directories(file("checkpoint"));
+  lock_ = std::make_unique<FileLock>(file(lock_name));
+  if (!lock_->acquire(0))
+    throw std::runtime_error(path_.string() + ": " + lock_->holder() +
+                             " uses this folder; wait for it, or stop it");
+}
+
+void RunFolder::write_text(const std::string& name, const std::string& text) const {
+  write_file(file(name), text);
+}
+
+}  // namespace drape

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/app/files/file_lock.h"
+
+namespace drape {
+
+/// Throws std::runtime_error if file names or paths of a run of these methods would be too long for the file
+/// system.
+void refuse_long_names(const std::filesystem::path& folder, const std::vector<std::string>& methods);
+
+/// A run's results folder. Files are written under a temporary name and renamed: a final name never has an
+/// incomplete file.
+class RunFolder {
+ public:
+  /// Creates the folder and removes the results of an earlier run. Throws std::runtime_error, without a
+  /// change, if the folder is not writable, has results and `overwrite` is false, or has foreign files with
+  /// names of a run. Throws WriteError if a later write fails.
+  RunFolder(std::filesystem::path path, bool overwrite);
+  /// The folder of a run to be resumed. Throws std::runtime_error if it has no run, or one that is still
+  /// running.
+  static RunFolder of_run(std::filesystem::path path);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path file(const std::string& name) const { return path_ / name; }
+  void write_text(const std::string& name, const std::string& text) const;
+
+ private:
+  explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  void lock();
+
+  std::filesystem::path path_;
+  std::unique_ptr<FileLock> lock_;  // locked while the run proceeds
+};
+
+}  // namespace drape

@@ -1,0 +1,290 @@
+#include "core/app/run/runner.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "core/app/files/yaml_file.h"
+#include "core/app/report/report.h"
+#include "core/app/run/checkpoint_manager.h"
+#include "core/app/run/progress.h"
+#include "core/app/run/recorder_files.h"
+#include "core/app/view/live_view.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/solve/resumable_solver.h"
+
+namespace drape {
+
+namespace {
+
+/// Passes everything on to the recorder, the checkpoints, the progress bar and the live view.
+class RunObserver : public Observer {
+ public:
+  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress, LiveView* view,
+              const std::function<bool()>& stop)
+      : recorder_(recorder), checkpoints_(checkpoints), progress_(progress), view_(view), stop_(stop) {}
+
+  void method_started(const std::string& name, bool resumable, const MethodState& state) {
+    resumable_ = resumable;
+    level_ = state.level;
+    finished_ = state.finished;
+    progress_.method_started(name);
+    if (view_) view_->method_started(name);
+  }
+  /// Shows the results of the method before the run was interrupted.
+  void catch_up(const MethodState& state) {
+    for (const LevelResult& result : state.finished)
+      if (view_) view_->level_started(result.level), view_->level_finished(result);
+    if (!state.under_way) return;
+    progress_.level_started(state.level);
+    if (view_) view_->level_started(state.level);
+  }
+  /// Finished levels of the current method.
+  const std::vector<LevelResult>& finished() const { return finished_; }
+  int level() const { return level_; }
+
+  void level_started(int level) override {
+    level_ = level;
+    recorder_.level_started(level);
+    progress_.level_started(level);
+    if (view_) view_->level_started(level);
+  }
+  void iteration(const IterationRow& row, const Positions& x) override {
+    recorder_.iteration(row, x);
+    progress_.iteration(row, x);
+    if (view_) view_->iteration(row, x);
+  }
+  void increment_finished(const IncrementRow& row, const Positions& x) override {
+    recorder_.increment_finished(row, x);
+  }
+  void level_finished(const LevelResult& result) override {
+    recorder_.level_finished(result);
+    finished_.push_back(result);
+    if (resumable_) checkpoints_.level_finished(result);
+    progress_.level_finished(result);
+    if (view_) view_->level_finished(result);
+  }
+  bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
+  void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
+  bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
+  bool refine_requested() override { return view_ && view_->refine_requested(); }
+
+ private:
+  Recorder& recorder_;
+  CheckpointManager& checkpoints_;
+  Progress& progress_;
+  LiveView* view_;
+  bool resumable_ = false;
+  int level_ = 0;
+  std::vector<LevelResult> finished_;
+  const std::function<bool()>& stop_;
+};
+
+/// Observes a solve that belongs to no method; it is not recorded.
+class UnrecordedObserver : public Observer {
+ public:
+  UnrecordedObserver(Progress& progress, const std::function<bool()>& stop)
+      : progress_(progress), stop_(stop) {}
+
+  void level_started(int level) override {
+    progress_.method_started("reference");
+    progress_.level_started(level);
+  }
+  void iteration(const IterationRow& row, const Positions& x) override { progress_.iteration(row, x); }
+  void level_finished(const LevelResult& result) override { progress_.level_finished(result); }
+  bool stop_requested() override { return stop_ && stop_(); }
+
+ private:
+  Progress& progress_;
+  const std::function<bool()>& stop_;
+};
+
+void require_methods(const Experiment& experiment, const std::vector<std::string>& chosen) {
+  std::string known;
+  for (const auto& [name, solver] : experiment.methods) known += (known.empty() ? "" : ", ") + name;
+  for (const std::string& name : chosen)
+    if (std::none_of(experiment.methods.begin(), experiment.methods.end(),
+                     [&](const auto& method) { return method.first == name; }))
+      throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
+}
+
+/// The resolved experiment with paths to the copies of mesh files in the results folder.
+ConfigNode saved_config(const Experiment& experiment) {
+  ConfigNode config = experiment.resolved;
+  ConfigErrors none;
+  if (experiment.parameters.cloth.shape == "file") set_path(config, "cloth.file", "rest/l0.ply", none);
+  if (!experiment.parameters.start.file.empty()) set_path(config, "start.file", "start.ply", none);
+  if (!experiment.parameters.reference.file.empty())
+    set_path(config, "reference.file", "reference.ply", none);
+  return config;
+}
+
+/// The methods of the options, in the experiment's order.
+std::vector<std::string> methods_of(const Experiment& experiment, const RunOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, solver] : experiment.methods)
+    if (options.methods.empty() ||
+        std::find(options.methods.begin(), options.methods.end(), name) != options.methods.end())
+      names.push_back(name);
+  return names;
+}
+
+/// The message of the exception in flight. A WriteError concerns the whole run and is rethrown.
+std::string cause_in_method() {
+  try {
+    throw;
+  } catch (const WriteError&) {
+    throw;
+  } catch (const std::exception& error) {
+    return *error.what() ? reason_of(error) : "an exception without a message";
+  } catch (...) {
+    return "an exception that is no std::exception";
+  }
+}
+
+/// Performs an action of a run that has begun; errors abort the run.
+template <class Action>
+bool with_folder(const RunFolder& folder, const RunOptions& options, const Action& action) {
+  std::string cause;
+  try {
+    return action();
+  } catch (const RunAborted&) {
+    throw;
+  } catch (const std::exception& error) {
+    cause = reason_of(error);
+  } catch (...) {
+    cause = "an exception that is no std::exception";
+  }
+  record_abort(folder, cause);
+  if (options.view) options.view->run_finished("the run was aborted: " + cause);
+  std::error_code none;
+  throw RunAborted(cause + "; the run is aborted. Once the cause is removed, " +
+                   (std::filesystem::exists(folder.file("checkpoint/state.bin"), none)
+                        ? "resume it with drape run --resume " + folder.path().string()
+                        : "run the experiment again: there is no checkpoint of it"));
+}
+
+/// Time that a stopped run still spends on its report's pictures [s].
+constexpr double seconds_for_pictures = 2;
+
+/// Writes the report. If that fails, the results remain.
+void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
+  const std::string name = folder.path().string();
+  std::optional<Stopwatch> since_stop;
+  const auto leave = [&] {
+    if (!since_stop && stopped()) since_stop.emplace();
+    return since_stop && since_stop->seconds() > seconds_for_pictures;
+  };
+  try {
+    write_report(folder.path(), leave);
+  } catch (const std::exception& error) {
+    throw RunAborted(reason_of(error) + "; the results in " + name +
+                     " are there without their report; write it with drape report " + name);
+  }
+}
+
+/// Runs the remaining methods, beginning with the current one if `resumed`, then measures errors.
+bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
+         Recorder& recorder, const Checkpoint& begun, bool resumed) {
+  CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
+  const Problem problem = scene.problem();
+  std::vector<std::string> changing;
+  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
+                    problem.load_stepping, changing);
+  RunObserver observer(recorder, checkpoints, progress, options.view, options.stop);
+
+  bool all_converged = begun.all_converged, cancelled = false;
+  for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
+    const std::string& name = begun.methods[m];
+    const Solver& solver = experiment.solver_of(name);
+    const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver);
+    MethodState state;
+    state.level = begun.first_level;
+    const bool under_way = resumed && m == begun.method;
+    if (under_way) state = begun.state;
+    observer.method_started(name, resumable != nullptr, state);
+    if (under_way) {
+      observer.catch_up(state);
+    } else {
+      recorder.method_started(name);
+      checkpoints.method_started(m);
+    }
+    std::vector<LevelResult> results;
+    std::optional<MethodFailure> failure;
+    try {
+      results = resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
+    } catch (...) {
+      failure = {std::min(observer.level(), problem.finest()), cause_in_method()};
+      results = observer.finished();
+      progress.method_failed(failure->level, failure->cause);
+    }
+    recorder.method_finished(results, failure);
+    bool converged = !failure;
+    for (const LevelResult& r : results) {
+      converged = converged && succeeded(r.outcome);
+      cancelled = cancelled || r.outcome == Outcome::cancelled;
+    }
+    all_converged = all_converged && converged;
+    checkpoints.method_finished(converged);
+  }
+  UnrecordedObserver unrecorded(progress, options.stop);
+  const bool measured = recorder.measure_errors(unrecorded, cancelled);
+  const bool complete = !cancelled && measured;
+  recorder.run_finished(complete);
+  if (complete) remove_checkpoints(folder.path());
+  if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
+  const bool good = all_converged && recorder.intersection_free();
+  if (options.view)
+    options.view->run_finished((cancelled ? "stopped on request"
+                                : good    ? "everything converged"
+                                          : "not everything converged") +
+                               ("; the results are in " + folder.path().string()));
+  return good;
+}
+
+}  // namespace
+
+bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
+  require_methods(experiment, options.methods);
+  const std::string& start_file = experiment.parameters.start.file;
+  TriangleMesh start;
+  if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
+  const std::vector<std::string> methods = methods_of(experiment, options);
+  refuse_long_names(options.out, methods);
+  const RunFolder folder(options.out, options.overwrite);
+  return with_folder(folder, options, [&] {
+    const ConfigNode config = saved_config(experiment);
+    Checkpoint begun;
+    begun.config = to_yaml(config);
+    begun.methods = methods;
+    begun.first_level = options.first_level;
+    if (!options.warm_started_from.empty()) begun.own_start = scene.starts[options.first_level];
+    folder.write_text("config.yaml", begun.config);
+    if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
+    Recorder recorder(folder, experiment, scene);
+    if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
+    begun.files = fingerprints_of_files(config, folder.path());
+    return run(experiment, scene, options, folder, recorder, begun, false);
+  });
+}
+
+bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
+                       Checkpoint checkpoint) {
+  require_fitting(checkpoint, experiment, scene);
+  const RunFolder folder = RunFolder::of_run(options.out);
+  refuse_short_files(folder, checkpoint.recorder);
+  return with_folder(folder, options, [&] {
+    Recorder recorder(folder, experiment, scene, checkpoint.recorder);
+    if (!recorder.restored().empty())
+      std::fprintf(stderr, "warning: damaged or missing files were written again: %s\n",
+                   joined(recorder.restored()).c_str());
+    return run(experiment, scene, options, folder, recorder, checkpoint, true);
+  });
+}
+
+}  // namespace drape

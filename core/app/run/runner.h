@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/app/experiment/experiment.h"
+#include "core/app/run/checkpoint.h"
+
+namespace drape {
+
+class LiveView;
+
+struct RunOptions {
+  std::filesystem::path out;         ///< results folder
+  std::vector<std::string> methods;  ///< methods to run; empty for all
+  bool overwrite = false;            ///< replace the results of an earlier run in `out`
+  bool quiet = false;                ///< no progress line
+  bool report = true;                ///< write report.html and its pictures at the end
+  double checkpoint = 5;             ///< checkpoint interval [s]; 0 saves at every step
+  int first_level = 0;               ///< first level of every method
+  std::string warm_started_from;     ///< origin of a warm start, in words; empty without one
+  std::function<bool()> stop;        ///< polled after every step; may be empty
+  LiveView* view = nullptr;          ///< shows the run and may stop it; may be null
+};
+
+/// A run was aborted after it had begun, as on a full disk. Its folder records the cause if that is possible.
+class RunAborted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Runs the methods one after another and records their results. Returns true if every level of every method
+/// succeeded without intersections. A method that throws counts as failed, and the others run. Throws
+/// std::runtime_error, before it writes, for a folder or a name that cannot be used and for an unknown
+/// method; RunAborted after that.
+bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options);
+
+/// Resumes a run from its checkpoint in its folder `options.out`. The results are those of an uninterrupted
+/// run, bit for bit. The checkpoint determines methods and first level. Throws std::runtime_error, before it
+/// writes, if the checkpoint does not fit; RunAborted after that.
+bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
+                       Checkpoint checkpoint);
+
+}  // namespace drape

@@ -1,0 +1,223 @@
+#include "core/app/run/start_repair.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double tiny_gap = 1e-6;  // [m]
+/// Trial distances, relative to the cloth's diagonal, in a geometric series.
+constexpr double shortest_part = 1e-3, growth = 1.5;
+/// Bisections of the first free translation, to move no further than necessary.
+constexpr int halvings = 5;
+
+/// Intersections and gaps of the translated initial state.
+struct Clearance {
+  std::vector<Intersection> touches;  ///< of the first level with any; the rest is then unknown
+  int level = 0;                      ///< that level
+  int contacts = 0;                   ///< pairs within d̂, on all levels
+  double smallest_gap = std::numeric_limits<double>::infinity();
+};
+
+bool same_pair(const Intersection& a, const Intersection& b) {
+  return a.first == b.first && a.second == b.second;
+}
+
+/// One vertex of every connected component of the cloth.
+std::vector<int> pieces_of(const Level& level) {
+  std::vector<int> first, open;
+  std::vector<char> seen(level.vertex_count(), 0);
+  for (int v = 0; v < level.vertex_count(); ++v) {
+    if (seen[v]) continue;
+    first.push_back(v);
+    open.push_back(v);
+    seen[v] = 1;
+    while (!open.empty()) {
+      const int from = open.back();
+      open.pop_back();
+      const AdjacencyList& near = level.topology.vertex_vertices;
+      for (const int* to = near.begin(from); to != near.end(from); ++to)
+        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
+    }
+  }
+  return first;
+}
+
+/// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
+/// (solid angles: van Oosterom and Strackee 1983).
+double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
+  double angle = 0;
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    Vector3d c[3];
+    for (int k = 0; k < 3; ++k) c[k] = mesh.vertices.row(mesh.triangles(t, k)).transpose() - p;
+    const double l0 = c[0].norm(), l1 = c[1].norm(), l2 = c[2].norm();
+    angle += 2 * std::atan2(c[0].dot(c[1].cross(c[2])),
+                            l0 * l1 * l2 + c[0].dot(c[1]) * l2 + c[1].dot(c[2]) * l0 + c[2].dot(c[0]) * l1);
+  }
+  return angle / (4 * M_PI);
+}
+
+class StartProbe {
+ public:
+  explicit StartProbe(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
+    for (const auto& contact : scene.models[0]->contacts())
+      for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
+    const Positions& x = scene.starts[0];
+    diagonal_ = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  }
+
+  double diagonal() const { return diagonal_; }
+
+  Clearance at(const Vector3d& translation) const {
+    Clearance clearance;
+    for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
+      const Positions x = scene_.starts[l].rowwise() + translation.transpose();
+      clearance.level = static_cast<int>(l);
+      for (const auto& contact : scene_.models[l]->contacts()) {
+        clearance.touches = contact->intersections(x);
+        if (!clearance.touches.empty()) return clearance;
+        const auto near = contact->build_candidates(x, x)->build_collisions(x);
+        clearance.contacts += near->contact_count();
+        clearance.smallest_gap = std::min(clearance.smallest_gap, near->smallest_gap());
+      }
+    }
+    return clearance;
+  }
+
+  /// Whether a component of the cloth lies inside an obstacle without intersecting it.
+  bool enclosed(const Vector3d& translation) const {
+    return std::any_of(pieces_.begin(), pieces_.end(), [&](int v) {
+      const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
+      return std::any_of(obstacles_.begin(), obstacles_.end(),
+                         [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
+    });
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<int> pieces_;
+  std::vector<TriangleMesh> obstacles_;
+  double diagonal_ = 0;
+};
+
+/// Searches for a translation; remembers pairs that intersect after every one.
+class TranslationSearch {
+ public:
+  TranslationSearch(const StartProbe& probe, const Clearance& start) : probe_(probe), persistent_(start) {
+    if (start.touches.empty()) best_contacts_ = start.contacts, found_ = true;
+  }
+
+  void run() {
+    for (const Vector3d& direction :
+         {Vector3d(0, 0, 1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
+      double before = 0;
+      for (double part = shortest_part; part < growth; part *= growth) {
+        const double distance = std::min(part, 1.0) * probe_.diagonal();
+        if (is_better(distance * direction)) {
+          shorten(direction, before, distance);
+          // Without contacts this is the best; otherwise another direction may be better.
+          if (best_contacts_ == 0) return;
+        }
+        before = distance;
+      }
+    }
+  }
+
+  bool found() const { return found_; }
+  const Vector3d& translation() const { return translation_; }
+  /// The pairs that intersected initially and after every trial.
+  const std::vector<Intersection>& persistent() const { return persistent_.touches; }
+
+ private:
+  /// Accepts a translation without intersections if it has fewer contacts than any before.
+  bool is_better(const Vector3d& translation, bool or_as_good = false) {
+    const Clearance clearance = probe_.at(translation);
+    if (!clearance.touches.empty()) {
+      intersect_persistent(clearance);
+      return false;
+    }
+    if (found_ && clearance.contacts >= best_contacts_ + (or_as_good ? 1 : 0)) return false;
+    if (probe_.enclosed(translation)) return false;
+    found_ = true;
+    best_contacts_ = clearance.contacts;
+    translation_ = translation;
+    return true;
+  }
+
+  void shorten(const Vector3d& direction, double low, double high) {
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      (is_better(middle * direction, true) ? high : low) = middle;
+    }
+  }
+
+  void intersect_persistent(const Clearance& other) {
+    if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
+    std::erase_if(persistent_.touches, [&](const Intersection& touch) {
+      return std::none_of(other.touches.begin(), other.touches.end(),
+                          [&](const Intersection& now) { return same_pair(touch, now); });
+    });
+  }
+
+  const StartProbe& probe_;
+  Clearance persistent_;
+  bool found_ = false;
+  int best_contacts_ = 0;
+  Vector3d translation_ = Vector3d::Zero();
+};
+
+std::string pinned_text(const Clearance& start) {
+  return "the start of level " + std::to_string(start.level) + " touches: " + to_string(start.touches[0]) +
+         "; a cloth with pins is not moved: move the pins or the obstacle";
+}
+
+std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
+  const std::string ways = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
+  const std::string level = " on level " + std::to_string(start.level);
+  if (!search.persistent().empty())
+    return ways + " does not part " + to_string(search.persistent()[0]) + level +
+           "; change the start's shape or the obstacle";
+  return ways + " finds no position without intersections; at the start these intersect: " +
+         to_string(start.touches[0]) + level;
+}
+
+void move(Experiment& experiment, const Vector3d& translation) {
+  Vector3d& translate = experiment.parameters.start.translate;
+  translate += translation;
+  std::string text;
+  for (int c = 0; c < 3; ++c) text += (c ? ", " : "[") + ConfigNode::of(translate[c]).scalar;
+  ConfigErrors none;
+  set_path(experiment.resolved, "start.translate", text + "]", none);
+}
+
+}  // namespace
+
+Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
+  const StartProbe probe(scene);
+  const Clearance start = probe.at(Vector3d::Zero());
+  const bool touches = !start.touches.empty();
+  if (!touches && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
+  if (!experiment.parameters.pins.empty()) {
+    if (touches) errors.push_back({experiment.location_of("start"), pinned_text(start)});
+    return Vector3d::Zero();
+  }
+  TranslationSearch search(probe, start);
+  search.run();
+  if (!search.found()) {
+    errors.push_back({experiment.location_of("start"), hopeless_text(start, search, probe.diagonal())});
+    return Vector3d::Zero();
+  }
+  if (!search.translation().isZero(0)) move(experiment, search.translation());
+  return search.translation();
+}
+
+}  // namespace drape

@@ -1,0 +1,141 @@
+#include "core/app/sweep/local_engine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <deque>
+#include <list>
+#include <thread>
+
+#include "core/app/files/machine.h"
+#include "core/app/sweep/memory.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
+
+namespace drape {
+
+namespace {
+
+class LocalEngine {
+ public:
+  LocalEngine(const Sweep& sweep, const SweepFolder& folder, const LocalOptions& options)
+      : sweep_(sweep), folder_(folder), options_(options), memory_(sweep, folder) {
+    for (const SweepRun& run : sweep.runs) had_ += read_status(folder.files(run.folder)).has_results();
+  }
+
+  void run(const std::vector<std::size_t>& missing) {
+    waiting_.assign(missing.begin(), missing.end());
+    to_run_ = missing.size();
+    while (!waiting_.empty() || !running_.empty()) {
+      if (options_.stop && options_.stop()) stop();
+      start_what_fits();
+      collect();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  }
+
+ private:
+  struct Running {
+    const SweepRun& run;
+    double memory;
+    RunProcess process;
+  };
+
+  void stop() {
+    if (stopping_) return;
+    stopping_ = true;
+    waiting_.clear();
+    for (Running& r : running_) r.process.stop();
+    if (!running_.empty())
+      std::fprintf(stderr, "stopping: %zu running save what they have\n", running_.size());
+  }
+
+  /// Memory for a new run [bytes]: the available memory less what the running ones may still allocate.
+  double left() const {
+    double promised = 0, growth = 0;
+    for (const Running& r : running_) {
+      promised += r.memory;
+      growth += std::max(0.0, r.memory - double(r.process.resident_bytes()));
+    }
+    const double left = available_memory() - growth;
+    return options_.memory_limit > 0 ? std::min(left, options_.memory_limit - promised) : left;
+  }
+
+  void start_what_fits() {
+    while (!waiting_.empty() && running_.size() < std::size_t(options_.workers)) {
+      const SweepRun& run = sweep_.runs[waiting_.front()];
+      const double needed = memory_.bytes(run), left = this->left();
+      if (needed > left) {
+        if (!running_.empty()) return;
+        std::fprintf(stderr,
+                     "warning: %s, seed %d may need %.1f GB where %.1f GB are to be had; it runs alone\n",
+                     run.name.c_str(), run.seed, needed / 1e9, std::max(0.0, left) / 1e9);
+      }
+      running_.push_back(
+          {run, needed,
+           RunProcess(folder_.files(run.folder), {options_.threads, options_.report, options_.time_limit})});
+      waiting_.pop_front();
+      folder_.refresh();
+      if (needed > left) return;
+    }
+  }
+
+  void collect() {
+    for (auto r = running_.begin(); r != running_.end();) {
+      if (!r->process.ended()) {
+        ++r;
+        continue;
+      }
+      const SweepRun& run = r->run;
+      const RunStatus status = r->process.status();
+      running_.erase(r++);
+      if (status.has_results()) memory_.learn(run, folder_.files(run.folder));
+      ++ended_;
+      failed_ += status.state == RunState::failed;
+      folder_.refresh();
+      tell(run, status);
+    }
+  }
+
+  void tell(const SweepRun& run, const RunStatus& status) const {
+    std::string line = "[" + std::to_string(had_ + ended_) + "/" + std::to_string(sweep_.runs.size()) + "] " +
+                       run.name + ", seed " + std::to_string(run.seed) + ": " + to_string(status.state) +
+                       " after " + duration_text(status.seconds);
+    if (failed_) line += "; " + std::to_string(failed_) + " failed";
+    const std::size_t rest = to_run_ - ended_;
+    if (rest > 0 && !stopping_)
+      line += "; " + std::to_string(rest) + " to go, about " +
+              duration_text(clock_.seconds() / double(ended_) * double(rest));
+    std::fprintf(stderr, "%s\n", line.c_str());
+    if (status.state == RunState::failed) std::fprintf(stderr, "%s\n", status.error.c_str());
+  }
+
+  const Sweep& sweep_;
+  const SweepFolder& folder_;
+  const LocalOptions& options_;
+  MemoryEstimate memory_;
+  Stopwatch clock_;
+  std::deque<std::size_t> waiting_;
+  std::list<Running> running_;
+  std::size_t had_ = 0, to_run_ = 0, ended_ = 0, failed_ = 0;
+  bool stopping_ = false;
+};
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  char text[32];
+  if (seconds < 90)
+    std::snprintf(text, sizeof text, "%.1f s", seconds);
+  else if (seconds < 5400)
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+  else
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  return text;
+}
+
+void run_locally(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
+                 const LocalOptions& options) {
+  LocalEngine(sweep, folder, options).run(missing);
+}
+
+}  // namespace drape

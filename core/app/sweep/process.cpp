@@ -1,0 +1,93 @@
+#include "core/app/sweep/process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+
+#include "core/kernel/mesh/file.h"
+
+namespace drape {
+
+namespace {
+
+/// In the child, between fork and exec: nothing here may allocate.
+[[noreturn]] void become(char* const* words, const char* out, const char* err, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const auto redirect = [](const char* file, int flags, int to) {
+    const int from = open(file, flags | O_CLOEXEC, 0644);
+    return from >= 0 && dup2(from, to) == to;
+  };
+  const bool alone = getppid() != parent;  // the parent died before it could be watched
+  if (!alone && redirect("/dev/null", O_RDONLY, 0) && redirect(out, O_WRONLY | O_CREAT | O_APPEND, 1) &&
+      redirect(err, O_WRONLY | O_CREAT | O_APPEND, 2))
+    execvp(words[0], words);
+  _exit(127);
+}
+
+Exit exit_of(int status) {
+  if (WIFSIGNALED(status)) return {128 + WTERMSIG(status), WTERMSIG(status)};
+  return {WEXITSTATUS(status), 0};
+}
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& words, const std::filesystem::path& out,
+                 const std::filesystem::path& err) {
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ == 0) become(arguments.data(), out.c_str(), err.c_str(), parent);
+  if (pid_ < 0) throw std::runtime_error(words[0] + ": cannot be started (" + std::strerror(errno) + ")");
+  setpgid(pid_, pid_);  // parent or child, whichever is first
+}
+
+std::optional<Exit> Process::poll() const {
+  int status = 0;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return std::nullopt;
+  return exit_of(status);
+}
+
+Exit Process::wait() const {
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) continue;
+  return exit_of(status);
+}
+
+void Process::signal(int number) const { kill(-pid_, number); }
+
+std::int64_t Process::resident_bytes() const {
+  std::ifstream in("/proc/" + std::to_string(pid_) + "/statm");
+  std::int64_t all = 0, resident = 0;
+  in >> all >> resident;
+  return in ? resident * sysconf(_SC_PAGESIZE) : 0;
+}
+
+ProgramOutput run_program(const std::vector<std::string>& words) {
+  std::string folder = (std::filesystem::temp_directory_path() / "drape_XXXXXX").string();
+  if (!mkdtemp(folder.data())) throw std::runtime_error(folder + ": cannot make a temporary folder");
+  const std::filesystem::path out = folder + "/out", err = folder + "/err";
+  ProgramOutput said;
+  said.exit = Process(words, out, err).wait();
+  said.out = text_of_file(out);
+  said.err = text_of_file(err);
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
+  return said;
+}
+
+std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::string text_of_file(const std::filesystem::path& file) {
+  return std::filesystem::exists(file) ? read_file(file) : std::string();
+}
+
+}  // namespace drape

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/sweep/process.h"
+
+namespace drape {
+
+/// `not_converged` has complete results of which some did not converge; `failed` has none; `cancelled` was
+/// stopped, or its machine was.
+enum class RunState { pending, running, converged, not_converged, failed, cancelled };
+const char* to_string(RunState state);
+
+/// The status of one run, in a file of its own: no two machines write the same file.
+struct RunStatus {
+  RunState state = RunState::pending;
+  std::string error;
+  int exit_code = 0;
+  double seconds = 0;
+  int starts = 0;
+  int threads = 0;
+
+  /// The run refused its input, before any computation.
+  bool refused() const { return state == RunState::failed && exit_code == exit_bad_input; }
+  bool has_results() const { return state == RunState::converged || state == RunState::not_converged; }
+  nlohmann::ordered_json json() const;
+};
+
+/// One run's files in a sweep's folder: results inside, the others beside it.
+struct RunFiles {
+  std::filesystem::path folder;
+  std::filesystem::path config() const { return folder.string() + ".yaml"; }
+  std::filesystem::path status() const { return folder.string() + ".status.json"; }
+  std::filesystem::path lock() const { return folder.string() + ".lock"; }
+  std::filesystem::path log() const { return folder.string() + ".log"; }  ///< its output
+};
+
+/// The status in the file, pending without one. Throws std::runtime_error for a file that is no status.
+RunStatus read_status(const RunFiles& files);
+void write_status(const RunFiles& files, const RunStatus& status);
+
+/// The status of a run that is marked as running but is not: from its results if they are complete, otherwise
+/// cancelled.
+RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
+
+struct RunProcessOptions {
+  int threads = 1;
+  bool report = false;
+  double time_limit = 0;  ///< [s]; 0: none
+};
+
+/// A `drape run` of the files' config; updates the status at its beginning and end.
+class RunProcess {
+ public:
+  /// Marks the run as running, removes the files of an earlier start, and starts it.
+  RunProcess(RunFiles files, const RunProcessOptions& options);
+
+  bool ended();  ///< updates the status the first time that it is true
+  void stop() { stopped_ = true, process_.signal(SIGINT); }
+  const RunStatus& status() const { return status_; }
+  std::int64_t resident_bytes() const { return process_.resident_bytes(); }
+
+ private:
+  RunFiles files_;
+  RunStatus status_;
+  double began_;
+  double time_limit_;
+  Process process_;
+  bool stopped_ = false, too_slow_ = false;
+};
+
+}  // namespace drape

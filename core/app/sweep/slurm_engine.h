@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+
+#include "core/app/sweep/sweep_folder.h"
+
+namespace drape {
+
+struct SlurmOptions {
+  int workers = 0;  ///< concurrent runs; 0: no limit
+  int threads = 1;
+  double memory = 0;  ///< of each run [bytes]; 0: by estimate
+  bool report = false;
+  std::vector<std::string> sbatch;  ///< further options, as "--partition=long"
+};
+
+/// A sweep's jobs: an array over the missing runs, and a subsequent one that collects their statuses.
+struct SlurmJobs {
+  std::string array, collector;
+};
+
+/// The last jobs that were submitted for the folder; empty without any.
+std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder);
+
+/// Throws std::runtime_error while jobs of the folder are queued or running.
+void refuse_while_queued(const SweepFolder& folder);
+
+/// Writes slurm/job.sh and slurm/collect.sh and submits them. Throws std::runtime_error with sbatch's
+/// message.
+SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
+                 const SlurmOptions& options);
+
+/// Waits until no job is in the queue, with progress on standard error; false if `stop` came first.
+bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop);
+
+/// Cancels the folder's jobs and waits until they are off the queue. Throws std::runtime_error without any.
+void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop);
+
+/// A task of the array, on its node: executes the run with this index in sweep.json, unless it has results.
+/// Returns the task's exit code.
+int run_task(const SweepFolder& folder, int index, int threads, bool report,
+             const std::function<bool()>& stop);
+
+/// The collecting job.
+void collect_tasks(const SweepFolder& folder);
+
+}  // namespace drape

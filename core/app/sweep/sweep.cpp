@@ -1,0 +1,204 @@
+#include "core/app/sweep/sweep.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/app/experiment/describe.h"
+#include "core/app/experiment/size_estimate.h"
+#include "core/app/files/yaml_file.h"
+#include "core/app/sweep/experiment_files.h"
+#include "core/app/sweep/variations.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+/// Removes the methods that are not chosen from a resolved experiment, and the reference if it is one of
+/// them.
+void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) {
+  const auto kept = [&](const std::string& name) {
+    return chosen.empty() || std::find(chosen.begin(), chosen.end(), name) != chosen.end();
+  };
+  for (auto& [key, value] : resolved.entries) {
+    if (key == "reference") {
+      const ConfigNode* method = value.find("method");
+      if (method && !method->scalar.empty() && method->scalar != ReferenceParameters::lowest &&
+          !kept(method->scalar))
+        value = ConfigNode::of("");
+    }
+    if (key != "methods") continue;
+    ConfigNode methods;
+    for (const auto& [name, method] : value.entries)
+      if (kept(name)) methods.add(name, method);
+    value = methods;
+  }
+}
+
+class Reader {
+ public:
+  Reader(const Registry& registry, ConfigErrors& errors, std::optional<int> most_levels)
+      : registry_(registry), errors_(errors), most_levels_(most_levels) {}
+
+  Sweep read(const std::filesystem::path& file) {
+    sweep_.file = file;
+    source_ = read_yaml(file, errors_);
+    if (!errors_.empty()) return sweep_;
+    SweepParameters& p = sweep_.parameters;
+    schema_of<SweepParameters>().read(&p, source_, errors_);
+    if (source_.find("name")) check_name("name", p.name, location_of("name"), errors_);
+    check_seeds();
+    const std::vector<Setting> common = settings_of(p.set, errors_);
+    const std::vector<Variation> variations = variations_of(p.ablation, errors_);
+    const std::size_t before = errors_.size();
+    const std::vector<ExperimentSource> experiments = experiment_sources(p, source_, errors_);
+    if (errors_.size() > before) return sweep_;
+    for (const ExperimentSource& experiment : experiments)
+      for (const Variation& variation : variations)
+        add_variation(experiment.root, common, labelled(variation, experiment.label));
+    list_faults(experiments.size() * variations.size());
+    return sweep_;
+  }
+
+ private:
+  Location location_of(const std::string& key) const {
+    const ConfigNode* node = source_.find(key);
+    return node ? node->where : source_.where;
+  }
+
+  void check_seeds() {
+    SweepParameters& p = sweep_.parameters;
+    if (p.repeats && !p.seeds.empty()) {
+      errors_.push_back(
+          {location_of("repeats"), "\"repeats\" and \"seeds\" are both given; keep one of them"});
+      p.seeds.clear();
+    }
+    for (int k = 1; p.repeats && k <= *p.repeats; ++k) p.seeds.push_back(k);
+    if (std::set<int>(p.seeds.begin(), p.seeds.end()).size() != p.seeds.size())
+      errors_.push_back({location_of("seeds"), "\"seeds\" names one of them twice"});
+  }
+
+  Variation labelled(Variation variation, const std::string& experiment) const {
+    if (experiment.empty()) return variation;
+    const bool alone = sweep_.parameters.ablation.kind == NodeKind::null;
+    variation.name = alone ? experiment : experiment + ", " + variation.name;
+    variation.folder = folder_name(variation.name);
+    return variation;
+  }
+
+  void add_variation(ConfigNode source, const std::vector<Setting>& common, const Variation& variation) {
+    const SweepParameters& p = sweep_.parameters;
+    ConfigErrors faults;
+    SweepRun run;
+    run.name = variation.name;
+    run.expect = variation.expect;
+    run.settings = nlohmann::ordered_json::object();
+    for (const auto* settings : {&common, &variation.settings})
+      for (const Setting& setting : *settings) {
+        if (setting.path == "start.seed" && !p.seeds.empty())
+          faults.push_back(
+              {setting.where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
+        set_path(source, setting.path, setting.value, setting.where, faults);
+        if (settings == &variation.settings) run.settings[setting.path] = json_value(setting.value);
+      }
+    const bool own = !variation.methods.empty();
+    const std::vector<std::string>& methods = own ? variation.methods : p.methods;
+    if (own) run.settings["methods"] = methods;
+    auto experiment = read_experiment(source, registry_, faults);
+    if (experiment && most_levels_ && experiment->parameters.levels > *most_levels_) {
+      set_path(source, "levels", ConfigNode::of(*most_levels_), source_.where, faults);
+      experiment = read_experiment(std::move(source), registry_, faults);
+    }
+    if (experiment) {
+      check_methods(*experiment, methods, own ? variation.methods_where : location_of("methods"), faults);
+      if (p.seeds.size() > 1 && experiment->parameters.start.perturbation == 0)
+        faults.push_back({location_of(p.repeats ? "repeats" : "seeds"),
+                          "every seed gives the same run where \"start.perturbation\" is 0; set it, as in "
+                          "\"set: {start.perturbation: 1e-3}\""});
+    }
+    for (const ConfigError& fault : faults) note(fault, variation.name);
+    if (faults.empty()) add_runs(*experiment, methods, variation, run);
+  }
+
+  static void check_methods(const Experiment& experiment, const std::vector<std::string>& chosen,
+                            const Location& where, ConfigErrors& errors) {
+    std::vector<std::string> known;
+    for (const auto& method : experiment.methods) known.push_back(method.first);
+    for (const std::string& name : chosen)
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        errors.push_back({where, "there is no method \"" + excerpt(name) +
+                                     "\"; the experiment's methods are " + joined(known)});
+  }
+
+  void add_runs(const Experiment& experiment, const std::vector<std::string>& methods,
+                const Variation& variation, SweepRun run) {
+    const ExperimentParameters& e = experiment.parameters;
+    ConfigNode resolved = experiment.resolved;
+    keep_methods(resolved, methods);
+    run.levels = e.levels;
+    const std::vector<double> vertices = estimated_vertices(e);
+    run.vertices = vertices.empty() ? 0 : vertices.back();
+    std::vector<int> seeds = sweep_.parameters.seeds;
+    if (seeds.empty()) seeds.push_back(e.start.seed);
+    for (const int seed : seeds) {
+      set_path(resolved, "start.seed", ConfigNode::of(seed), {}, errors_);
+      run.seed = seed;
+      run.folder = "runs/" + variation.folder + "/seed_" + std::to_string(seed);
+      run.config = to_yaml(resolved);
+      const auto [other, first] = configs_.emplace(run.config, run.name);
+      if (!first)
+        same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
+                                              "\" come to the same experiment; take one of them out"});
+      sweep_.runs.push_back(run);
+    }
+  }
+
+  void note(const ConfigError& fault, const std::string& variation) {
+    auto& names = faulty_[fault.text()];
+    if (names.empty()) faults_.push_back(fault);
+    names.push_back(variation);
+  }
+
+  /// Every error once, with the variations that have it, in file order.
+  void list_faults(std::size_t variations) {
+    for (ConfigError& fault : faults_) {
+      const auto& names = faulty_[fault.text()];
+      if (names.size() < variations)
+        fault.message += " (variation \"" + names[0] + "\"" +
+                         (names.size() > 1 ? " and " + std::to_string(names.size() - 1) + " more" : "") + ")";
+      errors_.push_back(fault);
+    }
+    if (errors_.empty()) errors_ = same_;
+    std::stable_sort(errors_.begin(), errors_.end(), [&](const ConfigError& a, const ConfigError& b) {
+      const auto order = [&](const Location& l) {
+        return std::tuple(l.file != source_.where.file, l.line, l.column);
+      };
+      return order(a.where) < order(b.where);
+    });
+  }
+
+  const Registry& registry_;
+  ConfigErrors& errors_;
+  std::optional<int> most_levels_;
+  Sweep sweep_;
+  ConfigNode source_;
+  ConfigErrors faults_, same_;
+  std::map<std::string, std::vector<std::string>> faulty_;
+  std::map<std::string, std::string> configs_;
+};
+
+}  // namespace
+
+std::optional<Sweep> read_sweep(const std::filesystem::path& file, const Registry& registry,
+                                ConfigErrors& errors, std::optional<int> most_levels) {
+  Sweep sweep = Reader(registry, errors, most_levels).read(file);
+  if (!errors.empty()) return std::nullopt;
+  return sweep;
+}
+
+}  // namespace drape

@@ -1,0 +1,172 @@
+#include "core/app/sweep/sweep_folder.h"
+
+#include <algorithm>
+#include <set>
+
+#include "core/app/files/json_file.h"
+#include "core/kernel/mesh/file.h"
+
+namespace drape {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::string title(const std::string& name, int seed) {
+  return "run \"" + name + "\", seed " + std::to_string(seed);
+}
+
+const char* const ways_out =
+    "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
+    "it again: ";
+
+std::string run_paths(const RunFiles& files) { return files.folder.string() + "*"; }
+
+}  // namespace
+
+Json SweepFolder::read() const {
+  const fs::path file = path_ / "sweep.json";
+  const std::string text = text_of_file(file);
+  if (text.empty()) return nullptr;
+  Json json = Json::parse(text, nullptr, false);
+  const JsonFile sweep(file, "name another folder with --out");
+  if (!json.is_object() || !json.contains("sweep") || !json.contains("runs"))
+    sweep.refuse("is not a sweep's");
+  sweep.at<std::string>(json, "sweep");
+  if (!json["runs"].is_array()) sweep.refuse("\"runs\" must be a list");
+  for (const Json& run : json["runs"]) {
+    sweep.at<std::string>(run, "name");
+    sweep.at<std::string>(run, "folder");
+    sweep.at<int>(run, "seed");
+    if (run.contains("expect")) sweep.at<std::string>(run["expect"], "outcome");
+  }
+  return json;
+}
+
+void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
+  const Json before = read();
+  const std::string folder = path_.string();
+  if (before.is_null()) {
+    for (const auto& entry : fs::directory_iterator(path_))
+      if (entry.path().filename() != "sweep.lock")
+        throw std::runtime_error(folder + ": holds " + entry.path().filename().string() +
+                                 ", and no sweep; name another folder with --out");
+    return;
+  }
+  if (before["sweep"] != sweep.parameters.name)
+    throw std::runtime_error(folder + ": holds the sweep \"" + before["sweep"].get<std::string>() +
+                             "\"; name another folder with --out");
+  std::set<std::string> folders;
+  for (const SweepRun& run : sweep.runs) folders.insert(run.folder);
+  for (const Json& run : before["runs"]) {
+    const RunFiles files = this->files(run["folder"]);
+    if (!folders.count(run["folder"]) && read_status(files).has_results())
+      throw std::runtime_error(folder + ": has results of " + title(run["name"], run["seed"]) +
+                               ", which the sweep no longer has" + ways_out + run_paths(files));
+  }
+  for (const SweepRun& run : sweep.runs) {
+    const RunFiles files = this->files(run.folder);
+    const RunStatus status = read_status(files);
+    if (status.starts == 0 && fs::exists(files.folder))
+      throw std::runtime_error(files.folder.string() +
+                               ": is there already, and not from this sweep; move it away, or name another "
+                               "folder with --out");
+    if (!resolve_interrupted(files, status).has_results()) continue;
+    if (text_of_file(files.config()) != run.config)
+      throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
+                               " are of another experiment than the sweep now says" + ways_out +
+                               run_paths(files));
+    if (status.threads != threads)
+      throw std::runtime_error(folder + ": " + title(run.name, run.seed) + " was made with " +
+                               std::to_string(status.threads) + " threads a run, not " +
+                               std::to_string(threads) + ", so times would not compare" + ways_out +
+                               run_paths(files));
+  }
+}
+
+void SweepFolder::prepare(const Sweep& sweep, int threads) const {
+  refuse_other_runs(sweep, threads);
+  Json json = {{"sweep", sweep.parameters.name},
+               {"description", sweep.parameters.description},
+               {"config", sweep.file.string()},
+               {"complete", false},
+               {"threads", threads},
+               {"time_limit", sweep.parameters.time_limit.value_or(0)},
+               {"runs", Json::array()}};
+  for (const SweepRun& run : sweep.runs) {
+    json["runs"].push_back(
+        {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
+    if (run.expect.outcome != "converged")
+      json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
+    const RunFiles files = this->files(run.folder);
+    make_folder(files.folder.parent_path());
+    RunStatus status = read_status(files);
+    if (text_of_file(files.config()) != run.config) {
+      if (status.state == RunState::failed) {  // with a different config
+        status.state = RunState::pending;
+        write_status(files, status);
+      }
+      write_file(files.config(), run.config);
+    }
+    json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
+  }
+  write_file(path_ / "sweep.json", json.dump(1) + "\n");
+  finalize();
+}
+
+std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_failed) const {
+  std::vector<std::size_t> indices;
+  for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
+    const RunStatus status = read_status(files(sweep.runs[k].folder));
+    if (!status.has_results() && (retry_failed || status.state != RunState::failed)) indices.push_back(k);
+  }
+  return indices;
+}
+
+Json SweepFolder::refresh() const {
+  Json json = read();
+  bool complete = true;
+  for (Json& run : json["runs"]) {
+    const RunStatus status = read_status(files(run["folder"]));
+    run.update(status.json());
+    const Json expect = run.value("expect", Json::object());
+    complete =
+        complete && (status.has_results() || (status.refused() && expect.value("outcome", "") == "refused"));
+  }
+  json["complete"] = complete;
+  write_file(path_ / "sweep.json", json.dump(1) + "\n");
+  return json;
+}
+
+Json SweepFolder::finalize() const {
+  const Json json = read();
+  for (const Json& run : json["runs"]) {
+    const RunFiles files = this->files(run["folder"]);
+    const RunStatus status = read_status(files);
+    if (status.state == RunState::running) write_status(files, resolve_interrupted(files, status));
+  }
+  return refresh();
+}
+
+namespace {
+
+fs::path lock_in(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder))
+    throw std::runtime_error(folder.string() + ": cannot make the sweep's folder" +
+                             (error ? " (" + error.message() + ")" : "") + "; name another with --out");
+  return folder / "sweep.lock";
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& folder) : lock_(lock_in(folder)) {
+  // Wait a moment for the runs of a sweep that has just been killed.
+  if (!lock_.acquire(1))
+    throw std::runtime_error(folder.string() + ": another `drape sweep` uses this folder (" + lock_.holder() +
+                             "); wait for it, or name another folder with --out");
+}
+
+}  // namespace drape

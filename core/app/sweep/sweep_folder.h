@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/app/files/file_lock.h"
+#include "core/app/sweep/run_status.h"
+#include "core/app/sweep/sweep.h"
+
+namespace drape {
+
+/// A sweep's results folder: sweep.json, and under runs/ each run's folder and files. sweep.json is derived
+/// from the runs' own status files.
+class SweepFolder {
+ public:
+  explicit SweepFolder(std::filesystem::path path) : path_(std::move(path)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path slurm() const { return path_ / "slurm"; }
+  std::filesystem::path jobs() const { return slurm() / "jobs.json"; }  ///< the submitted ones
+  RunFiles files(const std::string& folder) const { return {path_ / folder}; }
+
+  /// Prepares the folder for a sweep: updates the statuses of interrupted runs and writes every run's config
+  /// and sweep.json. Throws std::runtime_error for a folder with other contents, with runs of a different
+  /// experiment or number of threads. Only under a FolderLock.
+  void prepare(const Sweep& sweep, int threads) const;
+  /// Indices of the runs without results; failed ones only with `retry_failed`.
+  std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
+  /// Writes sweep.json again with every run's status, and returns it.
+  nlohmann::ordered_json refresh() const;
+  /// As `refresh`, when no run is active: also resolves runs that are still marked as running.
+  nlohmann::ordered_json finalize() const;
+  /// sweep.json; null if there is none. Throws std::runtime_error if a run has no name.
+  nlohmann::ordered_json read() const;
+
+ private:
+  void refuse_other_runs(const Sweep& sweep, int threads) const;
+  std::filesystem::path path_;
+};
+
+/// Locks a sweep's folder for one process and its runs.
+class FolderLock {
+ public:
+  /// Creates the folder if necessary. Throws std::runtime_error, naming the process, if another one holds it.
+  explicit FolderLock(const std::filesystem::path& folder);
+
+ private:
+  FileLock lock_;
+};
+
+/// The runs of sweep.json for the terminal: variation, seed, status, seconds, and the messages of failed
+/// ones.
+std::string list_of_runs(const nlohmann::ordered_json& sweep);
+
+}  // namespace drape

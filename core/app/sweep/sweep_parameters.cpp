@@ -1,0 +1,90 @@
+#include "core/app/experiment/describe.h"
+#include "core/app/sweep/sweep.h"
+#include "core/kernel/plugin/bounds.h"
+
+namespace drape {
+
+void Expectation::declare(Declaration<Expectation>& d) {
+  d.add("outcome", &Expectation::outcome)
+      .choices(
+          {"converged", "converged_to_rounding", "infeasible", "stalled", "max_steps_reached", "refused"})
+      .description("expected outcome of every method's worst level; refused: before any computation");
+  d.add("message", &Expectation::message)
+      .description("expected part of the message; required unless the outcome is converged");
+}
+
+void VariationParameters::declare(Declaration<VariationParameters>& d) {
+  d.add("name", &VariationParameters::name)
+      .required()
+      .description("name of the variation and of its runs' folder");
+  d.add_node("set", &VariationParameters::set)
+      .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
+  d.add("levels", &VariationParameters::levels)
+      .at_least(1)
+      .at_most(10)
+      .description("number of levels, in place of the experiment's");
+  d.add("methods", &VariationParameters::methods)
+      .description("methods to run; by default those of the sweep");
+  d.add_section("expect", &VariationParameters::expect)
+      .description("expected outcome of its runs, checked by `drape table` and the exit code");
+}
+
+void SweepParameters::declare(Declaration<SweepParameters>& d) {
+  d.add("name", &SweepParameters::name).required().description("name of the sweep and of its folder");
+  d.add("description", &SweepParameters::description).description("one sentence");
+  d.add("base", &SweepParameters::base)
+      .path()
+      .description("experiment to vary, relative to this file; required without `experiments`");
+  d.add("experiments", &SweepParameters::experiments)
+      .description(
+          "several experiments to vary alike, in place of `base`; * in a file name matches anything, in "
+          "alphabetical order");
+  d.add_node("set", &SweepParameters::set)
+      .description("map from paths of keys in the experiment to values, for every variation");
+  d.add("seeds", &SweepParameters::seeds)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description(
+          "every variation is run with each of these as start.seed; the experiment's alone if not given");
+  d.add("repeats", &SweepParameters::repeats)
+      .at_least(1)
+      .at_most(10000)
+      .description("shorthand for seeds 1, 2, … up to this");
+  d.add("methods", &SweepParameters::methods).description("methods of the experiment to run; all by default");
+  d.add("threads", &SweepParameters::threads).at_least(1).at_most(1024).description("threads of each run");
+  d.add("time_limit", &SweepParameters::time_limit)
+      .unit("s")
+      .above(0)
+      .at_most(1e9)
+      .description("a run that takes longer is stopped and counts as failed; no limit by default");
+  d.add_node("ablation", &SweepParameters::ablation)
+      .description(
+          "list of variations, or {grid: {path: [values], …}} for every combination; by default the "
+          "unchanged experiments");
+}
+
+std::string describe_sweep() {
+  return describe(schema_of<SweepParameters>()) + "\na variation in ablation:\n\n" +
+         describe(schema_of<VariationParameters>());
+}
+
+std::string describe_sweep_markdown() {
+  return describe_markdown(schema_of<SweepParameters>()) + "\nA variation in `ablation`:\n\n" +
+         describe_markdown(schema_of<VariationParameters>());
+}
+
+nlohmann::ordered_json sweep_json_schema() {
+  using Json = nlohmann::ordered_json;
+  Json schema = json_schema(schema_of<SweepParameters>());
+  const Json values = {{"type", "array"}, {"minItems", 1}};
+  const Json grid = {{"type", "object"}, {"minProperties", 1}, {"additionalProperties", values}};
+  schema["properties"]["ablation"]["anyOf"] = Json::array(
+      {Json{{"type", "array"}, {"minItems", 1}, {"items", json_schema(schema_of<VariationParameters>())}},
+       Json{{"type", "object"},
+            {"properties", {{"grid", grid}}},
+            {"required", {"grid"}},
+            {"additionalProperties", false}}});
+  return schema;
+}
+
+}  // namespace drape

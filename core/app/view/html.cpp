@@ -1,0 +1,132 @@
+#include "core/app/view/html.h"
+
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+namespace drape::html {
+
+namespace {
+
+const char* const dash = "–";
+
+std::string row(const std::vector<Cell>& cells, bool head) {
+  std::string text = "<tr>";
+  for (const Cell& cell : cells) {
+    const std::string tag = head || !cell.number ? "th" : "td";
+    text += "<" + tag;
+    if (!head && !cell.number) text += " scope=\"row\"";
+    if (!cell.number) text += " class=\"text\"";
+    if (cell.rows > 1) text += " rowspan=\"" + std::to_string(cell.rows) + "\"";
+    if (cell.columns > 1) text += " colspan=\"" + std::to_string(cell.columns) + "\"";
+    text += ">" + (cell.strong ? "<strong>" + cell.content + "</strong>" : cell.content);
+    text += "</" + tag + ">";
+  }
+  return text + "</tr>\n";
+}
+
+}  // namespace
+
+std::string escape(std::string_view text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&#39;";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string number_text(const OptionalNumber& value) {
+  if (!value) return dash;
+  if (*value == 0) return "0";
+  char scientific[32];
+  std::snprintf(scientific, sizeof scientific, "%.2e", *value);
+  const std::string text = scientific;
+  const std::size_t e = text.find('e');
+  const int exponent = std::stoi(text.substr(e + 1));
+  if (exponent < -2 || exponent > 3) return text.substr(0, e) + "e" + std::to_string(exponent);
+  const double rounded = std::stod(text);
+  char plain[32];
+  std::snprintf(plain, sizeof plain, "%.*f", std::max(0, 2 - exponent), rounded);
+  return plain;
+}
+
+std::string fixed(const OptionalNumber& value, int decimals) {
+  if (!value) return dash;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", decimals, *value);
+  return text;
+}
+
+std::string count(const OptionalNumber& value) {
+  if (!value) return dash;
+  std::string digits = std::to_string(std::llround(std::abs(*value)));
+  for (int place = static_cast<int>(digits.size()) - 3; place > 0; place -= 3) {
+    digits.insert(place, "\u202f");
+  }
+  return (*value < 0 ? "-" : "") + digits;
+}
+
+std::string bytes(const OptionalNumber& value) {
+  if (!value || *value <= 0) return dash;
+  return *value < 1e9 ? number_text(*value / 1e6) + " MB" : number_text(*value / 1e9) + " GB";
+}
+
+std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<std::vector<Cell>>& body) {
+  std::string text = "<div class=\"scroll\"><table>\n<thead>\n";
+  for (const auto& cells : head) text += row(cells, true);
+  text += "</thead>\n<tbody>\n";
+  for (const auto& cells : body) text += row(cells, false);
+  return text + "</tbody>\n</table></div>\n";
+}
+
+std::string fill(std::string_view page, const std::map<std::string, std::string>& values) {
+  std::string text;
+  for (std::size_t place = 0;;) {
+    const std::size_t open = page.find("{{", place);
+    text += page.substr(place, open - place);
+    if (open == std::string_view::npos) return text;
+    const std::size_t close = page.find("}}", open);
+    const std::string name(page.substr(open + 2, close - open - 2));
+    const auto found = values.find(name);
+    if (found == values.end()) throw std::runtime_error("report page: no value for {{" + name + "}}");
+    text += found->second;
+    place = close + 2;
+  }
+}
+
+std::string base64(std::string_view bytes) {
+  static const char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto byte = [bytes](std::size_t i) {
+    return i < bytes.size() ? static_cast<unsigned>(static_cast<unsigned char>(bytes[i])) : 0u;
+  };
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+    text += alphabet[group >> 18];
+    text += alphabet[group >> 12 & 63];
+    text += i + 1 < bytes.size() ? alphabet[group >> 6 & 63] : '=';
+    text += i + 2 < bytes.size() ? alphabet[group & 63] : '=';
+  }
+  return text;
+}
+
+}  // namespace drape::html

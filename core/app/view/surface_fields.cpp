@@ -1,0 +1,126 @@
+#include "core/app/view/surface_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/app/view/colours.h"
+#include "core/kernel/contact/box_tree.h"
+#include "core/kernel/contact/closest.h"
+#include "core/kernel/elements/stretch.h"
+
+namespace drape {
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double shown_part_of_diagonal = 2e-3;
+constexpr double quantile = 0.98;  // of the values inside the colours' range
+
+/// The normal of triangle (a, b, c), of length twice its area.
+Eigen::Vector3d twice_normal(const Positions& x, int a, int b, int c) {
+  const Eigen::Vector3d e1 = x.row(b) - x.row(a), e2 = x.row(c) - x.row(a);
+  return e1.cross(e2);
+}
+
+std::vector<Box> triangle_boxes(const Positions& x, const Triangles& triangles, double margin) {
+  std::vector<Box> boxes(triangles.rows());
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const Eigen::Vector3d a = x.row(triangles(t, 0)), b = x.row(triangles(t, 1)), c = x.row(triangles(t, 2));
+    boxes[t] = Box::around(a, b, margin);
+    boxes[t].include(Box::around(c, c, margin));
+  }
+  return boxes;
+}
+
+/// Lowers gap[i] to the distance of each point i to every triangle within `range` that `counts(i, t)`.
+template <class Counts>
+void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positions& x, const Positions& y,
+                       const Triangles& triangles, double range, const Counts& counts) {
+  if (triangles.rows() == 0) return;
+  BoxTree tree;
+  tree.build(triangle_boxes(y, triangles, range));
+  for (int group = 0; group < points.leaf_groups(); ++group)
+    points.overlaps(tree, group, [&](int i, int t) {
+      if (!counts(i, t)) return;
+      const auto v = triangles.row(t);
+      const Eigen::Vector3d a = y.row(v[0]), b = y.row(v[1]), c = y.row(v[2]), p = x.row(i);
+      const Eigen::Vector4d w = closest_point_triangle(p, a, b, c).c;
+      gap[i] = std::min(gap[i], (w[0] * p + w[1] * a + w[2] * b + w[3] * c).norm());
+    });
+}
+
+}  // namespace
+
+Eigen::VectorXd mean_curvature(const Level& level, const Positions& x) {
+  const Triangles& triangles = level.rest.triangles;
+  Eigen::VectorXd area = Eigen::VectorXd::Zero(x.rows()), sum = area;
+  for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
+    const auto v = triangles.row(t);
+    const double third = twice_normal(x, v[0], v[1], v[2]).norm() / 6;
+    for (int k = 0; k < 3; ++k) area[v[k]] += third;
+  }
+  for (Eigen::Index e = 0; e < level.hinges.rows(); ++e) {
+    const auto h = level.hinges.row(e);
+    const Eigen::Vector3d edge = x.row(h[1]) - x.row(h[0]);
+    const Eigen::Vector3d n1 = twice_normal(x, h[0], h[1], h[2]), n2 = twice_normal(x, h[1], h[0], h[3]);
+    const double angle = std::atan2(n1.cross(n2).dot(edge.normalized()), n1.dot(n2));
+    for (int k = 0; k < 2; ++k) sum[h[k]] += 0.25 * edge.norm() * angle;
+  }
+  for (Eigen::Index i = 0; i < x.rows(); ++i) sum[i] = area[i] > 0 ? sum[i] / area[i] : nan;
+  return sum;
+}
+
+Eigen::VectorXd largest_stretch(const Level& level, const Positions& x) {
+  const Triangles& triangles = level.rest.triangles;
+  Eigen::VectorXd largest = Eigen::VectorXd::Zero(x.rows());
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const auto v = triangles.row(t);
+    const double stretch =
+        RestTriangle::of(level, t).stretch(x.row(v[1]) - x.row(v[0]), x.row(v[2]) - x.row(v[0])).largest;
+    for (int k = 0; k < 3; ++k) largest[v[k]] = std::max(largest[v[k]], stretch);
+  }
+  return largest;
+}
+
+Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
+                            const std::vector<TriangleMesh>& obstacles, double range) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd gap = Eigen::VectorXd::Constant(x.rows(), infinity);
+  std::vector<Box> boxes(x.rows());
+  for (Eigen::Index i = 0; i < x.rows(); ++i) boxes[i] = Box::around(x.row(i), x.row(i), 0);
+  BoxTree points;
+  points.build(boxes);
+  for (const TriangleMesh& obstacle : obstacles)
+    lower_to_distance(gap, points, x, obstacle.vertices, obstacle.triangles, range,
+                      [](int, int) { return true; });
+  // A vertex's neighbourhood along the cloth is always near and is no contact.
+  const Positions& rest = level.rest.vertices;
+  const Triangles& triangles = level.rest.triangles;
+  lower_to_distance(gap, points, x, x, triangles, range, [&](int i, int t) {
+    for (int k = 0; k < 3; ++k)
+      if (triangles(t, k) == i || (rest.row(triangles(t, k)) - rest.row(i)).norm() < 3 * range) return false;
+    return true;
+  });
+  for (double& g : gap) g = g <= range ? g : nan;
+  return gap;
+}
+
+double shown_gap(const Level& level) {
+  const Positions& rest = level.rest.vertices;
+  return shown_part_of_diagonal * (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+}
+
+std::pair<double, double> field_range(const FieldKind& kind,
+                                      const std::vector<const Eigen::VectorXd*>& values, double gap_range) {
+  const std::string map = kind.map;
+  if (map == "near") return {0, gap_range};
+  if (map == "diverging") {
+    const double end = magnitude_quantile(values, quantile);
+    return {-std::max(end, 1e-6), std::max(end, 1e-6)};
+  }
+  // Stretch begins at 1; the largest matters, so none is cut off.
+  return {1, std::max(1.001, magnitude_quantile(values, 1))};
+}
+
+}  // namespace drape

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/kernel/model/level.h"
+
+namespace drape {
+
+/// Scalar fields that the viewer can show.
+struct FieldKind {
+  const char *name, *label, *unit;
+  const char* map;  ///< "diverging" about 0, "sequential" upwards, "near" for what is close to 0
+};
+inline constexpr FieldKind field_kinds[] = {
+    {"mean_curvature", "mean curvature", "1/m", "diverging"},
+    {"H_difference", "curvature difference from the finest level", "1/m", "diverging"},
+    {"stretch", "largest stretch", "1", "sequential"},
+    {"gap", "contact gap", "m", "near"}};
+
+/// Values by the name of their kind.
+using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;
+
+/// n mean curvatures H_i = ¼ Σ_e ‖e‖ θ_e / A_i [1/m], over inner edges, θ_e > 0 where the surface is
+/// convex, A_i a third of the deformed triangles around i; NaN where there is no area.
+Eigen::VectorXd mean_curvature(const Level& level, const Positions& x);
+
+/// n largest principal stretches of the triangles around each vertex [1].
+Eigen::VectorXd largest_stretch(const Level& level, const Positions& x);
+
+/// n distances to the nearest triangle of the obstacles, or of the cloth itself farther away than three
+/// ranges at rest [m]; NaN beyond `range`. For an obstacle in closed form, the distance to its displayed
+/// mesh.
+Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
+                            const std::vector<TriangleMesh>& obstacles, double range);
+
+/// The range of displayed gaps: a fraction of the rest shape's diagonal [m].
+double shown_gap(const Level& level);
+
+/// The colour range of a kind: nearly all values lie inside.
+std::pair<double, double> field_range(const FieldKind& kind,
+                                      const std::vector<const Eigen::VectorXd*>& values, double gap_range);
+
+}  // namespace drape

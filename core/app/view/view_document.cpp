@@ -1,0 +1,107 @@
+#include "core/app/view/view_document.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/app/view/view_blocks.h"
+
+namespace drape {
+
+namespace {
+
+constexpr std::size_t derived_fields = 3;  // bytes per vertex: mean curvature, stretch and gap
+
+const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name) {
+  const auto found =
+      std::find_if(fields.begin(), fields.end(), [&](const auto& field) { return field.first == name; });
+  return found == fields.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+ViewDocument::ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles,
+                           bool with_gaps, Keep keep)
+    : levels_(levels),
+      with_gaps_(with_gaps),
+      obstacles_(obstacles),
+      keep_(std::move(keep)),
+      ranges_(std::size(field_kinds), {0, 0}) {
+  for (const Level& level : levels_) {
+    const std::string name = "l" + std::to_string(level.index);
+    keep_(name, encode_triangles(level.rest.triangles));
+    level_entries_.push_back(
+        {{"vertices", level.vertex_count()}, {"triangles", level.triangle_count()}, {"block", name}});
+  }
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const std::string name = "obstacle" + std::to_string(k);
+    keep_(name + "-x", encode_positions(obstacles_[k].vertices));
+    keep_(name, encode_triangles(obstacles_[k].triangles));
+    obstacle_entries_.push_back({{"vertices", obstacles_[k].vertices.rows()},
+                                 {"triangles", obstacles_[k].triangles.rows()},
+                                 {"x", name + "-x"},
+                                 {"block", name}});
+  }
+}
+
+SurfaceFields ViewDocument::fields(int level, const Positions& x) const {
+  const Level& l = levels_[level];
+  SurfaceFields all = {{"mean_curvature", mean_curvature(l, x)}, {"stretch", largest_stretch(l, x)}};
+  if (with_gaps_) all.emplace_back("gap", contact_gap(l, x, obstacles_, shown_gap(levels_.front())));
+  return all;
+}
+
+void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
+  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+    std::vector<const Eigen::VectorXd*> values;
+    for (const SurfaceFields* state : states)
+      if (const Eigen::VectorXd* field = find(*state, field_kinds[k].name); field && !field->isZero(0))
+        values.push_back(field);  // the finest level's difference from itself is zero
+    if (!values.empty()) ranges_[k] = field_range(field_kinds[k], values, shown_gap(levels_.front()));
+  }
+}
+
+ViewDocument::Json ViewDocument::state(const std::string& name, const Positions& x,
+                                       const SurfaceFields& fields) {
+  keep_(name, encode_positions(x));
+  rounding_ = std::max(rounding_, position_rounding(x));
+  Json entry = {{"x", name}, {"fields", Json::object()}};
+  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+    const Eigen::VectorXd* values = find(fields, field_kinds[k].name);
+    if (!values) continue;
+    const std::string block = name + "-" + field_kinds[k].name;
+    keep_(block, encode_scalars(*values, ranges_[k].first, ranges_[k].second));
+    entry["fields"][field_kinds[k].name] = block;
+  }
+  return entry;
+}
+
+std::size_t ViewDocument::state_bytes(int level) const {
+  return levels_[level].vertex_count() * (6 + derived_fields);
+}
+
+ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {
+  Json fields = Json::array();
+  for (std::size_t k = 0; k < ranges_.size(); ++k) {
+    if (!(ranges_[k].second > ranges_[k].first)) continue;
+    const FieldKind& kind = field_kinds[k];
+    fields.push_back({{"name", kind.name},
+                      {"label", kind.label},
+                      {"unit", kind.unit},
+                      {"map", kind.map},
+                      {"low", ranges_[k].first},
+                      {"high", ranges_[k].second}});
+  }
+  return {{"title", title},   {"levels", level_entries_}, {"obstacles", obstacle_entries_},
+          {"fields", fields}, {"rounding", rounding_},    {"methods", std::move(methods)}};
+}
+
+std::string viewer_scripts() {
+  std::string text;
+  for (const std::string_view script :
+       {Embedded::three_js(), Embedded::viewer_data_js(), Embedded::viewer_scene_js(),
+        Embedded::viewer_controls_js(), Embedded::viewer_js()})
+    text += "<script>\n" + std::string(script) + "\n</script>\n";
+  return text;
+}
+
+}  // namespace drape

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/app/view/surface_fields.h"
+
+namespace drape {
+
+/// Converts a cloth's levels, obstacles and states to the viewer's format: a JSON document and named blocks
+/// of bytes that it refers to. The report embeds them, the live view serves them.
+class ViewDocument {
+ public:
+  using Json = nlohmann::ordered_json;
+  /// Receives a named block.
+  using Keep = std::function<void(const std::string& name, std::string bytes)>;
+
+  /// `levels`, coarse to fine, and `obstacles` must outlive the document; gaps are shown `with_gaps`.
+  ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles, bool with_gaps,
+               Keep keep);
+
+  /// The fields that depend on positions only.
+  SurfaceFields fields(int level, const Positions& x) const;
+  /// Sets the colour ranges from typical states, usually the last of each level.
+  void set_ranges(const std::vector<const SurfaceFields*>& states);
+  /// Encodes a state; its blocks are named after `name`.
+  Json state(const std::string& name, const Positions& x, const SurfaceFields& fields);
+  /// Uncompressed size of a state of that level [bytes].
+  std::size_t state_bytes(int level) const;
+
+  /// The document, with `methods` as {"name", "levels": [{"level", "status", "states": [...]}]}.
+  Json document(const std::string& title, Json methods) const;
+
+ private:
+  const std::vector<Level>& levels_;
+  bool with_gaps_;
+  const std::vector<TriangleMesh>& obstacles_;
+  Keep keep_;
+  std::vector<std::pair<double, double>> ranges_;  // of field_kinds
+  double rounding_ = 0;
+  Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
+};
+
+/// three.js and the viewer's own scripts, as <script> elements.
+std::string viewer_scripts();
+
+}  // namespace drape

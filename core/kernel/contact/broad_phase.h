@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernel/contact/box.h"
+#include "core/kernel/mesh/topology.h"
+
+namespace drape {
+
+/// Algorithms that find overlapping boxes. All find the same pairs.
+enum class BroadPhaseKind {
+  bvh,  ///< own eight-wide BVH, built once and refitted
+  fcl,  ///< FCL's BVHModel, refitted too
+  cgal  ///< CGAL's box_intersection_d, without state between calls
+};
+
+/// Finds the overlapping pairs of closed boxes.
+class BroadPhase {
+ public:
+  virtual ~BroadPhase() = default;
+
+  /// Copies the boxes, none of which may be empty. Cheapest if their number is that of the last call and
+  /// their neighbours are the same.
+  virtual void update(const std::vector<Box>& boxes) = 0;
+
+  /// Sets row i of `pairs` to the boxes j > i that overlap box i, ascending. Returns false, without rows, if
+  /// there are more than `limit` pairs.
+  virtual bool overlaps(long limit, AdjacencyList& pairs) const = 0;
+
+  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Throws std::runtime_error if
+  /// `other` is of another kind.
+  virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
+};
+
+std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind);
+
+}  // namespace drape

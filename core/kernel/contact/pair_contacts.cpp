@@ -1,0 +1,122 @@
+#include "core/kernel/contact/pair_contacts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/kernel/contact/contact_kernel.h"
+#include "core/kernel/contact/friction.h"
+#include "core/kernel/linear_algebra/parallel.h"
+
+namespace drape {
+namespace {
+
+constexpr int grain = 128;  // contacts per task
+constexpr int run = 1024;   // contacts whose blocks are computed before they are added
+
+class PairCollisions final : public Collisions {
+ public:
+  PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
+                 const BarrierParameters& parameters)
+      : contacts_(std::move(contacts)), count_(count), cloth_count_(cloth_count), parameters_(parameters) {
+    double sum = 0;
+    for (int i = 0; i < count_; ++i) {
+      sum += contacts_[i].value(parameters_.dhat);
+      smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
+    }
+    value_ = parameters_.stiffness * sum;
+  }
+
+  int contact_count() const override { return count_; }
+  double smallest_gap() const override { return smallest_gap_; }
+  double value(const Positions&) const override { return value_; }
+
+  double add_gradient(const Positions&, Positions& g) const override {
+    for (int i = 0; i < count_; ++i) {
+      const Contact& contact = contacts_[i];
+      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact, parameters_.dhat);
+      for (int k = 0; k < 4; ++k)
+        if (const int v = contact.pair.vertices[k]; v < cloth_count_) g.row(v) += by_vertex.col(k);
+    }
+    return value_;
+  }
+
+  Stencils stencils() const override {
+    Stencils result(contact_count(), 4);
+    for (int i = 0; i < contact_count(); ++i)
+      for (int k = 0; k < 4; ++k) result(i, k) = cloth_vertex(contacts_[i], k);
+    return result;
+  }
+
+  // All threads compute blocks; one adds them in order, which makes results independent of the thread count.
+  void add_hessian(const Positions&, Projection projection, BlockSink& sink) const override {
+    const auto blocks = std::make_unique_for_overwrite<PairBlocks[]>(std::min(run, count_));
+    for (int first = 0; first < count_; first += run) {
+      const int size = std::min(run, count_ - first);
+      parallel_for(size, grain, [&](int begin, int end) {
+        contact_hessians(&contacts_[first + begin], end - begin, parameters_, cloth_count_, projection,
+                         blocks.get() + begin);
+      });
+      for (int i = 0; i < size; ++i)
+        for (int b = 0, index = 0; b < 4; ++b)
+          for (int a = 0; a <= b; ++a, ++index) sink.add(first + i, a, b, blocks[i].block[index]);
+    }
+  }
+
+  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                           const TangentialDisplacements& displacements) const override {
+    std::vector<FrictionContact> result;
+    result.reserve(count_);
+    for (int i = 0; i < count_; ++i) {
+      const Contact& contact = contacts_[i];
+      if (contact.pair.friction == 0) continue;
+      const auto vertex = [&](int k) { return cloth_vertex(contact, k); };
+      const auto& v = contact.pair.vertices;
+      result.push_back({{v[0], v[1], v[2], v[3], static_cast<int>(contact.pair.kind)},
+                        {vertex(0), vertex(1), vertex(2), vertex(3)},
+                        contact.closest.c,
+                        contact.normal,
+                        contact.pair.friction * parameters_.stiffness * contact.pressure()});
+    }
+    return make_friction(std::move(result), reference, displacements,
+                         parameters_.friction_smoothing_distance);
+  }
+
+ private:
+  int cloth_vertex(const Contact& contact, int k) const {
+    const int v = contact.pair.vertices[k];
+    return v < cloth_count_ ? v : -1;
+  }
+
+  std::unique_ptr<Contact[]> contacts_;
+  int count_, cloth_count_;
+  BarrierParameters parameters_;
+  double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
+                                               const std::vector<ContactPair>& pairs,
+                                               const BarrierParameters& parameters) {
+  // Collect indices first, then construct the contacts in place: they are large, and copying dominates.
+  constexpr int pairs_per_task = 2048;
+  const int size = static_cast<int>(pairs.size());
+  std::vector<std::vector<int>> near((size + pairs_per_task - 1) / pairs_per_task);
+  parallel_for(size, pairs_per_task, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat))
+        near[begin / pairs_per_task].push_back(i);
+  });
+  std::vector<int> start = {0};
+  for (const auto& piece : near) start.push_back(start.back() + static_cast<int>(piece.size()));
+  auto contacts = std::make_unique_for_overwrite<Contact[]>(start.back());
+  parallel_for(static_cast<int>(near.size()), 1, [&](int piece, int) {
+    Contact* contact = contacts.get() + start[piece];
+    for (const int i : near[piece])
+      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat);
+  });
+  return std::make_unique<PairCollisions>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
+                                          parameters);
+}
+
+}  // namespace drape

@@ -1,0 +1,24 @@
+#include "core/kernel/elements/linear_energy.h"
+
+#include "core/kernel/linear_algebra/parallel.h"
+
+namespace drape {
+namespace {
+constexpr int grain = 8192;
+}
+
+double LinearEnergy::value(const Positions& x) const {
+  return parallel_sum(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+    const int count = end - begin;
+    return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
+  });
+}
+
+double LinearEnergy::add_gradient(const Positions& x, Positions& g) const {
+  parallel_for(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+    g.middleRows(begin, end - begin) -= forces_.middleRows(begin, end - begin);
+  });
+  return value(x);
+}
+
+}  // namespace drape

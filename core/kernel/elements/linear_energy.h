@@ -1,0 +1,21 @@
+#pragma once
+
+#include "core/kernel/model/energy.h"
+
+namespace drape {
+
+/// E(x) = -Σ f_i · x_i: constant forces f, n×3 [N].
+class LinearEnergy final : public BoundEnergy {
+ public:
+  explicit LinearEnergy(Positions forces) : forces_(std::move(forces)) {}
+
+  double value(const Positions& x) const override;
+  double add_gradient(const Positions& x, Positions& g) const override;
+  Stencils stencils() const override { return Stencils(0, 1); }
+  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+
+ private:
+  Positions forces_;
+};
+
+}  // namespace drape

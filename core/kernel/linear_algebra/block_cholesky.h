@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/linear_algebra/supernodal_factor.h"
+#include "core/kernel/mesh/triangle_mesh.h"
+
+namespace drape {
+
+/// Sparse Cholesky factorisation of a symmetric block matrix plus a diagonal, without the rows and columns of
+/// fixed vertices.
+///
+/// CHOLMOD orders vertices by nested dissection (METIS) and forms supernodes (Chen, Davis, Hager and
+/// Rajamanickam 2008); SupernodalFactor does the numeric factorisation. A new pattern gets a new symbolic
+/// analysis but reuses the ordering, until that costs too much or the fixed vertices change.
+class BlockCholesky {
+ public:
+  /// Input and result of a symbolic analysis. With the same pattern it gives the same layout.
+  struct Analysis {
+    std::vector<char> fixed;
+    std::vector<int>
+        reused_ordering;        ///< ordering of the free vertices from before; empty if it was computed
+    std::vector<int> ordering;  ///< the resulting one
+    double ordering_flops = 0;  ///< cost of the factorisation when the ordering was computed
+    int count = 0;              ///< analyses so far, including this one
+  };
+
+  /// Orders and analyses; does nothing when called again with the same pattern and flags.
+  /// `fixed` has one flag a vertex. Throws std::runtime_error when memory runs out.
+  void analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed);
+
+  /// Factorises A + diag(shift_i I₃); shift has one entry a vertex [N/m]. Returns false, without a factor, if
+  /// the sum is not positive definite.
+  bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+
+  /// Solves with the last factor; n×3 right-hand side and solution, whose fixed rows are zero.
+  void solve(const Positions& right_hand_side, Positions& solution);
+
+  Analysis analysis() const { return {fixed_, reused_ordering_, ordering_, ordering_flops_, analyses_}; }
+  /// Restores the layout that this analysis of the pattern gave, without a factor. If the pattern is null,
+  /// since it was invalidated, restores only the ordering for the next analysis.
+  void restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis);
+
+  bool has_factor() const { return has_factor_; }
+  int unknowns() const { return 3 * static_cast<int>(ordering_.size()); }
+  /// Floating-point operations of one numeric factorisation, and entries of the factor; both without the
+  /// explicit zeros of supernodes.
+  double flops() const { return flops_; }
+  double factor_entries() const { return entries_; }
+  /// Number of symbolic analyses.
+  int analyses() const { return analyses_; }
+
+ private:
+  /// Uses `ordering` if the factorisation then costs at most `max_flops`, else computes one.
+  void order_and_analyse(std::vector<int> ordering, double max_flops);
+
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::vector<char> fixed_;
+  std::vector<int> ordering_;         // ordering_[p] is the vertex at position p
+  std::vector<int> reused_ordering_;  // input of the analysis; empty if ordering_ was computed
+  SupernodalFactor factor_;
+  Eigen::VectorXd x_;
+  double flops_ = 0, entries_ = 0;
+  double ordering_flops_ = 0;  // CHOLMOD's count when the ordering was computed
+  bool has_factor_ = false;
+  int analyses_ = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <vector>
+
+#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/linear_algebra/supernodal_front.h"
+#include "core/kernel/linear_algebra/supernodal_tree.h"
+
+namespace drape {
+
+/// Multifrontal Cholesky factorisation of a symmetric matrix of 3×3 blocks (Duff and Reid 1983; Liu 1992).
+///
+/// In postorder, every supernode assembles its front from the matrix' entries and its children's update
+/// matrices, eliminates its pivots, and passes its update matrix to its parent. Subtrees run in parallel;
+/// then the supernodes above them one by one, their fronts in parallel by tiles. Tree, tiles and the order of
+/// additions do not depend on the number of threads, so the factor is bitwise reproducible.
+class SupernodalFactor {
+ public:
+  /// Sets the symbolic structure. ordering[p] is the vertex at position p; vertices without a position are
+  /// left out. Reuses the memory of an earlier structure if it suffices.
+  void set_structure(SupernodalTree tree, const BlockPattern& pattern, const std::vector<int>& ordering);
+
+  /// Factorises A + diag(shift_i I₃), shift by vertex. Returns false early if a pivot is not positive.
+  bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+
+  /// Solves in place; three unknowns for each position.
+  void solve(Eigen::VectorXd& x);
+
+ private:
+  /// A block of the matrix and its vertices in the front.
+  struct Entry {
+    int block, row, column;
+    bool transposed;
+  };
+
+  Front front(int s);
+  bool eliminate(int s, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+  void assemble(int s, const Front& f, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+  void forward(int s, const Eigen::VectorXd& x);
+  void backward(int s, Eigen::VectorXd& x);
+
+  SupernodalTree tree_;
+  std::vector<int> ordering_;
+  std::vector<int> entry_start_;  // of each supernode
+  std::vector<Entry> entries_;
+  Eigen::VectorXd panels_, updates_;
+  std::vector<int> vector_start_;  // of each supernode's work space in a solve
+  Eigen::VectorXd work_;
+  std::atomic<bool> failed_ = false;
+};
+
+}  // namespace drape

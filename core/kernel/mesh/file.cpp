@@ -1,0 +1,120 @@
+#include "core/kernel/mesh/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+namespace {
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) close(number);
+  }
+};
+
+std::runtime_error failure(const char* what, const std::filesystem::path& path, int error) {
+  return std::runtime_error(std::string(what) + path.string() + ": " +
+                            std::generic_category().message(error));
+}
+
+WriteError unwritten(const std::filesystem::path& path, int error) {
+  return WriteError(failure("cannot write ", path, error).what());
+}
+
+}  // namespace
+
+std::string read_file(const std::filesystem::path& path, std::uintmax_t most) {
+  const std::string name = printable(path.string());
+  const auto refuse = [&](const std::string& cause) { throw FileError(name + ": " + cause, cause); };
+  if (path.native().find('\0') != std::string::npos) refuse("has a NUL character in its name");
+  const auto refuse_number = [&](int error) {
+    const std::string reason = std::generic_category().message(error);
+    throw FileError("cannot read " + name + ": " + reason,
+                    error == ENOENT ? "no such file" : "cannot be read (" + reason + ")");
+  };
+  // Opening a pipe without a writer would block.
+  const Descriptor file{open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)};
+  struct stat status {};
+  if (file.number < 0 || fstat(file.number, &status) != 0) refuse_number(errno);
+  if (S_ISDIR(status.st_mode)) refuse("is a folder, not a file");
+  if (!S_ISREG(status.st_mode)) refuse("is a pipe or a device; give a file on a disk");
+  const auto refuse_if_larger = [&](std::uintmax_t size) {
+    if (size > most)
+      refuse("is larger than " + std::to_string(most / 1'000'000) + " MB, the most that is read of it");
+  };
+  // The size is a hint: /proc says 0, and a file may grow.
+  refuse_if_larger(static_cast<std::uintmax_t>(status.st_size));
+  std::string bytes;
+  bytes.reserve(static_cast<std::size_t>(status.st_size));
+  char buffer[1 << 16];
+  while (true) {
+    const ssize_t n = read(file.number, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) refuse_number(errno);
+    if (n == 0) return bytes;
+    bytes.append(buffer, static_cast<std::size_t>(n));
+    refuse_if_larger(bytes.size());
+  }
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+  std::filesystem::path part = path;
+  part += ".part";
+  File file(std::fopen(part.c_str(), "wb"));
+  if (!file) throw unwritten(path, errno);
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
+  const bool closed = std::fclose(file.release()) == 0;  // the last bytes may fail only here
+  if (written && closed && std::rename(part.c_str(), path.c_str()) == 0) return;
+  const int error = errno;
+  std::remove(part.c_str());
+  throw unwritten(path, error);
+}
+
+bool write_where_other(const std::filesystem::path& path, std::string_view bytes) {
+  std::error_code none;
+  if (std::filesystem::is_regular_file(path, none) &&
+      std::filesystem::file_size(path, none) == bytes.size() && read_file(path) == bytes)
+    return false;
+  write_file(path, bytes);
+  return true;
+}
+
+void make_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw unwritten(path, error.value());
+}
+
+void rename_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (std::rename(from.c_str(), to.c_str()) != 0) throw unwritten(to, errno);
+}
+
+std::uint32_t checksum_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size()));
+}
+
+void sync_to_disk(const std::filesystem::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return;
+  fsync(file);
+  close(file);
+}
+
+}  // namespace drape

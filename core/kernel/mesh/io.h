@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/kernel/mesh/triangle_mesh.h"
+
+namespace drape {
+
+/// A named scalar per vertex.
+struct VertexField {
+  std::string name;        ///< not empty, no white space
+  Eigen::VectorXd values;  ///< n
+};
+using VertexFields = std::vector<VertexField>;
+
+/// Reads a Wavefront OBJ (v and f), an OFF (text) or a PLY (text, binary little or big endian), by
+/// extension. Polygons are split into fans around their first corner, which suits convex ones.
+/// Vertices keep their order and are not merged. Coordinates are finite; check_mesh checks the rest of the
+/// geometry. Data beyond what the file declares are refused. Throws std::runtime_error with "file:line:
+/// fault" (in binary parts: the element).
+TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
+VertexFields read_ply_fields(const std::filesystem::path& path);
+
+// Every writer writes path + ".part" and renames it. All throw std::runtime_error naming the path.
+
+/// Writes PLY (as write_ply) or OBJ by extension; either reads back to the same bits.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+/// Writes a PLY, binary little endian, coordinates and fields in double; reads back to the same bits.
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
+
+/// Writes a VTK XML PolyData file, base64 inline, for ParaView.
+void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
+
+/// Writes a ParaView collection: time [s] and a .vtp path relative to the collection, one pair per frame.
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
+
+}  // namespace drape

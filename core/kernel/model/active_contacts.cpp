@@ -1,0 +1,162 @@
+#include "core/kernel/model/active_contacts.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace drape {
+
+void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
+  candidates_.clear();
+  for (const auto& model : models_) candidates_.push_back(model->build_candidates(x0, x1));
+  candidates_motion_ = std::make_shared<const LinearMotion>(LinearMotion{x0, x1});
+}
+
+void ActiveContacts::build_collisions(const Positions& x) {
+  if (state_.rows() == x.rows() && state_ == x) return;
+  if (candidates_.empty()) build_candidates(x, x);
+  const Stopwatch watch;
+  collisions_.clear();
+  for (const auto& candidates : candidates_) collisions_.push_back(candidates->build_collisions(x));
+  seconds_building_ += watch.seconds();
+  state_ = x;
+  collisions_motion_ = candidates_motion_;
+}
+
+void ActiveContacts::begin_step(const Positions& x) {
+  if (models_.empty()) return;
+  build_collisions(x);
+  // update_obstacles has stored displacements that include an obstacle motion the cloth has yet to follow.
+  if (!advected_) store_tangential_displacements(x);
+  advected_ = false;
+  lag_friction();
+}
+
+void ActiveContacts::store_tangential_displacements(const Positions& x, const Positions* obstacle_motion) {
+  tangential_displacements_.resize(models_.size());
+  for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
+  for (std::size_t k = 0; k < friction_.size(); ++k) {
+    if (!friction_[k]) continue;
+    if (obstacle_motion)
+      friction_[k]->append_advected_tangential_displacements(x, *obstacle_motion,
+                                                             tangential_displacements_[k]);
+    else
+      friction_[k]->append_tangential_displacements(x, tangential_displacements_[k]);
+    std::ranges::sort(tangential_displacements_[k], {}, &TangentialDisplacement::contact);
+  }
+  reference_ = x;
+}
+
+bool ActiveContacts::has_friction() const {
+  return std::any_of(friction_.begin(), friction_.end(),
+                     [](const auto& friction) { return friction != nullptr; });
+}
+
+void ActiveContacts::update_obstacles(const BoundContacts& before, const Positions& from,
+                                      const Positions& x) {
+  if (models_ == before) return;
+  if (!advected_ && has_friction()) {
+    store_tangential_displacements(from);
+    update_lagging(from);
+  }
+  Positions obstacle_motion = Positions::Zero(x.rows(), 3);
+  for (std::size_t k = 0; k < models_.size(); ++k)
+    if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[k].get());
+        kinematic && models_[k] != before[k])
+      kinematic->advect(*before[k], from, obstacle_motion);
+  store_tangential_displacements(x, &obstacle_motion);
+  advected_ = true;
+  candidates_.clear();
+  collisions_.clear();
+  friction_.clear();
+  state_.resize(0, 3);
+  build_collisions(x);
+  lag_friction();
+}
+
+void ActiveContacts::update_lagging(const Positions& x) {
+  build_collisions(x);
+  lag_friction();
+}
+
+void ActiveContacts::lag_friction() {
+  friction_.clear();
+  if (!friction_enabled_) return;
+  for (std::size_t k = 0; k < collisions_.size(); ++k)
+    friction_.push_back(collisions_[k]->friction(reference_, tangential_displacements_[k]));
+}
+
+ContactMemory ActiveContacts::memory() const {
+  if (models_.empty()) return {};
+  return {reference_, tangential_displacements_, collisions_motion_->begin, collisions_motion_->end,
+          seconds_building_};
+}
+
+void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
+  seconds_building_ = memory.seconds_building;
+  if (models_.empty()) return;
+  build_candidates(memory.candidates_begin, memory.candidates_end);
+  state_.resize(0, 3);
+  build_collisions(x);
+  reference_ = memory.reference;
+  tangential_displacements_ = memory.tangential_displacements;
+  lag_friction();
+}
+
+StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {
+  StepLimit limit;
+  build_candidates(x0, x1);
+  for (const auto& candidates : candidates_) {
+    StepLimit own = candidates->max_step();
+    if (own.fraction < limit.fraction) limit = std::move(own);
+  }
+  return limit;
+}
+
+double ActiveContacts::barrier(const Positions& x) {
+  if (models_.empty()) return 0;
+  build_collisions(x);
+  double sum = 0;
+  for (const auto& collisions : collisions_) sum += collisions->value(x);
+  return sum;
+}
+
+double ActiveContacts::friction(const Positions& x) const {
+  double sum = 0;
+  for (const auto& friction : friction_)
+    if (friction) sum += friction->value(x);
+  return sum;
+}
+
+double ActiveContacts::add_gradient(const Positions& x, Positions& g) {
+  if (models_.empty()) return 0;
+  build_collisions(x);
+  double sum = 0;
+  for (const auto& collisions : collisions_) sum += collisions->add_gradient(x, g);
+  for (const auto& friction : friction_)
+    if (friction) sum += friction->add_gradient(x, g);
+  return sum;
+}
+
+std::vector<const BoundEnergy*> ActiveContacts::energies(const Positions& x) {
+  if (!models_.empty()) build_collisions(x);
+  std::vector<const BoundEnergy*> all;
+  for (const auto& collisions : collisions_)
+    if (collisions->contact_count() > 0) all.push_back(collisions.get());
+  for (const auto& friction : friction_)
+    if (friction) all.push_back(friction.get());
+  return all;
+}
+
+int ActiveContacts::count() const {
+  int sum = 0;
+  for (const auto& collisions : collisions_) sum += collisions->contact_count();
+  return sum;
+}
+
+double ActiveContacts::smallest_gap() const {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const auto& collisions : collisions_) gap = std::min(gap, collisions->smallest_gap());
+  return gap;
+}
+
+}  // namespace drape

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/model/contact_model.h"
+
+namespace drape {
+
+/// The state of a level's contacts at the beginning of a step, for checkpoints.
+struct ContactMemory {
+  Positions reference;  ///< n×3, from where tangential displacements are measured [m]
+  std::vector<TangentialDisplacements>
+      tangential_displacements;                ///< of each model's contacts, at `reference`
+  Positions candidates_begin, candidates_end;  ///< the motion whose candidates gave the step's collisions [m]
+  double seconds_building = 0;
+};
+
+/// Candidates, collisions and lagged friction of one level during a minimisation. Does nothing on a level
+/// without contact models.
+class ActiveContacts {
+ public:
+  /// Keeps a reference to `models`.
+  explicit ActiveContacts(const BoundContacts& models) : models_(models) {}
+
+  bool any() const { return !models_.empty(); }
+  bool has_friction() const;
+  /// For motions without physical sliding, as from one level to the next.
+  void disable_friction() { friction_enabled_ = false; }
+
+  /// Starts a step at x: lags friction's normal forces and tangents there, and stores the tangential
+  /// displacements.
+  void begin_step(const Positions& x);
+  /// Replaces the models `before`, with the cloth at `from`, by the current ones, with the cloth at x.
+  /// Updates tangential displacements by the relative motion of cloth and obstacles.
+  void update_obstacles(const BoundContacts& before, const Positions& from, const Positions& x);
+  /// Whether obstacle motion has advected tangential displacements since the last step began.
+  bool advected() const { return advected_; }
+  /// Lags normal forces and tangents at x. The reference of tangential displacements stays.
+  void update_lagging(const Positions& x);
+
+  /// What restore needs to reproduce the state after begin_step.
+  ContactMemory memory() const;
+  /// Reproduces the state after begin_step(x), with contacts in the same order.
+  void restore(const ContactMemory& memory, const Positions& x);
+
+  /// The largest collision-free step from x0 towards x1. States on that segment may then be evaluated.
+  StepLimit max_step(const Positions& x0, const Positions& x1);
+
+  /// Barrier [J] at x, which is x0 or on the segment of the last max_step.
+  double barrier(const Positions& x);
+  double friction(const Positions& x) const;              ///< [J]
+  double add_gradient(const Positions& x, Positions& g);  ///< of barrier and friction; returns their sum [J]
+
+  /// All energies at x that contribute to the Hessian.
+  std::vector<const BoundEnergy*> energies(const Positions& x);
+
+  double seconds_building() const { return seconds_building_; }  ///< total time of building collisions
+
+  int count() const;            ///< contacts at the state last evaluated
+  double smallest_gap() const;  ///< there [m]; +∞ without a contact
+
+ private:
+  struct LinearMotion {
+    Positions begin, end;
+  };
+  void build_candidates(const Positions& x0, const Positions& x1);
+  void build_collisions(const Positions& x);
+  void lag_friction();
+  /// Stores the tangential displacements at x and makes x their reference. With `obstacle_motion` they are
+  /// advected and not limited.
+  void store_tangential_displacements(const Positions& x, const Positions* obstacle_motion = nullptr);
+
+  const BoundContacts& models_;
+  std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
+  std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
+  std::shared_ptr<const LinearMotion> candidates_motion_, collisions_motion_;  // that each was built for
+  std::vector<std::unique_ptr<FrictionEnergy>> friction_;  // of each model, or null; empty before a step
+  std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
+  Positions state_, reference_;
+  bool friction_enabled_ = true;
+  bool advected_ = false;
+  double seconds_building_ = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/kernel/model/energy.h"
+#include "core/kernel/model/level.h"
+#include "core/kernel/model/material.h"
+
+namespace drape {
+
+/// Two primitives that intersect, named for messages.
+struct Intersection {
+  std::string first, second;                        ///< "cloth triangle 12", "ball: sphere"
+  Eigen::Vector3d where = Eigen::Vector3d::Zero();  ///< a point near the intersection [m]
+};
+
+/// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
+std::string to_string(const Intersection& intersection);
+
+/// Identifies a contact of one contact model from one state to the next.
+using ContactKey = std::array<int, 5>;
+
+/// Tangential displacement u of a contact's two sides since the contact began to stick (Li et al. 2020).
+struct TangentialDisplacement {
+  ContactKey contact;
+  Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
+};
+
+/// Ascending by contact, without duplicates.
+using TangentialDisplacements = std::vector<TangentialDisplacement>;
+
+/// The lagged friction potential D of one set of collisions (Li et al. 2020, eq. 15).
+class FrictionEnergy : public BoundEnergy {
+ public:
+  /// Appends each contact's tangential displacement at x, in any order. Its length is limited to the friction
+  /// smoothing distance: the next step then starts with the same friction forces.
+  virtual void append_tangential_displacements(const Positions& x,
+                                               TangentialDisplacements& displacements) const = 0;
+  /// Appends the same without the limit, relative to obstacles that have moved: contacts with obstacles
+  /// subtract the tangential part of `obstacle_motion` (n×3) [m], the obstacle's motion at each vertex.
+  virtual void append_advected_tangential_displacements(const Positions& x, const Positions& obstacle_motion,
+                                                        TangentialDisplacements& displacements) const = 0;
+};
+
+/// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
+/// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
+/// columns without a cloth vertex are -1.
+class Collisions : public BoundEnergy {
+ public:
+  virtual int contact_count() const = 0;
+  virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
+
+  /// The friction potential with the normal forces and tangents of this state. Displacements are measured
+  /// from `reference` (n×3), and `displacements` are added to those of the contacts that they name. Null
+  /// without friction.
+  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
+                                                   const TangentialDisplacements& displacements) const = 0;
+};
+
+/// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them.
+class CollisionCandidates {
+ public:
+  virtual ~CollisionCandidates() = default;
+  /// The largest collision-free step, by continuous collision detection. Every gap keeps a fraction of its
+  /// length.
+  virtual StepLimit max_step() const = 0;
+  /// The collisions at x, a state of this motion no farther than max_step.
+  virtual std::unique_ptr<Collisions> build_collisions(const Positions& x) const = 0;
+};
+
+/// A contact model bound to one level and its obstacles. Immutable.
+class BoundContact {
+ public:
+  virtual ~BoundContact() = default;
+  /// Runs the broad phase for the motion from x0 to x1 (n×3, copied). x0 must be free of intersections.
+  virtual std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
+                                                                const Positions& x1) const = 0;
+  /// Pairs of primitives that intersect or touch at x. Meshes are tested with exact predicates.
+  virtual std::vector<Intersection> intersections(const Positions& x) const = 0;
+  /// The obstacles as meshes, for drawing.
+  virtual std::vector<TriangleMesh> obstacles() const = 0;
+};
+
+/// Optional interface of a BoundContact whose obstacles move between load states (kinematic obstacles of
+/// IPC).
+class KinematicObstacles {
+ public:
+  virtual ~KinematicObstacles() = default;
+  /// The largest collision-free step of the obstacles from their placement in `before` to that in this, with
+  /// the cloth fixed at x. `before` must be of the same contact model and level. Obstacle parameters are
+  /// interpolated linearly, so obstacles rotate along arcs. Obstacles whose parameters are interpolated by
+  /// the returned fraction, or have not changed, get a fraction of 1. Throws std::runtime_error naming an
+  /// obstacle whose topology changed.
+  virtual StepLimit max_step(const BoundContact& before, const Positions& x) const = 0;
+  /// Advects the rows of `reference` (n×3) [m]: each vertex in frictional contact with obstacles at x is
+  /// displaced by their motion since `before`.
+  virtual void advect(const BoundContact& before, const Positions& x, Positions& reference) const = 0;
+};
+
+/// The contacts of one level. Models of the level under different loads may share them.
+using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
+
+/// A kind of contact, made by name from its parameters.
+class ContactModel {
+ public:
+  virtual ~ContactModel() = default;
+  /// Null when there is nothing to collide with: no contact code runs then.
+  virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,228 @@
+#include "core/kernel/model/level_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/kernel/linear_algebra/parallel.h"
+
+namespace drape {
+
+namespace {
+
+constexpr int rows_at_once = 8192;
+
+double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < g.rows(); ++i)
+    if (flags[i] == flag) sum += g.row(i).squaredNorm();
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
+
+LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
+                       std::vector<DirichletVertex> dirichlet,
+                       const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before)
+    : level_(&level),
+      material_(material),
+      dirichlet_(std::move(dirichlet)),
+      fixed_(level.vertex_count(), 0),
+      masses_(material.area_density() * level.vertex_area) {
+  for (const DirichletVertex& d : dirichlet_) fixed_[d.vertex] = 1;
+  bind_energies(energies, before);
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external && !term.is_linear()) load_is_constant_ = false;
+  add_up_linear_energies();
+  bind_contacts(contacts, before);
+  if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+}
+
+void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before) {
+  std::vector<Stencils> stencils;
+  for (std::size_t t = 0; t < energies.size(); ++t) {
+    const NamedEnergy& e = energies[t];
+    const Term* old = before ? &before->terms_.at(t) : nullptr;
+    if (old && old->kind == e.energy && before->material_ == material_) {
+      terms_.push_back(*old);
+    } else {
+      Term term{e.name, e.energy->role(), e.energy, e.energy->bind(*level_, material_), nullptr};
+      Stencils own = term.energy->stencils();
+      if (old && own != old->energy->stencils())
+        throw std::runtime_error("energy " + e.name +
+                                 " changes its stencils with a parameter that a schedule changes; "
+                                 "stencils must stay the same");
+      if (old) term.slots = old->slots;
+      stencils.push_back(std::move(own));
+      terms_.push_back(std::move(term));
+    }
+    if (terms_.back().role == EnergyRole::limit) limits_.push_back(terms_.back().energy.get());
+  }
+  if (before) {
+    pattern_ = before->pattern_;
+    return;
+  }
+  pattern_ = BlockPattern::of(level_->vertex_count(), stencils);
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (stencils[t].rows() > 0 && terms_[t].role != EnergyRole::limit)
+      terms_[t].slots = std::make_shared<BlockSlots>(*pattern_, stencils[t]);
+}
+
+void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts,
+                               const LevelModel* before) {
+  contact_kinds_ = contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const bool same = before && before->contact_kinds_.at(k) == contacts[k] && before->material_ == material_;
+    bound_.push_back(same ? before->bound_[k] : contacts[k]->bind(*level_, material_));
+    if (bound_.back()) contacts_.push_back(bound_.back());
+  }
+}
+
+void LevelModel::take_contacts(const LevelModel& other) {
+  contact_kinds_ = other.contact_kinds_;
+  bound_ = other.bound_;
+  contacts_ = other.contacts_;
+}
+
+void LevelModel::add_up_linear_energies() {
+  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
+  for (const Term& term : terms_)
+    if (term.is_linear()) {
+      auto sum = std::find_if(linear_.begin(), linear_.end(),
+                              [&](const LinearSum& s) { return s.role == term.role; });
+      if (sum == linear_.end()) sum = linear_.insert(sum, {term.role, origin, 0});
+      sum->at_origin += term.energy->add_gradient(origin, sum->gradient);
+      if (!std::isfinite(sum->at_origin) || !sum->gradient.allFinite())
+        throw std::runtime_error(
+            "energy " + term.name +
+            ": its forces are too large to be computed with; are its parameters and the density in SI units? "
+            "(An energy without elements is linear, and must be finite where all vertices are at the "
+            "origin.)");
+    }
+}
+
+double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {
+  double value = 0;
+  bool first = true;
+  for (const LinearSum& sum : linear_) {
+    if (!roles.has(sum.role)) continue;
+    const auto add = [&](int begin, int end) {
+      const auto of = sum.gradient.middleRows(begin, end - begin);
+      if (g && first)
+        g->middleRows(begin, end - begin) = of;
+      else if (g)
+        g->middleRows(begin, end - begin) += of;
+      return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
+    };
+    value += sum.at_origin + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+    first = false;
+  }
+  if (g && first) g->setZero();
+  return value;
+}
+
+double LevelModel::value(const Positions& x, Roles roles) const {
+  double sum = linear_value(x, nullptr, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const {
+  g.resize(x.rows(), 3);
+  double sum = linear_value(x, &g, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->add_gradient(x, g);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles) const {
+  matrix.set_zero();
+  add_hessian(x, projection, matrix, roles, 1);
+}
+
+void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                             double factor) const {
+  for (const Term& term : terms_)
+    if (term.slots && roles.has(term.role)) {
+      BlockSink sink(*term.slots, matrix, factor);
+      term.energy->add_hessian(x, projection, sink);
+    }
+}
+
+std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
+  std::optional<double> common = 1;
+  bool first = true;
+  for (const Term& term : terms_) {
+    if (term.role != role) continue;
+    const std::optional<double> own = term.kind->midpoint_factor();
+    if (!own || (!first && own != common)) return std::nullopt;
+    common = own;
+    first = false;
+  }
+  return common;
+}
+
+std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
+  std::vector<std::pair<std::string, double>> parts;
+  for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
+  if (!contacts_.empty()) {
+    double barrier = 0;
+    for (const auto& contact : contacts_)
+      barrier += contact->build_candidates(x, x)->build_collisions(x)->value(x);
+    parts.emplace_back("contact", barrier);
+  }
+  return parts;
+}
+
+double LevelModel::load_norm(const Positions& x) const {
+  return load_is_constant_ ? constant_load_norm_ : external_force_norm(x);
+}
+
+double LevelModel::external_force_norm(const Positions& x) const {
+  double sum = 0;
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external) {
+      Positions g = Positions::Zero(x.rows(), 3);
+      term.energy->add_gradient(x, g);
+      sum += free_norm(g, fixed_);
+    }
+  return sum;
+}
+
+namespace {
+
+/// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
+constexpr double min_weight_fraction = 1e-3;
+
+}  // namespace
+
+double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
+  if (const double load = load_norm(x); load > 0) return load;
+  double weight = 0;
+  for (int i = 0; i < masses_.size(); ++i)
+    if (!fixed_[i]) weight += masses_[i] * masses_[i];
+  constexpr double gravity = 9.81;  // [m/s²]
+  return std::max({norm_where(gradient, fixed_, 1), min_weight_fraction * gravity * std::sqrt(weight),
+                   std::numeric_limits<double>::min()});
+}
+
+double LevelModel::force_residual(const Positions& x) const {
+  Positions g;
+  gradient(x, g);
+  for (const BoundEnergy* limit : limits_) limit->add_gradient(x, g);
+  for (const auto& contact : contacts_)
+    contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
+  return free_norm(g, fixed_) / residual_scale(x, g);
+}
+
+}  // namespace drape

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/kernel/linear_algebra/prolongation_matrix.h"
+#include "core/kernel/model/level.h"
+
+namespace drape {
+
+/// A finer mesh and its prolongation. The first n_c fine vertices are the children of the coarse vertices, in
+/// order; then one vertex for each edge follows, in the order of Topology::edges.
+struct Refinement {
+  Triangles triangles;         ///< of the finer mesh; triangle t becomes 4t … 4t + 3
+  ProlongationMatrix weights;  ///< P_{l→l+1}
+};
+
+/// A 1→4 subdivision. It depends only on the level's rest shape and connectivity.
+class Refiner {
+ public:
+  virtual ~Refiner() = default;
+  virtual Refinement refine(const Level& coarse) const = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,46 @@
+#include "core/kernel/model/weak_barrier.h"
+
+#include <cmath>
+
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/model/smallest_gap.h"
+
+namespace drape {
+
+namespace {
+
+/// Gaps below this fraction of d̂ indicate a weak barrier.
+constexpr double weak_gap_fraction = 1e-3;
+/// Stiffness over the load's pressure: a barrier with a ratio of 1 leaves a gap of d̂ / 2, with 10 of 5 d̂ / 6
+/// (core/kernel/contact/stiffness.h).
+constexpr double suitable_ratio = 10;
+
+/// Root mean square of the external forces per area over the free vertices [Pa].
+double load_pressure(const LevelModel& model, const Positions& x) {
+  double square = 0;
+  for (int i = 0; i < model.level().vertex_count(); ++i)
+    if (!model.fixed()[i]) square += std::pow(model.level().vertex_area[i], 2);
+  return square > 0 ? model.load_norm(x) / std::sqrt(square) : 0;
+}
+
+}  // namespace
+
+std::string weak_barrier(const LevelModel& model, const Positions& x) {
+  for (const auto& contact : model.contacts()) {
+    const auto* provider = dynamic_cast<const SmallestGapProvider*>(contact.get());
+    if (!provider) continue;
+    const SmallestGap smallest = provider->smallest_gap(x);
+    if (!(smallest.gap < weak_gap_fraction * smallest.dhat)) continue;
+    const double pressure = load_pressure(model, x);
+    if (smallest.stiffness >= pressure) continue;
+    return "the barrier is too weak for the load: its stiffness is " + three_digits(smallest.stiffness) +
+           " Pa but the load's pressure is " + three_digits(pressure) + " Pa, and the gap between " +
+           smallest.between + " is " + three_digits(smallest.gap) + " m, " +
+           three_digits(smallest.gap / smallest.dhat) +
+           " of the contact's dhat; set its stiffness to about " + three_digits(suitable_ratio * pressure) +
+           " (null chooses it from the cloth's weight)";
+  }
+  return "";
+}
+
+}  // namespace drape

@@ -1,0 +1,118 @@
+#include "core/kernel/plugin/config_node.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdio>
+#include <set>
+
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+namespace {
+
+ConfigNode scalar_node(std::string text, bool quoted) {
+  ConfigNode node;
+  node.kind = ConfigNode::Kind::scalar;
+  node.scalar = std::move(text);
+  node.quoted = quoted;
+  return node;
+}
+
+/// Whether every YAML reader reads the unquoted text as a text.
+bool plainly_text(const std::string& text) {
+  static const std::set<std::string> taken = {"true", "false", "null", "yes", "no", "on", "off"};
+  std::string lower = text;
+  for (char& c : lower) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const auto harmless = [](unsigned char c) {
+    return std::isalnum(c) || c >= 0x80 || c == '_' || c == '-' || c == '.' || c == '/' || c == ' ';
+  };
+  const auto begins = [](unsigned char c) { return std::isalpha(c) || c == '_' || c == '/'; };
+  return !text.empty() && begins(static_cast<unsigned char>(text[0])) && text.back() != ' ' &&
+         std::all_of(text.begin(), text.end(), harmless) && !taken.count(lower);
+}
+
+/// Whether the text looks like a number or a word and has no YAML syntax in it.
+bool plainly_scalar(const std::string& text) {
+  const auto is_word = [](unsigned char c) { return std::isalnum(c); };
+  const auto harmless = [&](unsigned char c) { return is_word(c) || c == '.' || c == '+' || c == '-'; };
+  return std::any_of(text.begin(), text.end(), is_word) && std::all_of(text.begin(), text.end(), harmless);
+}
+
+std::string in_quotes(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\n') {
+      quoted += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "\\x%02x", static_cast<unsigned>(c));
+      quoted += code;
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string Location::text() const {
+  std::string text = file;
+  for (int number : {line, column}) {
+    if (number <= 0) break;
+    text += (text.empty() ? "" : ":") + std::to_string(number);
+  }
+  return text;
+}
+
+std::string ConfigError::text() const {
+  const std::string place = where.text();
+  return printable(place.empty() ? message : place + ": " + message);
+}
+
+const ConfigNode* ConfigNode::find(const std::string& key) const {
+  for (const auto& [name, value] : entries)
+    if (name == key) return &value;
+  return nullptr;
+}
+
+void ConfigNode::add(const std::string& key, ConfigNode value) {
+  kind = Kind::map;
+  key_locations.push_back(value.where);
+  entries.emplace_back(key, std::move(value));
+}
+
+std::string ConfigNode::one_line() const {
+  std::string text;
+  switch (kind) {
+    case Kind::null:
+      return "null";
+    case Kind::scalar:
+      return plainly_text(scalar) || (!quoted && plainly_scalar(scalar)) ? scalar : in_quotes(scalar);
+    case Kind::list:
+      for (const ConfigNode& item : items) text += (text.empty() ? "" : ", ") + item.one_line();
+      return "[" + text + "]";
+    case Kind::map:
+      for (const auto& [key, value] : entries)
+        text += (text.empty() ? "" : ", ") + of(key).one_line() + ": " + value.one_line();
+      return "{" + text + "}";
+  }
+  return text;
+}
+
+ConfigNode ConfigNode::of(double value) {
+  char text[32];
+  std::string digits(text, std::to_chars(text, text + sizeof text, value).ptr);
+  // YAML 1.1, as in Python, reads "1e-05" as a text and "1.0e-05" as a number.
+  const size_t exponent = digits.find('e');
+  if (exponent != std::string::npos && digits.find('.') == std::string::npos) digits.insert(exponent, ".0");
+  return scalar_node(digits, false);
+}
+
+ConfigNode ConfigNode::of(int value) { return scalar_node(std::to_string(value), false); }
+ConfigNode ConfigNode::of(bool value) { return scalar_node(value ? "true" : "false", false); }
+ConfigNode ConfigNode::of(const std::string& value) { return scalar_node(value, true); }
+
+}  // namespace drape

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/kernel/plugin/registry.h"
+
+namespace drape {
+
+/// The plugin search path: <folder of the running command>/../lib/drape if it exists, then every folder of
+/// the colon-separated DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
+std::vector<std::filesystem::path> plugin_directories();
+
+/// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
+/// with the library's path, for a library that cannot be loaded, is no plugin, is not compatible with this
+/// build (before any of its C++ is called) or repeats a name. Libraries are never unloaded.
+void load_plugins(Registry& registry, const std::vector<std::filesystem::path>& directories);
+
+}  // namespace drape

@@ -1,0 +1,237 @@
+#include "core/kernel/plugin/parameters.h"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+namespace {
+
+using Kind = ConfigNode::Kind;
+
+template <class Number>
+std::optional<Number> parse_all(const std::string& text) {
+  // from_chars knows no plus sign.
+  const size_t skip = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
+  Number value;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + skip, end, value);
+  if (error != std::errc() || rest != end) return std::nullopt;
+  return value;
+}
+
+/// The written value, for "must be …, not …".
+std::string shown(const ConfigNode& node) {
+  switch (node.kind) {
+    case Kind::null:
+      return "empty";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
+    case Kind::scalar:
+      break;
+  }
+  const bool number = !node.quoted && parse_number(node.scalar);
+  const std::string text = excerpt(node.scalar);
+  return number ? text : (node.quoted ? "the text \"" : "\"") + text + "\"";
+}
+
+std::string with_unit(double value, const Parameter& p) {
+  const std::string text = ConfigNode::of(value).scalar;
+  return p.unit.empty() || p.unit == "1" ? text : text + " " + p.unit;
+}
+
+/// What the number must be if it is out of range, else "".
+std::string range_fault(double value, const Parameter& p) {
+  if (!std::isfinite(value)) return "a finite number";
+  if (p.open_minimum && !(value > p.minimum)) return "above " + with_unit(p.minimum, p);
+  if (!p.open_minimum && !(value >= p.minimum)) return "at least " + with_unit(p.minimum, p);
+  if (p.open_maximum && !(value < p.maximum)) return "below " + with_unit(p.maximum, p);
+  if (!p.open_maximum && !(value <= p.maximum)) return "at most " + with_unit(p.maximum, p);
+  return "";
+}
+
+/// What a scalar must be if it is not, else "".
+std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
+  const bool plain = node.kind == Kind::scalar && !node.quoted;
+  if (type == "number" || type == "integer") {
+    if (type == "integer") {
+      const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
+      return value ? range_fault(*value, p) : "an integer";
+    }
+    if (plain && (node.scalar == ".nan" || node.scalar == ".inf" || node.scalar == "-.inf"))
+      return "a finite number";
+    const auto value = plain ? parse_number(node.scalar) : std::nullopt;
+    return value ? range_fault(*value, p) : "a number";
+  }
+  if (type == "boolean")
+    return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
+  if (node.kind != Kind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
+  const bool known =
+      p.choices.empty() || std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
+  return known ? "" : quoted_choice(p.choices);
+}
+
+void check_scalar(const std::string& type, const std::string& label, const ConfigNode& node,
+                  const Parameter& p, ConfigErrors& errors) {
+  const std::string fault = scalar_fault(type, node, p);
+  if (fault.empty()) return;
+  const std::string nearest = node.kind == Kind::scalar ? nearest_word(node.scalar, p.choices) : "";
+  errors.push_back({node.where, label + " must be " + fault + ", not " + shown(node) +
+                                    (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")});
+}
+
+void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
+  const std::string label = "\"" + p.name + "\"";
+  std::string items = p.type.substr(std::string("list of ").size());
+  const std::string type = items.substr(0, items.size() - 1);
+  if (type == "section") items = "maps";
+  if (type == "node") items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
+  const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
+  if (node.kind != Kind::list) {
+    errors.push_back({node.where, label + " must be " + wanted + ", not " + shown(node)});
+  } else if (p.size && int(node.items.size()) != p.size) {
+    errors.push_back(
+        {node.where, label + " must be " + wanted + ", not of " + std::to_string(node.items.size())});
+  } else if (type != "section" && type != "node") {
+    for (size_t i = 0; i < node.items.size(); ++i)
+      check_scalar(type, "item " + std::to_string(i + 1) + " of " + label, node.items[i], p, errors);
+  }
+}
+
+/// Whether the node is valid for `p.read`; if not, appends an error.
+bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
+  const size_t before = errors.size();
+  if (p.nullable && node.kind == Kind::null) return true;
+  if (p.type.starts_with("list of "))
+    check_list(node, p, errors);
+  else if (p.type != "section" && p.type != "node")
+    check_scalar(p.type, "\"" + p.name + "\"", node, p, errors);
+  return errors.size() == before;
+}
+
+/// The map that a section's shorthand stands for. set_path has expanded a shorthand to a map with the word as
+/// `type` if it set another key of the section.
+ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
+  if (p.shorthand_key.empty()) return node;
+  ConfigNode map = node;
+  for (auto& [key, value] : map.entries)
+    if (key == "type") key = p.shorthand_key;
+  if (node.kind != Kind::scalar) return map;
+  map = ConfigNode();
+  map.where = node.where;
+  map.add(p.shorthand_key, node);
+  return map;
+}
+
+/// Path relative to the current folder, as paths on the command line are; for a list, each.
+ConfigNode relative_path(const ConfigNode& node) {
+  ConfigNode path = node;
+  for (ConfigNode& item : path.items) item = relative_path(item);
+  if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
+    path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
+  return path;
+}
+
+/// The same as an absolute path.
+ConfigNode absolute_path(ConfigNode path) {
+  for (ConfigNode& item : path.items) item = absolute_path(item);
+  if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
+  return path;
+}
+
+}  // namespace
+
+std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
+std::optional<int> parse_integer(const std::string& text) { return parse_all<int>(text); }
+
+namespace parameter_detail {
+
+void convert(const ConfigNode& node, double& value) { value = parse_number(node.scalar).value(); }
+void convert(const ConfigNode& node, int& value) { value = parse_integer(node.scalar).value(); }
+void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
+void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
+
+void check_former_names(const Schema& schema) {
+  for (const Parameter& p : schema.parameters)
+    for (const Parameter& other : schema.parameters)
+      if (std::find(p.former_names.begin(), p.former_names.end(), other.name) != p.former_names.end())
+        throw std::runtime_error("\"" + other.name + "\" is declared, and as a former name of \"" + p.name +
+                                 "\"");
+}
+
+}  // namespace parameter_detail
+
+namespace {
+
+/// `"old" in newton is now called "new"` for a key of an earlier version, else "". `renamed` receives the
+/// parameter that has the new name, if it is of the same section.
+std::string renaming_of(const std::string& key, const std::string& in, const Schema& schema,
+                        const Parameter** renamed) {
+  for (const Parameter& p : schema.parameters)
+    if (std::find(p.former_names.begin(), p.former_names.end(), key) != p.former_names.end()) {
+      *renamed = &p;
+      return "\"" + key + "\"" + in + " is now called \"" + p.name + "\"";
+    }
+  const auto moved = schema.moved.find(key);
+  return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
+}
+
+}  // namespace
+
+void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
+  const std::string in = name.empty() ? "" : " in " + name;
+  if (map.kind != Kind::map && map.kind != Kind::null) {
+    const std::string label = name.empty() ? "this" : "\"" + name + "\"";
+    errors.push_back({map.where, label + " must be a map of keys and values, not " + shown(map)});
+    return;
+  }
+  std::vector<std::string> known;
+  for (const Parameter& p : parameters) known.push_back(p.name);
+  std::map<std::string, size_t> first_of;
+  std::set<const Parameter*> renamed;  // written under a former name
+  for (size_t i = 0; i < map.entries.size(); ++i) {
+    const auto& [key, node] = map.entries[i];
+    const size_t first = first_of.emplace(key, i).first->second;
+    const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
+    if (first != i) {
+      errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
+                                                  "; it is first set at " + map.key_locations[first].text()});
+    } else if (index == known.size()) {
+      const Parameter* parameter = nullptr;
+      if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
+        errors.push_back({map.key_locations[i], renaming});
+        renamed.insert(parameter);
+        continue;
+      }
+      const std::string nearest = nearest_word(key, known);
+      const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
+                               : known.empty()  ? "; it takes no keys"
+                                                : "; known keys are " + joined(known);
+      errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
+    } else if (check(node, parameters[index], errors)) {
+      parameters[index].read(
+          object, parameters[index].path ? relative_path(node) : expand_shorthand(node, parameters[index]),
+          errors);
+    }
+  }
+  for (const Parameter& p : parameters)
+    if (p.required && !map.find(p.name) && !renamed.count(&p))
+      errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
+}
+
+ConfigNode Schema::write(const void* object) const {
+  ConfigNode map;
+  map.kind = Kind::map;
+  for (const Parameter& p : parameters)
+    map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
+  return map;
+}
+
+}  // namespace drape

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/kernel/plugin/config_node.h"
+
+namespace drape {
+
+/// One parameter, declared once. Parsing, validation, `drape describe`, the reference page, the JSON schema
+/// and the saved config derive from it. Its default is the member's value in a default-constructed struct.
+struct Parameter {
+  std::string name;
+  std::vector<std::string> former_names;  ///< refused with a message that gives `name`
+  std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::string description;  ///< one phrase: what it sets
+  std::string unit;         ///< SI; empty or "1" if dimensionless
+  std::string source;       ///< paper and equation, or design note
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool open_minimum = false;  ///< the minimum itself is excluded
+  bool open_maximum = false;
+  int size = 0;  ///< lists: number of items, 0 for any
+  bool required = false;
+  bool nullable = false;             ///< null is allowed and means "none"
+  std::vector<std::string> choices;  ///< text: the allowed words, empty for any
+  std::string plugin_kind;           ///< nodes: the kind of plugin they choose, empty for none
+  bool or_list = false;              ///< a node: a list of nodes is accepted too
+  std::string shorthand_key;         ///< a section: a bare word is read as the value of this key
+  bool path = false;                 ///< text: a file, relative to the config's folder
+
+  // Type-erased access to the member of a struct; `read` receives only validated nodes.
+  std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
+  std::function<ConfigNode(const void* object)> write;
+  std::shared_ptr<const class Schema> section;  ///< type "section" and "list of sections"
+};
+
+/// The parameters of one struct.
+class Schema {
+ public:
+  std::string name;  ///< for messages ("in newton"); may be empty
+  std::vector<Parameter> parameters;
+  std::map<std::string, std::string>
+      moved;  ///< former keys whose parameter is in another section now → its path
+  std::function<std::shared_ptr<void>()> fresh;  ///< a default-constructed struct
+
+  /// Reads a map into `object` (a struct with this schema). Appends an error for every unknown key (with its
+  /// new name or the nearest known one), wrong type, value out of range, missing required and repeated key.
+  void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
+  /// The object as a map with every parameter.
+  ConfigNode write(const void* object) const;
+};
+
+/// Sets properties of the parameter that was just added; calls can be chained.
+class ParameterHandle {
+ public:
+  explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
+  ParameterHandle& description(std::string text) {
+    p_.description = std::move(text);
+    return *this;
+  }
+  /// The parameter's (or section's) name in an earlier version: refused, with a message that gives the new
+  /// one.
+  ParameterHandle& formerly(std::string name) {
+    p_.former_names.push_back(std::move(name));
+    return *this;
+  }
+  ParameterHandle& unit(std::string text) {
+    p_.unit = std::move(text);
+    return *this;
+  }
+  ParameterHandle& source(std::string text) {
+    p_.source = std::move(text);
+    return *this;
+  }
+  ParameterHandle& at_least(double v) {
+    p_.minimum = v;
+    return *this;
+  }
+  ParameterHandle& at_most(double v) {
+    p_.maximum = v;
+    return *this;
+  }
+  ParameterHandle& above(double v) {
+    p_.minimum = v;
+    p_.open_minimum = true;
+    return *this;
+  }
+  ParameterHandle& below(double v) {
+    p_.maximum = v;
+    p_.open_maximum = true;
+    return *this;
+  }
+  ParameterHandle& size(int n) {
+    p_.size = n;
+    return *this;
+  }
+  ParameterHandle& required() {
+    p_.required = true;
+    return *this;
+  }
+  ParameterHandle& choices(std::vector<std::string> words) {
+    p_.choices = std::move(words);
+    return *this;
+  }
+  ParameterHandle& plugin(std::string kind) {
+    p_.plugin_kind = std::move(kind);
+    return *this;
+  }
+  ParameterHandle& or_list() {
+    p_.or_list = true;
+    return *this;
+  }
+  ParameterHandle& shorthand(std::string key) {
+    p_.shorthand_key = std::move(key);
+    return *this;
+  }
+  ParameterHandle& path() {
+    p_.path = true;
+    return *this;
+  }
+
+ private:
+  Parameter& p_;
+};
+
+/// Argument of a parameter struct's `static void declare(Declaration<Self>&)`.
+///
+///     struct NewtonParameters {
+///       double step_size = 0.5;
+///       static void declare(Declaration<NewtonParameters>& d) {
+///         d.add("step_size", &NewtonParameters::step_size).unit("s").above(0).description("…").source("…");
+///       }
+///     };
+///
+/// Members may be double, int, bool, std::string, std::optional of those, std::vector of double, int or
+/// std::string, Eigen::Vector2d/3d, enums with words (`add_choice`), another declared struct
+/// (`add_section`), a vector of one (`add_sections`), or a ConfigNode or a vector of them for a plugin that
+/// is made later (`add_node`).
+template <class Struct>
+class Declaration;
+
+/// The schema that `Struct::declare` declares.
+template <class Struct>
+Schema schema_of(const std::string& name = "");
+
+}  // namespace drape
+
+#include "core/kernel/plugin/parameters_impl.h"

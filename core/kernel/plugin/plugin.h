@@ -1,0 +1,19 @@
+#pragma once
+
+#include "core/kernel/plugin/abi.h"
+#include "core/kernel/plugin/registry.h"
+
+/// Registers a plugin library's entries, once per library:
+///
+///     DRAPE_PLUGIN(registry) {
+///       registry.add<drape::Energy, Gravity>("gravity", "Weight of the cloth.");
+///     }
+///
+/// It exports one C function, `drape_plugin`, whose descriptor is checked before any other call.
+#define DRAPE_PLUGIN(registry)                                                                        \
+  static void drape_register_entries(drape::Registry& registry);                                      \
+  extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {     \
+    static constexpr DrapePluginDescriptor descriptor = DRAPE_ABI_DESCRIPTOR(drape_register_entries); \
+    return &descriptor;                                                                               \
+  }                                                                                                   \
+  static void drape_register_entries(drape::Registry& registry)

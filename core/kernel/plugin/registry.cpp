@@ -1,0 +1,94 @@
+#include "core/kernel/plugin/registry.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+Schema section_schema(const RegistryEntry& entry) {
+  Schema schema = entry.schema;
+  Parameter type;
+  type.name = "type";
+  type.type = "text";
+  type.description = "which " + entry.kind;
+  type.required = true;
+  type.choices = {entry.name};
+  type.read = [](void*, const ConfigNode&, ConfigErrors&) {};
+  type.write = [name = entry.name](const void*) { return ConfigNode::of(name); };
+  schema.parameters.insert(schema.parameters.begin(), type);
+  return schema;
+}
+
+const RegistryEntry* Registry::find(const std::string& kind, const std::string& name) const {
+  for (const auto& entry : entries_)
+    if (entry->kind == kind && entry->name == name) return entry.get();
+  return nullptr;
+}
+
+std::vector<const RegistryEntry*> Registry::of_kind(const std::string& kind) const {
+  std::vector<const RegistryEntry*> found;
+  for (const auto& entry : entries_)
+    if (entry->kind == kind) found.push_back(entry.get());
+  std::sort(found.begin(), found.end(), [](auto* a, auto* b) { return a->name < b->name; });
+  return found;
+}
+
+void Registry::add_entry(std::unique_ptr<RegistryEntry> entry) {
+  if (entry->name.empty())
+    throw std::runtime_error(entry->library + ": registers a " + entry->kind +
+                             " without a name; give it one");
+  if (const RegistryEntry* other = find(entry->kind, entry->name))
+    throw std::runtime_error(entry->kind + " \"" + entry->name + "\" of " + entry->library +
+                             " is already registered by " + other->library +
+                             "; rename it or take one of them out of the search path");
+  entries_.push_back(std::move(entry));
+}
+
+const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                 ConfigErrors& errors) {
+  const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
+  if (!type || type->kind != ConfigNode::Kind::scalar) {
+    errors.push_back({type ? type->where : node.where, "expected the name of a plugin of kind " + kind +
+                                                           ", or a map with its name as \"type\""});
+    return nullptr;
+  }
+  if (const RegistryEntry* entry = registry.find(kind, type->scalar)) return entry;
+  std::vector<std::string> names;
+  for (const RegistryEntry* entry : registry.of_kind(kind)) names.push_back(entry->name);
+  const std::string nearest = nearest_word(type->scalar, names);
+  errors.push_back(
+      {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
+                        (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
+                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names))});
+  return nullptr;
+}
+
+std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
+                                  ConfigErrors& errors, ConfigNode* resolved) {
+  const RegistryEntry* entry = find_plugin(registry, kind, node, errors);
+  if (!entry) return nullptr;
+  ConfigNode map = node;
+  if (node.kind == ConfigNode::Kind::scalar) {
+    map = ConfigNode();
+    map.where = node.where;
+    map.add("type", node);
+  }
+  const Schema schema = section_schema(*entry);
+  const std::shared_ptr<void> parameters = entry->make_parameters();
+  const size_t before = errors.size();
+  schema.read(parameters.get(), map, errors);
+  if (resolved) *resolved = schema.write(parameters.get());
+  if (errors.size() != before) return nullptr;
+  try {
+    return entry->make(parameters.get());
+  } catch (const std::exception& error) {
+    errors.push_back({node.where, entry->name + ": " + reason_of(error)});
+    return nullptr;
+  }
+}
+
+}  // namespace drape

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include "core/kernel/plugin/parameters.h"
+
+namespace drape {
+
+/// One plugin that experiments choose by name.
+struct RegistryEntry {
+  std::string kind;     ///< "energy", "refiner", "contact", "solver", "metric"
+  std::string name;     ///< as written in YAML, snake_case
+  std::string summary;  ///< one sentence
+  std::string library;  ///< path of its shared library
+  Schema schema;        ///< its parameters
+  /// A default-constructed parameter struct, for `schema` to read into.
+  std::function<std::shared_ptr<void>()> make_parameters;
+  /// Makes the object from such a struct; the pointer is to the kind's interface.
+  std::function<std::shared_ptr<void>(const void* parameters)> make;
+};
+
+/// The schema of a plugin's section in a config: the key `type`, then its parameters.
+Schema section_schema(const RegistryEntry& entry);
+
+/// All plugins. The loader fills it, the experiment reads it.
+class Registry {
+ public:
+  /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name.
+  /// Interface is one of the five of core/model. Throws std::runtime_error on a repeated name, with
+  /// the paths of both libraries.
+  template <class Interface, class Implementation>
+  void add(const std::string& name, const std::string& summary);
+
+  const RegistryEntry* find(const std::string& kind, const std::string& name) const;
+  std::vector<const RegistryEntry*> of_kind(const std::string& kind) const;
+  const std::vector<std::unique_ptr<RegistryEntry>>& entries() const { return entries_; }
+
+  /// The library that is being loaded; set by the loader.
+  std::string current_library;
+
+ private:
+  void add_entry(std::unique_ptr<RegistryEntry> entry);
+  std::vector<std::unique_ptr<RegistryEntry>> entries_;
+};
+
+}  // namespace drape
+
+#include "core/kernel/plugin/registry_impl.h"

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/model/level_model.h"
+#include "core/kernel/model/position_penalty.h"
+
+namespace drape {
+
+/// Moves the Dirichlet vertices of a level to their targets (supplement, section 4).
+///
+/// Vertices that a filtered move does not bring to their targets are released, and a penalty
+/// κ_B/2 m_k ‖x_k − x̃_k‖² pulls them. κ_B doubles while that reduces the distance. Once all targets are
+/// reached the vertices are fixed and the penalty is dropped.
+class DirichletEnforcer {
+ public:
+  explicit DirichletEnforcer(const LevelModel& model) : model_(model) { fixed_ = model.fixed(); }
+
+  /// Everything that does not follow from the model.
+  struct State {
+    std::vector<int> unsatisfied;
+    double stiffness = 0, best = 0;
+    int idle = 0;
+    bool infeasible = false, released = false;
+    std::string blocked_by;
+  };
+  State state() const {
+    return {unsatisfied_, stiffness_, best_, idle_, infeasible_, penalty_ != nullptr, blocked_by_};
+  }
+  void restore(const State& state);
+
+  /// Starts over at x: the model has new targets, or a new level begins.
+  void begin(const Positions& x);
+  /// n×3 [m]: from x to the targets for vertices that are not there, zero elsewhere.
+  Positions displacement_to_targets(const Positions& x) const;
+  bool active() const { return !unsatisfied_.empty() && !infeasible_; }
+  /// Whether some targets were found to be out of reach. Their vertices stay fixed where they are.
+  bool infeasible() const { return infeasible_; }
+
+  /// Records that x has been set to all targets: fixes all Dirichlet vertices and drops the penalty.
+  void set_satisfied();
+  /// Releases the unsatisfied vertices and adds the penalty; `blocked_by` names what stopped the filtered
+  /// move, and may be empty.
+  void begin_penalty(const std::string& blocked_by);
+  /// Doubles the penalty. Returns false, with the vertices fixed where they are, once doublings have long
+  /// stopped reducing the distance.
+  bool increase_penalty(const Positions& x, const std::string& blocked_by);
+
+  /// One flag a vertex: 1 where it is fixed now.
+  const std::vector<char>& fixed() const { return fixed_; }
+  /// The penalty; null where there is none.
+  const BoundEnergy* penalty() const { return penalty_.get(); }
+  /// Largest distance of a Dirichlet vertex from its target [m].
+  double max_violation(const Positions& x) const;
+  /// "pin 0 stopped 0.012 m short of its target (vertex 7), blocked by …": each pin's farthest vertex.
+  std::string message(const Positions& x) const;
+
+ private:
+  void release();
+  double violation(const Positions& x, int unsatisfied) const;
+  void make_penalty();
+  double membrane_stiffness() const;  // [N/m]
+  double smallest_mass() const;       // of the unsatisfied vertices [kg]
+  double patch_width() const;         // of the cloth that one such vertex stands for [m]
+
+  const LevelModel& model_;
+  std::vector<char> fixed_;
+  std::vector<int> unsatisfied_;  // indices into model_.dirichlet()
+  std::unique_ptr<PositionPenalty> penalty_;
+  double stiffness_ = 0;  // κ_B [1/s²]
+  double best_ = 0;       // violation when a doubling last helped [m]
+  int idle_ = 0;          // doublings since then
+  bool infeasible_ = false;
+  std::string blocked_by_;
+};
+
+}  // namespace drape

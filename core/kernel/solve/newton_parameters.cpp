@@ -1,0 +1,88 @@
+#include "core/kernel/solve/newton_parameters.h"
+
+#include "core/kernel/plugin/bounds.h"
+
+namespace drape {
+
+void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
+  d.add_choice("form", &NewtonParameters::form,
+               {{"quasistatic", NewtonForm::quasistatic}, {"static", NewtonForm::statics}})
+      .description("damped gradient flow in implicit steps of h, or one minimisation (h infinite)")
+      .source("PCS section 4; supplement, Figure 4");
+  d.add("step_size", &NewtonParameters::step_size)
+      .unit("s")
+      .at_least(bounds::smallest_time_step)
+      .at_most(bounds::largest_time_step)
+      .description("h of the first implicit step; the static form uses it only for the decrement")
+      .source("PCS section 4");
+  d.add("step_growth", &NewtonParameters::step_growth)
+      .at_least(1)
+      .at_most(1e3)
+      .description("factor on h after a full step; a step cut below a quarter divides h by it. 1 keeps h")
+      .source("departure from the paper");
+  d.add("step_size_limit", &NewtonParameters::step_size_limit)
+      .unit("s")
+      .at_least(bounds::smallest_time_step)
+      .at_most(bounds::largest_time_step)
+      .description("upper bound of h");
+  d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
+      .at_least(1)
+      .at_most(1000)
+      .description("maximum Newton iterations of an implicit step")
+      .source("PCS section 4");
+  d.add("max_steps", &NewtonParameters::max_steps)
+      .at_least(1)
+      .at_most(1e9)
+      .description("maximum implicit steps of a level, or of each increment of a schedule");
+  d.add("force_tolerance", &NewtonParameters::force_tolerance)
+      .above(0)
+      .at_most(1e12)
+      .description(
+          "a level has converged when the net force on its free vertices is below this fraction of the load")
+      .source("docs/method.md section 2");
+  d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
+      .unit("m/s")
+      .at_least(0)
+      .at_most(1e9)
+      .description(
+          "also required of the largest of the last three decrements; 0 disables it. The decrement is "
+          "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
+      .source("Li et al. 2021 (C-IPC)");
+  d.add("early_refinement_tolerance", &NewtonParameters::early_refinement_tolerance)
+      .formerly("refine_at")
+      .at_least(0)
+      .at_most(1e12)
+      .description(
+          "refine a level as soon as its force residual falls below this; 0 waits for convergence. Applies "
+          "to levels whose state starts the next one, and not under a schedule")
+      .source("PCS section 4: a level may be refined before it has converged");
+  d.add("early_refinement_ratio", &NewtonParameters::early_refinement_ratio)
+      .formerly("refine_ratio")
+      .at_least(0)
+      .at_most(1e3)
+      .description(
+          "refine a level as soon as its force residual falls below this fraction of the residual that its "
+          "prolonged state has on the next level; 0 waits for convergence. Applies to levels whose state "
+          "starts the next one, and not under a schedule")
+      .source("nested iteration: Hackbusch 1985, chapter 5; a departure from the paper");
+  d.add_choice("projection", &NewtonParameters::projection,
+               {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
+      .description("treatment of negative eigenvalues of an element's Hessian")
+      .source("Teran et al. 2005; Chen et al. 2024 for absolute");
+  d.add_choice("psd_blend", &NewtonParameters::psd_blend,
+               {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}})
+      .formerly("projection_share")
+      .description(
+          "fraction of the projection in the matrix: full (projected Newton), or the smallest of seven "
+          "fractions for which the matrix is positive definite, which approaches the exact Hessian near an "
+          "equilibrium")
+      .source("departure from the paper");
+  d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval)
+      .formerly("refresh")
+      .at_least(1)
+      .at_most(1e6)
+      .description("iterations that share one Hessian and its factor")
+      .source("departure from the paper");
+}
+
+}  // namespace drape
