@@ -8,7 +8,9 @@ function(drape_add_plugin name)
   endif()
   add_library(${name} MODULE ${plugin_SOURCES})
   target_link_libraries(${name} PRIVATE drape::drape)
-  set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX)
+  # A plugin exports its one C function, so that two plugins may use one name for different things.
+  set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX
+                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   # A missing symbol shows here, not when loading; a sanitizer's own are in the program alone.
   string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
   if(NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" MATCHES "-fsanitize")

@@ -1,4 +1,4 @@
-#include "proxy_objective.h"
+#include "plugins/solver/pcs/proxy_objective.h"
 
 #include <algorithm>
 #include <utility>

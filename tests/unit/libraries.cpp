@@ -1,0 +1,85 @@
+// What the built libraries need and export, as the dynamic linker sees it.
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/folders.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string output_of(const std::string& command) {
+  std::string output;
+  FILE* pipe = popen(command.c_str(), "r");
+  REQUIRE(pipe != nullptr);
+  std::array<char, 4096> buffer;
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    output.append(buffer.data(), count);
+  REQUIRE(pclose(pipe) == 0);
+  return output;
+}
+
+/// The libraries that a library names as needed, without version and path: "libdrape.so".
+std::set<std::string> needed_by(const fs::path& library) {
+  std::istringstream lines(output_of("readelf -d -W '" + library.string() + "'"));
+  std::set<std::string> needed;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("(NEEDED)") == std::string::npos) continue;
+    const std::size_t open = line.find('[') + 1, end = line.find(".so", open);
+    needed.insert(line.substr(open, end - open) + ".so");
+  }
+  return needed;
+}
+
+/// Names of the symbols that a library defines for others (`nm --defined-only`) or takes from others.
+std::vector<std::string> symbols_of(const fs::path& library, const std::string& which) {
+  std::istringstream lines(output_of("nm -D -j " + which + " '" + library.string() + "'"));
+  std::vector<std::string> names;
+  for (std::string line; std::getline(lines, line);)
+    if (!line.empty()) names.push_back(line);
+  return names;
+}
+
+fs::path library(const std::string& name) {
+  return fs::path(folders::commands()).parent_path() / "lib" / name;
+}
+
+}  // namespace
+
+TEST_CASE("libdrape needs no YAML, picture, socket or JSON") {
+  const std::set<std::string> needed = needed_by(library("libdrape.so"));
+  CHECK(needed.count("libcholmod.so") == 1);
+  for (const char* absent : {"libyaml-cpp.so", "libOSMesa.so", "libpng16.so", "libcpp-httplib.so",
+                             "libssl.so", "libdrape_app.so"}) {
+    CAPTURE(absent);
+    CHECK(needed.count(absent) == 0);
+  }
+  for (const char* which : {"--defined-only", "--undefined-only"})
+    for (const std::string& symbol : symbols_of(library("libdrape.so"), which)) {
+      CAPTURE(symbol);
+      CHECK(symbol.find("nlohmann") == std::string::npos);
+      CHECK(symbol.find("YAML") == std::string::npos);
+    }
+  CHECK(needed_by(library("libdrape_app.so")).count("libyaml-cpp.so") == 1);
+}
+
+TEST_CASE("a plugin needs the kernel, not the application, and exports one function") {
+  int plugins = 0;
+  for (const auto& entry : fs::directory_iterator(folders::plugins())) {
+    if (entry.path().extension() != ".so") continue;
+    ++plugins;
+    CAPTURE(entry.path());
+    const std::set<std::string> needed = needed_by(entry.path());
+    CHECK(needed.count("libdrape.so") == 1);
+    CHECK(needed.count("libdrape_app.so") == 0);
+    CHECK(symbols_of(entry.path(), "--defined-only") == std::vector<std::string>{"drape_plugin"});
+  }
+  CHECK(plugins > 20);
+}
