@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "core/app/view/embedded.h"
 #include "core/app/view/view_blocks.h"
 
 namespace drape {
