@@ -363,7 +363,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
         REQUIRE(whole.states.size() > 4);
         int stored_factors = 0;
         for (const NewtonState& state : whole.states) {
-          stored_factors += !state.factor_values.empty();
+          stored_factors += !state.step.factor.values.empty();
           PlainObjective again(model);
           Silent rest;
           const LevelResult r = minimise(again, {}, p, {Stopwatch(), rest, false, {}, &state});
