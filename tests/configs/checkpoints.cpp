@@ -540,18 +540,21 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("negative counts", [&](auto& c) { under_way(c).so_far.steps = -1; });
   refused("a Dirichlet vertex out of range",
           [&](auto& c) { under_way(c).dirichlet.unsatisfied = {1 << 20}; });
-  refused("the settings of the step", [&](auto& c) { under_way(c).step_size = std::nan(""); });
-  refused("the settings of the step", [&](auto& c) { under_way(c).psd_blend = -1; });
-  refused("the settings of the step", [&](auto& c) { under_way(c).psd_blend = 7; });
+  refused("the settings of the step",
+          [&](auto& c) { under_way(c).step.controller.step_size = std::nan(""); });
+  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.modification.blend = -1; });
+  refused("the settings of the step", [&](auto& c) { under_way(c).step.factor.modification.blend = 7; });
   refused("the response to an increment",
-          [&](auto& c) { under_way(c).response.predicted = Positions::Zero(1, 3); });
+          [&](auto& c) { under_way(c).load_stepper.response.predicted = Positions::Zero(1, 3); });
   refused("the contacts: ", [&](auto& c) { under_way(c).contacts.reference.resize(0, 3); });
   refused("the contacts' tangential displacements",
           [&](auto& c) { under_way(c).contacts.tangential_displacements.clear(); });
-  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.extra = {{{0, 1 << 20}}, {0}}; });
-  refused("the matrix's pattern", [&](auto& c) { under_way(c).pattern.extra = {{{0, 1}}, {}}; });
-  refused("the factor's ordering", [&](auto& c) { under_way(c).analysis.ordering.at(0) = -1; });
-  refused("the factor's ordering", [&](auto& c) { under_way(c).analysis.fixed.pop_back(); });
+  refused("the matrix's pattern", [&](auto& c) {
+    under_way(c).step.factor.pattern.extra = {{{0, 1 << 20}}, {0}};
+  });
+  refused("the matrix's pattern", [&](auto& c) { under_way(c).step.factor.pattern.extra = {{{0, 1}}, {}}; });
+  refused("the factor's ordering", [&](auto& c) { under_way(c).step.factor.analysis.ordering.at(0) = -1; });
+  refused("the factor's ordering", [&](auto& c) { under_way(c).step.factor.analysis.fixed.pop_back(); });
   refused("results.json as it was", [](auto& c) { c.recorder.results = "{"; });
   refused("results.json as it was, of the method under way", [](auto& c) { c.recorder.method = "x"; });
   refused("a level's result", [](auto& c) { c.recorder.states = {{"pcs", 7, Positions()}}; });

@@ -29,11 +29,11 @@ Checkpoint small() {
   c.state.finished = {coarse};
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = Positions::Ones(4, 3);
-  s.limited_by = "ball";
+  s.iterate.limited_by = "ball";
   s.contacts.tangential_displacements = {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}};
-  s.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
-  s.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  s.factor_values = {1, 2, 3};
+  s.step.factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
+  s.step.factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
+  s.step.factor.values = {1, 2, 3};
   c.own_start = Positions::Ones(4, 3);
   c.recorder.results = "{}";
   return c;

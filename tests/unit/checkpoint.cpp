@@ -36,23 +36,28 @@ Checkpoint full() {
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = Positions::Random(9, 3);
   s.so_far.force_residual = std::nan("");
-  s.decrements = {1, 2, 3};
-  s.limited_by = "ball";
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}};
+  s.iterate = {2, "ball"};
+  s.step.implicit_step.max_iterations = 30;
+  s.step.controller = {0.25, -4, true};
+  s.step.line_search.step_length = 0.125;
   s.switched_to_plain = true;
   s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
-  s.increment_start = {4, 5, 6};
-  s.idle = {3, -0.5, 1e-6};
-  s.initial_centroid = {7, 8, 9};
+  s.load_stepper = {{4, 5, 6}, {Positions::Random(9, 3), Positions::Random(9, 3), 0.5}, 2};
   s.so_far.load_stepping = {3, {0.5, 0.25}};
   s.contacts = {Positions::Random(9, 3),
                 {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
                 Positions::Random(9, 3),
                 Positions::Random(9, 3),
                 2};
-  s.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
-  s.pattern.smooth_only = false;
-  s.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
-  s.factor_values = {1, 2, 3};
+  FactorCache::State& factor = s.step.factor;
+  factor.modification.blend = 3;
+  factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
+  factor.pattern.smooth_only = false;
+  factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
+  factor.age = 1;
+  factor.shift = 16;
+  factor.values = {1, 2, 3};
   c.first_level = 1;
   c.own_start = Positions::Random(4, 3);
   c.recorder.results = "{}";
@@ -114,16 +119,32 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(c.methods == std::vector<std::string>{"pcs", "newton"});
   CHECK(c.state.finished.at(0).x == full().state.finished.at(0).x);
   CHECK(c.state.finished.at(0).seconds_by_phase.at("solve") == 0.5);
-  CHECK(c.state.under_way.value().pattern.extra.blocks.at(1) == std::pair(2, 7));
-  CHECK(std::isnan(c.state.under_way->so_far.force_residual));
-  CHECK(c.state.under_way->dirichlet.blocked_by == "post");
-  CHECK(c.state.under_way->idle.steps == 3);
-  CHECK(c.state.under_way->idle.energy == -0.5);
-  CHECK(c.state.under_way->idle.residual == 1e-6);
-  CHECK(c.state.under_way->contacts.tangential_displacements.at(0).at(0).contact ==
-        ContactKey{1, 2, 3, 4, 0});
-  CHECK(c.state.under_way->contacts.tangential_displacements.at(0).at(0).displacement ==
-        Eigen::Vector3d(1e-5, 0, 2e-5));
+  const NewtonState& s = c.state.under_way.value();
+  CHECK(std::isnan(s.so_far.force_residual));
+  CHECK(s.iterate.residual_scale == 2);
+  CHECK(s.iterate.limited_by == "ball");
+  CHECK(s.step.implicit_step.max_iterations == 30);
+  CHECK(s.step.controller.step_size == 0.25);
+  CHECK(s.step.controller.stall_count == -4);
+  CHECK(s.step.controller.backed_off);
+  CHECK(s.step.line_search.step_length == 0.125);
+  CHECK(s.step.factor.modification.blend == 3);
+  CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
+  CHECK(s.step.factor.age == 1);
+  CHECK(s.step.factor.shift == 16);
+  CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});
+  CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
+  CHECK(s.check.initial_centroid == std::array<double, 3>{7, 8, 9});
+  CHECK(s.check.idle.steps == 3);
+  CHECK(s.check.idle.energy == -0.5);
+  CHECK(s.check.idle.residual == 1e-6);
+  CHECK(s.dirichlet.blocked_by == "post");
+  CHECK(s.load_stepper.start.iterations == 5);
+  CHECK(s.load_stepper.response.fraction == 0.5);
+  CHECK(s.load_stepper.blocked_increments == 2);
+  CHECK(s.contacts.tangential_displacements.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
+  CHECK(s.contacts.tangential_displacements.at(0).at(0).displacement == Eigen::Vector3d(1e-5, 0, 2e-5));
+  CHECK(s.switched_to_plain);
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
   CHECK(c.recorder.steps_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
@@ -150,7 +171,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 11; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 12; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

@@ -63,11 +63,53 @@ void fields(A& a, IdleSteps::State& m) {
 }
 
 template <class A>
+void fields(A& a, Iterate::State& s) {
+  a(s.residual_scale, s.limited_by);
+}
+
+template <class A>
+void fields(A& a, ImplicitStep::State& s) {
+  a(s.max_iterations);
+}
+
+template <class A>
+void fields(A& a, StepController::State& s) {
+  a(s.step_size, s.stall_count, s.backed_off);
+}
+
+template <class A>
+void fields(A& a, LineSearch::State& s) {
+  a(s.step_length);
+}
+
+template <class A>
+void fields(A& a, HessianModification::State& s) {
+  a(s.blend);
+}
+
+template <class A>
+void fields(A& a, FactorCache::State& s) {
+  a(s.modification, s.pattern, s.analysis, s.age, s.shift, s.values);
+}
+
+template <class A>
+void fields(A& a, NewtonStep::State& s) {
+  a(s.implicit_step, s.controller, s.line_search, s.factor);
+}
+
+template <class A>
+void fields(A& a, EquilibriumCheck::State& s) {
+  a(s.decrements, s.initial_centroid, s.idle);
+}
+
+template <class A>
+void fields(A& a, LoadStepper::State& s) {
+  a(s.start, s.response, s.blocked_increments);
+}
+
+template <class A>
 void fields(A& a, NewtonState& s) {
-  a(s.so_far, s.step_size, s.step_length, s.residual_scale, s.psd_blend, s.decrements, s.limited_by,
-    s.switched_to_plain, s.dirichlet, s.increment_start, s.response, s.blocked_increments,
-    s.iterations_of_step, s.stall_count, s.backed_off, s.idle, s.initial_centroid, s.contacts, s.pattern,
-    s.analysis, s.factor_age, s.factor_shift, s.factor_values);
+  a(s.so_far, s.iterate, s.step, s.check, s.dirichlet, s.load_stepper, s.contacts, s.switched_to_plain);
 }
 
 template <class A>
@@ -120,7 +162,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 11;
+constexpr std::uint32_t format = 12;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -88,18 +88,19 @@ class Check {
     const std::size_t held = scene_.models[level]->dirichlet().size();
     for (const int k : s.dirichlet.unsatisfied)
       require(k >= 0 && static_cast<std::size_t>(k) < held, "a Dirichlet vertex out of range");
-    require(s.step_size > 0 && s.iterations_of_step > 0 && s.factor_age >= 0 && s.psd_blend >= 0 &&
-                s.psd_blend < psd_blend_count,
+    const int blend = s.step.factor.modification.blend;
+    require(s.step.controller.step_size > 0 && s.step.implicit_step.max_iterations > 0 &&
+                s.step.factor.age >= 0 && blend >= 0 && blend < HessianModification::blend_count,
             "the settings of the step");
-    for (const Positions* x : {&s.response.from, &s.response.predicted})
+    for (const Positions* x : {&s.load_stepper.response.from, &s.load_stepper.response.predicted})
       if (x->rows() > 0) positions(*x, level, "the response to an increment");
     contacts(s.contacts, level);
-    const HessianAssembler::ExtraPattern& extra = s.pattern.extra;
+    const HessianAssembler::ExtraPattern& extra = s.step.factor.pattern.extra;
     require(extra.blocks.size() == extra.idle.size() &&
                 ascends(extra.blocks, [](const auto& block) { return block; }),
             "the matrix's pattern");
     for (const auto& [i, j] : extra.blocks) require(i >= 0 && i < j && j < n, "the matrix's pattern");
-    factor(s, n);
+    factor(s.step.factor, n);
   }
 
   void contacts(const ContactMemory& memory, int level) const {
@@ -114,7 +115,7 @@ class Check {
               "the contacts' tangential displacements");
   }
 
-  void factor(const NewtonState& s, int n) const {
+  void factor(const FactorCache::State& s, int n) const {
     const BlockCholesky::Analysis& a = s.analysis;
     require(a.count >= 0, "the factor's ordering");
     if (a.count == 0) return;
@@ -127,7 +128,7 @@ class Check {
         if (!a.fixed[v]) free.push_back(v);
       require(sorted == free, "the factor's ordering");
     }
-    require(s.factor_values.empty() || !s.pattern.invalidated, "the factor");
+    require(s.values.empty() || !s.pattern.invalidated, "the factor");
   }
 
   void recorder(const RecorderState& s) const {

@@ -1,0 +1,63 @@
+#include "core/kernel/solve/dirichlet_predictor.h"
+
+#include <cmath>
+
+namespace drape {
+
+void DirichletPredictor::enforce() {
+  if (iterate_.objective().enforces_dirichlet()) enforcer_.begin(iterate_.x());
+  update_constraints();
+  if (!enforcer_.active()) return;
+  if (predict(false) < 1) {
+    enforcer_.begin_penalty(iterate_.limited_by());
+    update_constraints();
+  }
+}
+
+void DirichletPredictor::increase_penalty() {
+  if (predict(true) < 1) {
+    enforcer_.increase_penalty(iterate_.x(), iterate_.limited_by());
+    update_constraints();
+  }
+}
+
+/// Moves Dirichlet vertices towards their targets and the other vertices by the linearised response, as far
+/// as limits and contact allow; with `whole`, only if the whole motion is feasible. Returns the feasible
+/// fraction.
+double DirichletPredictor::predict(bool whole) {
+  const double fraction = step_.factorise(iterate_.model().fixed()) ? move(whole) : 0;
+  step_.factor().invalidate();  // it leaves out all Dirichlet vertices
+  update_constraints();
+  return fraction;
+}
+
+double DirichletPredictor::move(bool whole) {
+  const std::vector<DirichletVertex>& vertices = iterate_.model().dirichlet();
+  Objective& objective = iterate_.objective();
+  const Positions displacement = enforcer_.displacement_to_targets(iterate_.x());
+  Positions force, response;
+  step_.factor().matrix().multiply(displacement, force);
+  for (const DirichletVertex& d : vertices) force.row(d.vertex).setZero();
+  step_.factor().solve(force, response);
+  const Positions direction = displacement - response;
+
+  Positions trial = iterate_.x() + direction, gradient;
+  for (const DirichletVertex& d : vertices) trial.row(d.vertex) = d.target.transpose();
+  const StepLimit limit = objective.max_step(iterate_.x(), trial);
+  iterate_.set_limited_by(limit.by);
+  double fraction = limit.fraction;
+  while (fraction > LineSearch::min_step_length) {
+    if (fraction < 1) trial = iterate_.x() + fraction * direction;
+    if (std::isfinite(objective.gradient(trial, gradient))) break;
+    fraction *= 0.5;
+  }
+  if (fraction == 1) {
+    enforcer_.set_satisfied();
+    iterate_.move_to(trial);
+  } else if (!whole && fraction > LineSearch::min_step_length) {
+    iterate_.move_to(trial);
+  }
+  return fraction;
+}
+
+}  // namespace drape

@@ -1,0 +1,43 @@
+#include "core/kernel/solve/equilibrium_check.h"
+
+#include <algorithm>
+
+namespace drape {
+
+EquilibriumCheck::State EquilibriumCheck::state() const {
+  return {decrements_, {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()}, idle_.state()};
+}
+
+void EquilibriumCheck::restore(const State& s) {
+  decrements_ = s.decrements;
+  initial_centroid_ << s.initial_centroid[0], s.initial_centroid[1], s.initial_centroid[2];
+  idle_.restore(s.idle);
+}
+
+bool EquilibriumCheck::in_tolerance() {
+  if (!(iterate_.force_residual() <= p_.force_tolerance)) return false;  // also false for NaN
+  if (p_.decrement_tolerance > 0 &&
+      (iterate_.result().iterations < 3 || *std::ranges::max_element(decrements_) > p_.decrement_tolerance))
+    return false;
+  iterate_.update_friction();
+  return iterate_.force_residual() <= p_.force_tolerance;
+}
+
+bool EquilibriumCheck::is_at_rounding_floor() {
+  idle_.restart();
+  iterate_.update_friction();
+  const RoundingFloor floor =
+      rounding_floor(iterate_.hessian(Projection::none), iterate_.x(), iterate_.gradient(), iterate_.fixed());
+  rounding_residual_ = floor.norm / iterate_.residual_scale();
+  return floor.reached;
+}
+
+double EquilibriumCheck::drift() const {
+  return (iterate_.free_centroid() - initial_centroid_).norm() / iterate_.rest_diagonal();
+}
+
+void EquilibriumCheck::note_step(double inertia) {
+  idle_.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
+}
+
+}  // namespace drape

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/kernel/solve/hessian_modification.h"
+#include "core/kernel/solve/iterate.h"
+
+namespace drape {
+
+/// The factorised Newton matrix of a minimisation. One factor serves `hessian_update_interval` iterations,
+/// unless a shortened step shows that it is stale.
+class FactorCache {
+ public:
+  struct State {
+    HessianModification::State modification;
+    Objective::PatternState pattern;
+    BlockCholesky::Analysis analysis;
+    int age = 0;  ///< iterations since the Hessian was updated
+    // A factor that later iterations reuse; without values there is none.
+    double shift = 0;            ///< multiple of the masses that was added to the matrix [1/s²]
+    std::vector<double> values;  ///< blocks of the factorised matrix
+  };
+  State state() const;
+  /// The iterate must have been evaluated. Throws std::runtime_error if the state is of another matrix.
+  void restore(const State& state);
+
+  /// Refers to the iterate. Its result counts the factorisations, their operations and seconds.
+  FactorCache(Iterate& iterate, const NewtonParameters& parameters);
+
+  /// Factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the masses, without the rows and
+  /// columns of fixed vertices, if the present factor is stale. `step_length` is the last α. Returns false if
+  /// that fails; fault() then says why.
+  bool update(const std::vector<char>& fixed, double mass_shift, double step_length);
+  /// Why the last factorisation failed; empty if it did not.
+  const std::string& fault() const { return fault_; }
+
+  /// Solves with the factor; n×3 right-hand side [N] and solution [m], whose fixed rows are zero.
+  void solve(const Positions& right_hand_side, Positions& solution) {
+    cholesky_.solve(right_hand_side, solution);
+  }
+  /// The factorised matrix without the shift.
+  const BlockMatrix& matrix() const { return *factored_; }
+
+  /// Iterations since the Hessian was updated.
+  int age() const { return age_; }
+  /// Ends an iteration. A shortened step along the direction of an old factor makes that stale.
+  void end_iteration(double step_length);
+  /// Makes the next update factorise.
+  void invalidate() { age_ = interval_; }
+
+  /// Number of symbolic analyses.
+  int analyses() const { return cholesky_.analyses(); }
+
+ private:
+  bool has_fresh_factor() const { return cholesky_.has_factor() && age_ < interval_; }
+  bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
+
+  Iterate& iterate_;
+  const int interval_;
+  HessianModification modification_;
+  BlockCholesky cholesky_;
+  const BlockMatrix* factored_ = nullptr;  // the objective's or restored_
+  BlockMatrix restored_;
+  double shift_ = 0;
+  int age_ = 0;
+  std::string fault_;
+};
+
+}  // namespace drape

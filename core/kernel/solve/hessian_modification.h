@@ -1,0 +1,56 @@
+#pragma once
+
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/solve/newton_parameters.h"
+
+namespace drape {
+
+/// Where the first entry of the matrix is that is not finite, as "the block of vertices 3 and 7", without the
+/// rows and columns of fixed vertices (one flag a vertex). Empty if all entries are finite.
+std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed);
+
+/// The least multiple of the masses that is added to a matrix which is not positive definite [1/s²].
+double first_mass_shift(const NewtonParameters& parameters);
+
+/// Makes the Newton matrix positive definite: blends in the PSD projection of element Hessians (`psd_blend`),
+/// then adds multiples of the masses.
+class HessianModification {
+ public:
+  /// Fractions of the PSD projection that `adaptive` tries, in this order.
+  static constexpr double blends[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
+  static constexpr int blend_count = std::size(blends);
+
+  struct State {
+    int blend = blend_count - 1;  ///< index of the fraction that worked last
+  };
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
+
+  explicit HessianModification(const NewtonParameters& parameters);
+
+  /// The Hessian, with the element Hessians projected so [N/m].
+  using Assemble = std::function<const BlockMatrix&(Projection)>;
+  /// Factorises the matrix with `shift` [1/s²] times the masses added. Returns false if that is not positive
+  /// definite.
+  using Factorise = std::function<bool(const BlockMatrix&, double shift)>;
+
+  /// Assembles and factorises with the least modification that suffices; after a full step a smaller blend
+  /// than the last is tried first. Returns why no modification suffices; empty if one does.
+  std::string factorise(const Assemble& assemble, const Factorise& factorise, const std::vector<char>& fixed,
+                        bool after_full_step);
+
+ private:
+  bool factorise_blended(const Assemble& assemble, const Factorise& factorise, bool after_full_step);
+
+  State s_;
+  Projection::Kind projection_;
+  bool adaptive_;
+  double first_shift_;  // [1/s²]
+};
+
+}  // namespace drape

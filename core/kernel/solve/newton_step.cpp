@@ -1,0 +1,129 @@
+#include "core/kernel/solve/newton_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+/// Residual fraction of the force tolerance at which an implicit step counts as solved.
+constexpr double solved_fraction = 0.1;
+/// Residual fraction below which round-off can mask descent; the step counts as solved.
+constexpr double round_off_fraction = 1e-4;
+/// Newton iterations of a step after obstacles have moved. Its end state is friction's next reference, and a
+/// single iteration overshoots.
+constexpr int iterations_after_obstacle_motion = 30;
+
+}  // namespace
+
+NewtonStep::NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
+                       std::function<void(int)> report)
+    : iterate_(iterate),
+      check_(check),
+      p_(parameters),
+      report_(std::move(report)),
+      controller_(parameters),
+      factor_(iterate, parameters) {}
+
+void NewtonStep::restore(const State& s) {
+  step_.restore(s.implicit_step, iterate_.x());
+  controller_.restore(s.controller);
+  line_search_.restore(s.line_search);
+  factor_.restore(s.factor);
+}
+
+void NewtonStep::restart() {
+  controller_.restart();
+  factor_.invalidate();
+}
+
+double NewtonStep::step_size() const {
+  return controller_.is_static() ? std::numeric_limits<double>::infinity() : controller_.step_size();
+}
+
+bool NewtonStep::factorise(const std::vector<char>& fixed) {
+  factor_.invalidate();
+  return factor_.update(fixed, controller_.mass_shift(), line_search_.step_length());
+}
+
+void NewtonStep::begin() {
+  ActiveContacts& contacts = iterate_.objective().contacts();
+  const bool had_friction = contacts.has_friction();
+  int iterations = p_.iterations_per_step;
+  if (contacts.advected() && had_friction)
+    iterations = std::max(iterations, iterations_after_obstacle_motion);
+  step_.begin(iterate_.x(), iterations);
+  contacts.begin_step(iterate_.x());
+  if (had_friction || contacts.has_friction()) iterate_.evaluate();
+}
+
+bool NewtonStep::solve() {
+  controller_.begin_step();
+  for (int k = 0; k < step_.max_iterations(); ++k) {
+    if (!iterate(k)) return false;
+    if (check_.in_tolerance()) break;
+    if (k + 1 == step_.max_iterations()) continue;
+    step_.evaluate(iterate_, controller_.inverse_h2());
+    if (is_solved_to(solved_fraction)) break;
+  }
+  ++iterate_.result().steps;
+  check_.note_step(step_.inertia());
+  controller_.end_step(iterate_.force_residual());
+  return true;
+}
+
+/// Whether the step's gradient is below this fraction of the force tolerance.
+bool NewtonStep::is_solved_to(double fraction) const {
+  return free_norm(step_.gradient(), iterate_.fixed()) <=
+         fraction * p_.force_tolerance * iterate_.residual_scale();
+}
+
+bool NewtonStep::fail(const std::string& why) {
+  failure_ = why;
+  return false;
+}
+
+bool NewtonStep::iterate(int k) {
+  LevelResult& result = iterate_.result();
+  while (true) {
+    step_.evaluate(iterate_, controller_.inverse_h2());
+    if (!factor_.update(iterate_.fixed(), controller_.mass_shift(), line_search_.step_length()))
+      return fail(factor_.fault());
+    {
+      PhaseTimer t(result.seconds_by_phase, "solve");
+      factor_.solve(step_.gradient(), direction_);
+      direction_ *= -1;
+    }
+    if (line_search_.search(iterate_, step_, direction_)) break;
+    if (is_solved_to(round_off_fraction)) {
+      line_search_.accept_zero_step();
+      break;
+    }
+    // A stale factor may give no descent: update the Hessian first. If that does not help, the step is too
+    // long for its quadratic model: damp it more.
+    const bool was_updated = factor_.age() == 0;
+    factor_.invalidate();
+    if (was_updated && !controller_.damp())
+      return fail("the line search found no descent " +
+                  (controller_.is_static()
+                       ? "(the direction's slope is " + three_digits(line_search_.slope()) + ")"
+                       : "at any step size down to 1e-8 s") +
+                  iterate_.limit_text());
+  }
+  const double decrement =
+      std::sqrt(direction_.squaredNorm() / std::max(iterate_.free_count(), 1.0)) / controller_.step_size();
+  check_.note_decrement(decrement);
+  result.decrement = decrement;
+  ++result.iterations;
+  iterate_.update_residual();
+  report_(k);
+  controller_.end_iteration(line_search_.step_length(), factor_.age() == 0);
+  factor_.end_iteration(line_search_.step_length());
+  return true;
+}
+
+}  // namespace drape

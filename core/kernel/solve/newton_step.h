@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/solve/equilibrium_check.h"
+#include "core/kernel/solve/factor_cache.h"
+#include "core/kernel/solve/implicit_step.h"
+#include "core/kernel/solve/line_search.h"
+#include "core/kernel/solve/step_controller.h"
+
+namespace drape {
+
+/// Solves one implicit step after another by Newton iterations: direction from the factorised matrix, line
+/// search, damping.
+class NewtonStep {
+ public:
+  /// At the beginning of a step.
+  struct State {
+    ImplicitStep::State implicit_step;
+    StepController::State controller;
+    LineSearch::State line_search;
+    FactorCache::State factor;
+  };
+  State state() const { return {step_.state(), controller_.state(), line_search_.state(), factor_.state()}; }
+  /// The iterate must have been evaluated.
+  void restore(const State& state);
+
+  /// Refers to all arguments. `report` is called after iteration k of a step.
+  NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
+             std::function<void(int k)> report);
+
+  /// Begins a step at the iterate; lags friction there.
+  void begin();
+  /// Solves the step that begin() began, to a fraction of the force tolerance or its iteration limit. Returns
+  /// false if no iterate with less energy can be found; failure() then says why.
+  bool solve();
+  const std::string& failure() const { return failure_; }
+  /// Resets the damping of a step without descent.
+  void abandon() { controller_.abandon_step(); }
+  /// Starts over, for another objective.
+  void restart();
+
+  /// Factorises the matrix at the iterate anew, without the rows and columns of fixed vertices. Returns false
+  /// if that fails; factor().fault() then says why.
+  bool factorise(const std::vector<char>& fixed);
+  FactorCache& factor() { return factor_; }
+  const FactorCache& factor() const { return factor_; }
+
+  double step_length() const { return line_search_.step_length(); }  ///< α of the last line search
+  double step_size() const;                                          ///< h [s]; +∞ for the static form
+
+ private:
+  bool iterate(int k);
+  bool is_solved_to(double fraction) const;
+  bool fail(const std::string& why);
+
+  Iterate& iterate_;
+  EquilibriumCheck& check_;
+  const NewtonParameters& p_;
+  std::function<void(int)> report_;
+  ImplicitStep step_;
+  StepController controller_;
+  LineSearch line_search_;
+  FactorCache factor_;
+  Positions direction_;
+  std::string failure_;
+};
+
+}  // namespace drape

@@ -1,0 +1,71 @@
+#include "core/kernel/solve/step_controller.h"
+
+#include <algorithm>
+
+#include "core/kernel/solve/hessian_modification.h"
+
+namespace drape {
+
+namespace {
+
+/// A step length below this shows that h was too long.
+constexpr double short_step = 0.25;
+/// Marks a step without a step length along the direction of an updated Hessian.
+constexpr double no_updated_direction = 2;
+/// Force residuals above this count as stalled …
+constexpr double stall_residual = 1e3;
+/// … and h is divided by this …
+constexpr double back_off = 16;
+/// … after so many stalled steps in a row. h grows again after as many without a stall, …
+constexpr int max_stall_count = 20;
+/// … or once forces are of the load's size.
+constexpr double recovered_residual = 10;
+constexpr double min_step_size = 1e-8;
+constexpr double max_added_mass = 1 / (min_step_size * min_step_size);
+
+}  // namespace
+
+double StepController::inverse_h2() const { return is_static() ? 0 : 1 / (s_.step_size * s_.step_size); }
+
+void StepController::begin_step() {
+  begun_with_ = s_.step_size;
+  updated_step_length_ = no_updated_direction;
+}
+
+bool StepController::damp() {
+  if (is_static()) {
+    // In free fall the matrix is positive definite only by round-off, and the direction so long that contact
+    // cuts the step to nothing.
+    added_mass_ = std::max(10 * added_mass_, first_mass_shift(p_));
+    return added_mass_ < max_added_mass;
+  }
+  s_.step_size /= 4;
+  return !(s_.step_size < min_step_size);
+}
+
+void StepController::end_iteration(double step_length, bool updated) {
+  added_mass_ = 0;
+  if (updated) updated_step_length_ = std::min(updated_step_length_, step_length);
+}
+
+void StepController::end_step(double force_residual) {
+  int& stalls = s_.stall_count;
+  double& h = s_.step_size;
+  stalls = force_residual > stall_residual ? std::max(stalls, 0) + 1 : std::min(stalls, 0) - 1;
+  if (stalls == max_stall_count) {
+    s_.backed_off = true;
+    stalls = 0;
+    h = std::max(h / back_off, min_step_size);
+  }
+  if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;
+  if (s_.backed_off) return;
+  if (updated_step_length_ == 1) h = std::max(h, std::min(h * p_.step_growth, p_.step_size_limit));
+  if (updated_step_length_ < short_step) h /= p_.step_growth;
+}
+
+void StepController::abandon_step() {
+  s_.step_size = begun_with_;
+  added_mass_ = 0;
+}
+
+}  // namespace drape

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "core/kernel/solve/newton_parameters.h"
+
+namespace drape {
+
+/// Controls the damping of implicit steps: the step size h, or in the static form, which has none, the mass
+/// that is added to the matrix.
+///
+/// h grows after full steps and shrinks after short ones; without descent it is divided by four. Near a
+/// strain limit full steps gain no margin, and forces stay a thousand times the load: h is then divided by 16
+/// and does not grow until the forces have recovered.
+class StepController {
+ public:
+  struct State {
+    double step_size = 0;     ///< h of the next step [s]
+    int stall_count = 0;      ///< consecutive steps with forces far beyond the load; negative: without
+    bool backed_off = false;  ///< h was reduced because of a stall and does not grow
+  };
+  /// At the beginning of a step.
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
+
+  explicit StepController(const NewtonParameters& parameters) : p_(parameters) { restart(); }
+  /// Starts over, for another objective.
+  void restart() { s_ = {p_.step_size, 0, false}; }
+
+  bool is_static() const { return p_.form == NewtonForm::statics; }
+  double step_size() const { return s_.step_size; }  ///< h [s]
+  double inverse_h2() const;                         ///< 1/h² [1/s²]; 0 for the static form
+  /// Multiple of the masses that is added to the Hessian [1/s²].
+  double mass_shift() const { return inverse_h2() + added_mass_; }
+
+  void begin_step();
+  /// Damps the step more, after a line search without descent. Returns false once that has reached its end.
+  bool damp();
+  /// Ends an iteration. `updated`: its direction came from an updated Hessian; only such a direction tells
+  /// about h.
+  void end_iteration(double step_length, bool updated);
+  /// Ends a step: adapts h to the step lengths and to stalls.
+  void end_step(double force_residual);
+  /// Ends a step without descent: resets its damping.
+  void abandon_step();
+
+ private:
+  const NewtonParameters& p_;
+  State s_;
+  double begun_with_ = 0;           // h at the beginning of the step [s]
+  double updated_step_length_ = 0;  // the least α of this step's updated directions
+  double added_mass_ = 0;           // of the static form, as 1/h² [1/s²]
+};
+
+}  // namespace drape

@@ -1,0 +1,126 @@
+#include "core/kernel/solve/factor_cache.h"
+
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/support/newton_problem.h"
+#include "tests/support/wells.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double mass_shift = 100;
+
+Positions rest() { return Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices; }
+
+/// The cache of a problem with one fixed vertex, and how often it has factorised.
+struct Case {
+  NewtonProblem problem{{std::make_shared<Wells>(rest().array() + 0.3, 10, 0.1)}, {{0, rest().row(0), 0}}};
+  FactorCache cache;
+
+  explicit Case(int interval) : cache(problem.iterate, with(interval)) {}
+  static NewtonParameters with(int interval) {
+    NewtonParameters p;
+    p.hessian_update_interval = interval;
+    return p;
+  }
+  /// The factorisations of one iteration that ends with this step length.
+  int iterate(double step_length = 1) {
+    const int before = problem.result.factorisations;
+    CHECK(cache.update(problem.model.fixed(), mass_shift, step_length));
+    cache.end_iteration(step_length);
+    return problem.result.factorisations - before;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A factor serves as many iterations as the interval says") {
+  Case c(3);
+  for (int round = 0; round < 2; ++round) {
+    CHECK(c.iterate() == 1);
+    CHECK(c.cache.age() == 1);
+    CHECK(c.iterate() == 0);
+    CHECK(c.iterate() == 0);
+    CHECK(c.cache.age() == 3);
+  }
+  CHECK(c.cache.analyses() == 1);
+  CHECK(c.problem.result.flops > 0);
+  Case single(1);
+  for (int k = 0; k < 3; ++k) CHECK(single.iterate() == 1);
+}
+
+TEST_CASE("A shortened step makes an old factor stale, but not a new one") {
+  Case c(5);
+  CHECK(c.iterate(0.5) == 1);
+  CHECK(c.iterate(0.5) == 0);
+  CHECK(c.iterate(1) == 1);
+  CHECK(c.iterate(1) == 0);
+  c.cache.invalidate();
+  CHECK(c.iterate(1) == 1);
+}
+
+TEST_CASE("The factor is of the shifted matrix without fixed vertices") {
+  Case c(1);
+  REQUIRE(c.iterate() == 1);
+  const Positions b = Positions::Random(16, 3);
+  Positions solution, product;
+  c.cache.solve(b, solution);
+  CHECK(solution.row(0).norm() == 0);
+  c.cache.matrix().multiply(solution, product);
+  for (int i = 1; i < 16; ++i) {
+    const Eigen::RowVector3d with_mass =
+        product.row(i) + mass_shift * c.problem.model.masses()[i] * solution.row(i);
+    CHECK((with_mass - b.row(i)).norm() < 1e-12);
+  }
+  CHECK(solution.norm() > 1e-3);
+}
+
+TEST_CASE("A restored cache solves with the same factor, bit for bit") {
+  Case c(3);
+  c.iterate();
+  c.problem.move_to(rest().array() + 0.01);  // the factor is of another x
+  const FactorCache::State state = c.cache.state();
+  CHECK(!state.values.empty());
+  CHECK(state.shift == mass_shift);
+
+  Case again(3);
+  again.problem.move_to(c.problem.iterate.x());
+  again.cache.restore(state);
+  CHECK(again.iterate() == 0);
+  const Positions b = Positions::Random(16, 3);
+  Positions expected, solution;
+  c.cache.solve(b, expected);
+  again.cache.solve(b, solution);
+  REQUIRE(expected.norm() > 0);
+  CHECK(solution == expected);
+  CHECK(again.cache.analyses() == 1);
+  CHECK(c.iterate() == 0);
+  CHECK(c.iterate() == 0);
+  CHECK(again.iterate() == 0);
+  CHECK(again.iterate() == 1);
+
+  FactorCache::State other = state;
+  other.values.pop_back();
+  Case third(3);
+  CHECK_THROWS_WITH(third.cache.restore(other), Catch::Contains("belongs to another matrix"));
+}
+
+TEST_CASE("A stale factor is not stored") {
+  Case c(1);
+  c.iterate();
+  CHECK(c.cache.state().values.empty());
+  CHECK(c.cache.state().analysis.count == 1);
+}
+
+TEST_CASE("A failed factorisation says why, and the next one may succeed") {
+  Case c(1);
+  const Positions x = c.problem.iterate.x();
+  c.problem.move_to(Positions::Constant(16, 3, std::numeric_limits<double>::quiet_NaN()));
+  CHECK(!c.cache.update(c.problem.model.fixed(), mass_shift, 1));
+  CHECK_THAT(c.cache.fault(), Catch::EndsWith("first in the block of vertex 1"));
+  c.problem.move_to(x);
+  CHECK(c.cache.update(c.problem.model.fixed(), mass_shift, 1));
+  CHECK(c.cache.fault() == "");
+}
