@@ -77,6 +77,7 @@ class Newton {
         observer_(run.observer),
         load_stepping_(run.load_stepping),
         dirichlet_(model_),
+        cholesky_(parameters.linear_solver),
         h_(parameters.step_size) {
     result_.x = std::move(x);
     result_.level = model_.level().index;
