@@ -4,8 +4,8 @@
 //
 //     drape_bench_linear_solvers [RESULT.json]
 //
-// Debian's reference BLAS is slow. `apt-get install libopenblas0-pthread` replaces it. Where that is only
-// unpacked, LD_LIBRARY_PATH chooses it for one run: /usr/lib/x86_64-linux-gnu/openblas-pthread.
+// Debian's reference BLAS is slow: `apt-get install libopenblas0-pthread` replaces it. With one thread,
+// CHOLMOD still copies and adds with up to four, unless OMP_THREAD_LIMIT=1.
 
 #include <dlfcn.h>
 

@@ -8,9 +8,8 @@ namespace drape {
 
 /// CHOLMOD's supernodal LLᵀ of the matrix' scalars (Chen, Davis, Hager and Rajamanickam 2008).
 ///
-/// The BLAS that CHOLMOD loads sets its speed, threads and bits, not parallel_for. Debian's reference BLAS
-/// has one thread and gives the same bits in every run; others, as OpenBLAS, promise the same bits for no two
-/// runs.
+/// Speed and bits depend on the BLAS that CHOLMOD loads; set_thread_count bounds neither its threads nor
+/// CHOLMOD's. With Debian's reference BLAS every run has the same bits; OpenBLAS does not promise that.
 std::unique_ptr<NumericFactor> make_cholmod_factor();
 
 }  // namespace drape
