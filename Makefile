@@ -71,6 +71,7 @@ data: configure
 
 bench: build
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
+	$(BUILD)/bin/drape_bench_linear_solvers benchmarks/results/linear_solvers.json
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --method pcs --method cascadic --method newton --out results/bench_pinned_square --overwrite
 	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method cascadic --method newton --out results/bench_sphere --overwrite
 	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method newton --set newton.early_refinement_tolerance=1 --out results/bench_sphere_refined_early --overwrite

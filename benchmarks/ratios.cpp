@@ -6,14 +6,13 @@
 // solve, and the steps of PCS's coarsest level against those of the plain coarse model. With folders of
 // finished runs of experiments, also each one's whole PCS progression against its direct fine solve.
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/app/experiment/experiment.h"
+#include "benchmarks/measure.h"
 #include "core/app/files/machine.h"
 #include "core/kernel/linear_algebra/block_cholesky.h"
 #include "core/kernel/linear_algebra/parallel.h"
@@ -26,11 +25,6 @@ using namespace drape;
 namespace {
 
 constexpr int repeats = 7;
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
 
 template <class Body>
 double median_seconds(const Body& body) {
@@ -65,12 +59,6 @@ class FirstIterations : public Observer {
   int count_, level_;
   std::vector<double> times_;
 };
-
-const Solver& method(const Experiment& e, const std::string& name) {
-  for (const auto& [own, solver] : e.methods)
-    if (own == name) return *solver;
-  throw std::runtime_error("the benchmark's experiment has no method " + name);
-}
 
 /// Rows of what is printed and stored: a ratio, its two times and the figure aimed at.
 class Table {
@@ -190,19 +178,6 @@ void whole_progression(const std::string& folder, Table& table) {
     table.add(folder + ": analyses of " + name, seconds_in(method, "analyse"), "whole run", method["seconds"],
               0.1);
 }
-
-/// An experiment of this folder and its scene; errors are printed and leave the scene empty.
-struct Loaded {
-  std::optional<Experiment> experiment;
-  std::unique_ptr<Scene> scene;
-  Loaded(const Registry& registry, const std::string& file, const Overrides& overrides = {}) {
-    ConfigErrors errors;
-    experiment = read_experiment(DRAPE_BENCHMARKS_DIR "/" + file, overrides, registry, errors);
-    scene = experiment ? build_scene(*experiment, errors) : nullptr;
-    for (const ConfigError& error : errors) std::cerr << "error: " << error.text() << "\n";
-    if (!scene) throw std::runtime_error(file + " cannot be measured");
-  }
-};
 
 }  // namespace
 

@@ -353,11 +353,13 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
     bool checkpoint_due() override { return true; }
     void checkpoint(const NewtonState& state) override { states.push_back(state); }
   };
+  const LinearSolver solver = GENERATE(LinearSolver::supernodal, LinearSolver::cholmod);
   for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
       for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
         Case c;
         NewtonParameters p = tight();
+        p.linear_solver = solver;
         p.hessian_update_interval = interval;
         p.iterations_per_step = iterations;
         p.form = form;
@@ -369,7 +371,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
         PlainObjective first(model);
         const LevelResult expected =
             minimise(first, c.level.rest.vertices, p, {Stopwatch(), whole, false, {{"before", 2}}});
-        CAPTURE(interval, iterations, int(form), expected.message);
+        CAPTURE(int(solver), interval, iterations, int(form), expected.message);
         REQUIRE(expected.outcome == Outcome::converged);
         REQUIRE(whole.states.size() > 4);
         int stored_factors = 0;

@@ -1,45 +1,32 @@
 #include "core/kernel/linear_algebra/block_cholesky.h"
 
-#include <cholmod.h>
-
+#include <limits>
 #include <new>
 #include <stdexcept>
+
+#include "core/kernel/linear_algebra/cholmod_context.h"
+#include "core/kernel/linear_algebra/cholmod_factor.h"
+#include "core/kernel/linear_algebra/supernodal_factor.h"
 
 namespace drape {
 namespace {
 
-/// CHOLMOD's settings and memory for one symbolic analysis.
-struct Cholmod {
-  cholmod_common common;
+/// One symbolic analysis by CHOLMOD.
+struct SymbolicAnalysis : CholmodContext {
   cholmod_sparse* graph = nullptr;  // lower triangle
   cholmod_factor* factor = nullptr;
 
-  Cholmod() {
-    cholmod_start(&common);
-    common.print = 0;
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.nmethods = 1;
-    common.postorder = 1;
-  }
-  Cholmod(const Cholmod&) = delete;
-  Cholmod& operator=(const Cholmod&) = delete;
-  ~Cholmod() {
+  ~SymbolicAnalysis() {
     cholmod_free_sparse(&graph, &common);
     cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
   }
-  /// Symbolic analysis with this ordering, or with METIS's if it is empty.
+  /// With this ordering, or with METIS's if it is empty.
   void analyse(std::vector<int> ordering) {
     cholmod_free_factor(&factor, &common);
     common.method[0].ordering = ordering.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
     factor = ordering.empty() ? cholmod_analyze(graph, &common)
                               : cholmod_analyze_p(graph, ordering.data(), nullptr, 0, &common);
     require(factor, "symbolic analysis");
-  }
-  void require(const void* result, const char* what) const {
-    if (!result)
-      throw std::runtime_error(std::string("sparse Cholesky: ") + what + " failed (CHOLMOD status " +
-                               std::to_string(common.status) + "; -2 means out of memory)");
   }
 };
 
@@ -56,7 +43,7 @@ std::vector<int> indices_in(const std::vector<int>& free, const std::vector<int>
 }
 
 /// The graph of the free vertices, by their index in `free`.
-void make_graph(const BlockPattern& pattern, const std::vector<int>& free, Cholmod& c) {
+void make_graph(const BlockPattern& pattern, const std::vector<int>& free, SymbolicAnalysis& c) {
   const int n = static_cast<int>(free.size());
   std::vector<int> index(pattern.rows(), -1);
   for (int i = 0; i < n; ++i) index[free[i]] = i;
@@ -77,7 +64,7 @@ void make_graph(const BlockPattern& pattern, const std::vector<int>& free, Cholm
   start[n] = at;
 }
 
-SupernodalTree tree_of(const cholmod_factor& factor) {
+Supernodes supernodes_of(const cholmod_factor& factor) {
   const auto* super = static_cast<const int*>(factor.super);
   const auto* start = static_cast<const int*>(factor.pi);
   const auto* rows = static_cast<const int*>(factor.s);
@@ -88,10 +75,17 @@ SupernodalTree tree_of(const cholmod_factor& factor) {
     below.items.insert(below.items.end(), rows + start[s] + (super[s + 1] - super[s]), rows + start[s + 1]);
     below.start.push_back(static_cast<int>(below.items.size()));
   }
-  return SupernodalTree(std::vector<int>(super, super + count + 1), std::move(below));
+  return {std::vector<int>(super, super + count + 1), std::move(below)};
+}
+
+std::unique_ptr<NumericFactor> make_factor(LinearSolver solver) {
+  if (solver == LinearSolver::cholmod) return make_cholmod_factor();
+  return std::make_unique<SupernodalFactor>();
 }
 
 }  // namespace
+
+BlockCholesky::BlockCholesky(LinearSolver solver) : factor_(make_factor(solver)) {}
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
@@ -122,7 +116,7 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
   flops_ = entries_ = 0;
   if (free.empty()) return ordering_.clear();
 
-  Cholmod c;
+  SymbolicAnalysis c;
   make_graph(*pattern_, free, c);
   reused_ordering_ = std::move(ordering);
   if (!reused_ordering_.empty()) c.analyse(indices_in(free, reused_ordering_, pattern_->rows()));
@@ -141,7 +135,7 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
       flops_ += column * column;
     }
   try {
-    factor_.set_structure(tree_of(*c.factor), *pattern_, ordering_);
+    factor_->set_structure(*pattern_, ordering_, supernodes_of(*c.factor));
   } catch (const std::bad_alloc&) {
     throw std::runtime_error("sparse Cholesky: no memory for a factor of " + std::to_string(entries_ * 8e-9) +
                              " GB; use a coarser mesh");
@@ -149,7 +143,7 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
 }
 
 bool BlockCholesky::factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
-  return has_factor_ = ordering_.empty() || factor_.factorise(matrix, shift);
+  return has_factor_ = ordering_.empty() || factor_->factorise(matrix, shift);
 }
 
 void BlockCholesky::solve(const Positions& right_hand_side, Positions& solution) {
@@ -159,7 +153,7 @@ void BlockCholesky::solve(const Positions& right_hand_side, Positions& solution)
   x_.resize(unknowns());
   for (std::size_t p = 0; p < ordering_.size(); ++p)
     for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(ordering_[p], c);
-  factor_.solve(x_);
+  factor_->solve(x_);
   for (std::size_t p = 0; p < ordering_.size(); ++p)
     for (int c = 0; c < 3; ++c) solution(ordering_[p], c) = x_[3 * p + c];
 }

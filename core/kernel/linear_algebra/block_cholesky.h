@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/kernel/linear_algebra/block_matrix.h"
-#include "core/kernel/linear_algebra/supernodal_factor.h"
+#include "core/kernel/linear_algebra/numeric_factor.h"
 #include "core/kernel/mesh/triangle_mesh.h"
 
 namespace drape {
@@ -14,10 +14,13 @@ namespace drape {
 /// fixed vertices.
 ///
 /// CHOLMOD orders vertices by nested dissection (METIS) and forms supernodes (Chen, Davis, Hager and
-/// Rajamanickam 2008); SupernodalFactor does the numeric factorisation. A new pattern gets a new symbolic
-/// analysis but reuses the ordering, until that costs too much or the fixed vertices change.
+/// Rajamanickam 2008); a NumericFactor does the numeric factorisation. A new pattern gets a new symbolic
+/// analysis but reuses the ordering, until that costs too much or the fixed vertices change. Ordering, counts
+/// and Analysis are the same for every LinearSolver.
 class BlockCholesky {
  public:
+  explicit BlockCholesky(LinearSolver solver = LinearSolver::supernodal);
+
   /// Input and result of a symbolic analysis. With the same pattern it gives the same layout.
   struct Analysis {
     std::vector<char> fixed;
@@ -61,7 +64,7 @@ class BlockCholesky {
   std::vector<char> fixed_;
   std::vector<int> ordering_;         // ordering_[p] is the vertex at position p
   std::vector<int> reused_ordering_;  // input of the analysis; empty if ordering_ was computed
-  SupernodalFactor factor_;
+  std::unique_ptr<NumericFactor> factor_;
   Eigen::VectorXd x_;
   double flops_ = 0, entries_ = 0;
   double ordering_flops_ = 0;  // CHOLMOD's count when the ordering was computed

@@ -6,26 +6,21 @@
 
 namespace drape {
 
-void SupernodalFactor::set_structure(SupernodalTree tree, const BlockPattern& pattern,
-                                     const std::vector<int>& ordering) {
-  tree_ = std::move(tree);
+void SupernodalFactor::set_structure(const BlockPattern& pattern, const std::vector<int>& ordering,
+                                     Supernodes supernodes) {
+  tree_ = SupernodalTree(std::move(supernodes.first), std::move(supernodes.rows));
   ordering_ = ordering;
-  std::vector<int> position(pattern.rows(), -1), supernode(ordering.size());
-  for (std::size_t p = 0; p < ordering.size(); ++p) position[ordering[p]] = static_cast<int>(p);
+  const std::vector<int> position = positions_in(ordering, pattern.rows());
+  std::vector<int> supernode(ordering.size());
   for (int s = 0; s < tree_.count(); ++s) std::fill_n(supernode.begin() + tree_.first(s), tree_.pivots(s), s);
 
-  const auto each_block = [&](auto&& visit) {  // with the positions of its column and row
-    for (int i = 0; i < pattern.rows(); ++i)
-      for (int k = pattern.row_start[i]; k < pattern.row_start[i + 1]; ++k)
-        if (const int p = position[i], q = position[pattern.columns[k]]; p >= 0 && q >= 0)
-          visit(std::min(p, q), std::max(p, q), k, p < q);
-  };
   entry_start_.assign(tree_.count() + 1, 0);
-  each_block([&](int column, int, int, bool) { ++entry_start_[supernode[column] + 1]; });
+  for_each_lower_block(pattern, position,
+                       [&](int column, int, int, bool) { ++entry_start_[supernode[column] + 1]; });
   for (int s = 0; s < tree_.count(); ++s) entry_start_[s + 1] += entry_start_[s];
   entries_.resize(entry_start_.back());
   std::vector<int> at(entry_start_.begin(), entry_start_.end() - 1);
-  each_block([&](int column, int row, int block, bool transposed) {
+  for_each_lower_block(pattern, position, [&](int column, int row, int block, bool transposed) {
     const int s = supernode[column];
     int local = row - tree_.first(s);
     if (local >= tree_.pivots(s)) {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <vector>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/linear_algebra/numeric_factor.h"
 #include "core/kernel/linear_algebra/supernodal_front.h"
 #include "core/kernel/linear_algebra/supernodal_tree.h"
 
@@ -16,17 +16,14 @@ namespace drape {
 /// matrices, eliminates its pivots, and passes its update matrix to its parent. Subtrees run in parallel;
 /// then the supernodes above them one by one, their fronts in parallel by tiles. Tree, tiles and the order of
 /// additions do not depend on the number of threads, so the factor is bitwise reproducible.
-class SupernodalFactor {
+class SupernodalFactor : public NumericFactor {
  public:
-  /// Sets the symbolic structure. ordering[p] is the vertex at position p; vertices without a position are
-  /// left out. Reuses the memory of an earlier structure if it suffices.
-  void set_structure(SupernodalTree tree, const BlockPattern& pattern, const std::vector<int>& ordering);
-
-  /// Factorises A + diag(shift_i I₃), shift by vertex. Returns false early if a pivot is not positive.
-  bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift);
-
-  /// Solves in place; three unknowns for each position.
-  void solve(Eigen::VectorXd& x);
+  /// Reuses the memory of an earlier structure if it suffices.
+  void set_structure(const BlockPattern& pattern, const std::vector<int>& ordering,
+                     Supernodes supernodes) override;
+  /// Returns false as soon as a pivot is not positive.
+  bool factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) override;
+  void solve(Eigen::VectorXd& x) override;
 
  private:
   /// A block of the matrix and its vertices in the front.

@@ -5,7 +5,10 @@
 namespace drape {
 
 FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters)
-    : iterate_(iterate), interval_(parameters.hessian_update_interval), modification_(parameters) {}
+    : iterate_(iterate),
+      interval_(parameters.hessian_update_interval),
+      modification_(parameters),
+      cholesky_(parameters.linear_solver) {}
 
 bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
   if (has_fresh_factor()) return true;

@@ -83,6 +83,12 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e6)
       .description("iterations that share one Hessian and its factor")
       .source("departure from the paper");
+  d.add_choice("linear_solver", &NewtonParameters::linear_solver,
+               {{"supernodal", LinearSolver::supernodal}, {"cholmod", LinearSolver::cholmod}})
+      .description(
+          "numeric Cholesky factorisation: drape's own, which is parallel and gives the same bits with any "
+          "number of threads, or CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
+      .source("docs/speed.md; Chen et al. 2008 for cholmod");
 }
 
 }  // namespace drape

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/kernel/linear_algebra/numeric_factor.h"
 #include "core/kernel/model/energy.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -29,6 +30,7 @@ struct NewtonParameters {
   Projection::Kind projection = Projection::clamp;
   PsdBlend psd_blend = PsdBlend::adaptive;
   int hessian_update_interval = 1;
+  LinearSolver linear_solver = LinearSolver::supernodal;
 
   static void declare(Declaration<NewtonParameters>& d);
 };
