@@ -71,20 +71,20 @@ class Newton {
  public:
   Newton(Objective& objective, Positions x, const NewtonParameters& parameters, const LevelRun& run)
       : f_(objective),
-        model_(objective.model()),
+        model_(&objective.model()),
         p_(parameters),
         run_(run),
         observer_(run.observer),
         load_stepping_(run.load_stepping),
-        dirichlet_(model_),
+        dirichlet_(*model_),
         h_(parameters.step_size) {
     result_.x = std::move(x);
-    result_.level = model_.level().index;
+    result_.level = model_->level().index;
     result_.message = run.remark;
     result_.seconds_by_phase = run.spent;
     for (const auto& [phase, seconds] : run.spent) result_.seconds += seconds;
     update_constraints();
-    const Positions& rest = model_.level().rest.vertices;
+    const Positions& rest = model_->level().rest.vertices;
     bounding_box_diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
 
@@ -229,7 +229,7 @@ class Newton {
     if (s.factor_values.size() != matrix.values.size())
       throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
     matrix.values = s.factor_values;
-    cholesky_.factorise(matrix, s.factor_shift * model_.masses());
+    cholesky_.factorise(matrix, s.factor_shift * model_->masses());
     restored_matrix_ = std::move(matrix);
     factored_ = &restored_matrix_;
     factor_shift_ = s.factor_shift;
@@ -322,11 +322,10 @@ class Newton {
     Positions predicted = result_.x;
     // If the predictor gains no more than the last time, the obstacles advance without it.
     if (applied < 1 && applied * (1 - response_.fraction) <= response_.fraction) {
-      const BoundContacts before = model_.contacts();
       limit_ = load_stepping_->advance(result_.level, result_.x);
       applied += limit_.fraction * (1 - applied);
       predicted = from;  // the cloth has not responded yet
-      model_changed(before, result_.x);
+      model_changed(result_.x);
     }
     limit_.fraction = applied;
     response_ = at_equilibrium && !load_stepping_->complete()
@@ -374,13 +373,12 @@ class Newton {
         if (pass < min_pass * reach) break;
         trial_ = from + (applied + pass) * direction;
       }
-      const BoundContacts before = model_.contacts();
       if (!is_finite_at(trial_) || !load_stepping_->advance_by(pass / (1 - applied), result_.level, trial_)) {
         pass *= 0.5;
         continue;
       }
       result_.x = trial_;
-      model_changed(before, here);
+      model_changed(here);
       applied += pass;
       if (f_.contacts().smallest_gap() < gap_reduction * gap) break;
       pass *= 2;
@@ -398,10 +396,12 @@ class Newton {
     return std::isfinite(f_.gradient(x, trial_g_));
   }
 
-  /// The model has changed; its contacts were `before` with the cloth at `from`.
-  void model_changed(const BoundContacts& before, const Positions& from) {
+  /// Goes on with the model under the new load; the cloth was at `from` before.
+  void model_changed(const Positions& from) {
     PhaseTimer t(result_.seconds_by_phase, "gradient");  // builds collisions
-    f_.model_changed(before, from, result_.x);
+    f_.set_model(load_stepping_->model(result_.level), from, result_.x);
+    model_ = &f_.model();
+    dirichlet_.set_model(*model_);
   }
 
   void report_increment() {
@@ -446,17 +446,17 @@ class Newton {
   double move_to_targets(bool whole = false) {
     const Positions displacement = dirichlet_.displacement_to_targets(result_.x);
     std::vector<char> fixed = fixed_;
-    fixed_ = model_.fixed();
+    fixed_ = model_->fixed();
     origin_ = result_.x;
     factor_age_ = p_.hessian_update_interval;
     factorise();
     factored_->multiply(displacement, r_);
-    for (const DirichletVertex& d : model_.dirichlet()) r_.row(d.vertex).setZero();
+    for (const DirichletVertex& d : model_->dirichlet()) r_.row(d.vertex).setZero();
     cholesky_.solve(r_, direction_);
     direction_ = displacement - direction_;
     factor_age_ = p_.hessian_update_interval;
     trial_ = result_.x + direction_;
-    for (const DirichletVertex& d : model_.dirichlet()) trial_.row(d.vertex) = d.target.transpose();
+    for (const DirichletVertex& d : model_->dirichlet()) trial_.row(d.vertex) = d.target.transpose();
     limit_ = f_.max_step(result_.x, trial_);
     double fraction = limit_.fraction;
     while (fraction > min_step_length) {
@@ -612,7 +612,7 @@ class Newton {
         r_.row(i).setZero();
         continue;
       }
-      const double m = s * model_.masses()[i];
+      const double m = s * model_->masses()[i];
       const Eigen::RowVector3d moved = result_.x.row(i) - origin_.row(i);
       r_.row(i) += m * moved;
       inertia_ += 0.5 * m * moved.squaredNorm();
@@ -624,7 +624,7 @@ class Newton {
     const double s = inverse_h2();
     if (s > 0)
       for (Eigen::Index i = 0; i < x.rows(); ++i)
-        sum += 0.5 * s * model_.masses()[i] * (x.row(i) - origin_.row(i)).squaredNorm();
+        sum += 0.5 * s * model_->masses()[i] * (x.row(i) - origin_.row(i)).squaredNorm();
     return sum;
   }
 
@@ -667,7 +667,7 @@ class Newton {
     result_.flops += cholesky_.flops();
     factored_ = &matrix;
     factor_shift_ = inverse_h2() + added_mass_ + extra_shift;
-    return cholesky_.factorise(matrix, factor_shift_ * model_.masses());
+    return cholesky_.factorise(matrix, factor_shift_ * model_->masses());
   }
 
   /// Backtracking line search from the largest step that limits and contact allow. Updates x, g and the
@@ -709,7 +709,7 @@ class Newton {
     double sum = 0;
     const double s = inverse_h2();
     for (Eigen::Index i = 0; i < x.rows(); ++i)
-      if (!fixed_[i]) sum += (g.row(i) + s * model_.masses()[i] * (x.row(i) - origin_.row(i))).squaredNorm();
+      if (!fixed_[i]) sum += (g.row(i) + s * model_->masses()[i] * (x.row(i) - origin_.row(i))).squaredNorm();
     return std::sqrt(sum);
   }
 
@@ -753,7 +753,7 @@ class Newton {
     add_to_message(message);
     const bool failed =
         !succeeded(outcome) && outcome != Outcome::cancelled && outcome != Outcome::refined_early_on_request;
-    if (failed && result_.x.allFinite()) add_to_message(weak_barrier(model_, result_.x));
+    if (failed && result_.x.allFinite()) add_to_message(weak_barrier(*model_, result_.x));
     if (load_stepping_) result_.load_stepping = load_stepping_->state();
     result_.seconds += watch_.seconds();
     result_.analyses = cholesky_.analyses();
@@ -767,7 +767,7 @@ class Newton {
   }
 
   Objective& f_;
-  const LevelModel& model_;
+  const LevelModel* model_;  // the objective's
   const NewtonParameters& p_;
   const LevelRun& run_;
   const Stopwatch watch_;
