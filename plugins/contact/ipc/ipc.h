@@ -9,8 +9,10 @@
 
 namespace drape::ipc {
 
+struct ObstacleTree;
+
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
-class Ipc final : public ContactModel {
+class Ipc final : public ContactModel, public Rebindable {
  public:
   struct Parameters {
     bool self_contact = true;
@@ -26,12 +28,20 @@ class Ipc final : public ContactModel {
   };
 
   /// Reads and validates the obstacles. Throws std::runtime_error naming an invalid one.
-  explicit Ipc(const Parameters& parameters);
+  explicit Ipc(const Parameters& parameters) : Ipc(parameters, nullptr) {}
+  /// The same with the meshes, cages and trees of `before` where they are equal.
+  Ipc(const Parameters& parameters, const Ipc& before) : Ipc(parameters, &before) {}
+
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
+  std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
+                                       const BoundContact& before) const override;
 
  private:
+  Ipc(const Parameters& parameters, const Ipc* before);
+
   Parameters p_;
-  std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
+  std::vector<ObstacleMeshes> meshes_;                      // of each obstacle
+  std::vector<std::shared_ptr<const ObstacleTree>> trees_;  // by level; finer levels use the last
 };
 
 }  // namespace drape::ipc
