@@ -56,7 +56,8 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
   std::size_t levels = 1;
   for (const ObstacleParameters& p : p_.obstacles) {
     const std::size_t k = meshes_.size();
-    const bool same = before && ObstacleMeshes::are_same(p, before->p_.obstacles.at(k));
+    const bool same =
+        before && k < before->meshes_.size() && ObstacleMeshes::are_same(p, before->p_.obstacles[k]);
     meshes_.push_back(same ? before->meshes_[k] : ObstacleMeshes::of(p, static_cast<int>(k)));
     levels = std::max<std::size_t>(levels, p.cages.count + 1);
   }
@@ -65,29 +66,36 @@ Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
     for (std::size_t k = 0; k < meshes_.size(); ++k)
       bodies.push_back(
           Obstacle::of(p_.obstacles[k], static_cast<int>(k), meshes_[k], static_cast<int>(level)));
-    const auto old = before && level < before->trees_.size() ? before->trees_[level] : nullptr;
-    if (!old || old->obstacles->bodies != bodies)
-      trees_.push_back(ObstacleTree::of(std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies))),
-                                        p_.dhat, p_.broad_phase));
-    else if (old->dhat != p_.dhat || old->kind != p_.broad_phase)
-      trees_.push_back(ObstacleTree::of(old->obstacles, p_.dhat, p_.broad_phase));
-    else
-      trees_.push_back(old);
+    const bool same =
+        before && level < before->obstacles_.size() && before->obstacles_[level]->bodies == bodies;
+    obstacles_.push_back(same ? before->obstacles_[level]
+                              : std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies))));
   }
+  trees_.resize(levels);
+  if (!before || before->p_.dhat != p_.dhat || before->p_.broad_phase != p_.broad_phase) return;
+  const std::lock_guard lock(before->busy_);
+  for (std::size_t level = 0; level < std::min(levels, before->trees_.size()); ++level)
+    if (obstacles_[level] == before->obstacles_[level]) trees_[level] = before->trees_[level];
+}
+
+std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material,
+                                        std::shared_ptr<const RestCloth> rest) const {
+  const std::size_t k = std::min<std::size_t>(level.index, obstacles_.size() - 1);
+  const std::lock_guard lock(busy_);
+  if (!trees_[k]) trees_[k] = ObstacleTree::of(obstacles_[k], p_.dhat, p_.broad_phase);
+  return std::make_unique<BoundIpc>(p_, trees_[k], std::move(rest), material);
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
   if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
-  return std::make_unique<BoundIpc>(p_, trees_[std::min<std::size_t>(level.index, trees_.size() - 1)],
-                                    RestCloth::of(level, p_.dhat, p_.self_contact), material);
+  return bind(level, material, RestCloth::of(level, p_.dhat, p_.self_contact));
 }
 
 std::unique_ptr<BoundContact> Ipc::rebind(const Level& level, const Material& material,
                                           const BoundContact& before) const {
   const std::shared_ptr<const RestCloth>& rest = dynamic_cast<const BoundIpc&>(before).rest();
   if (rest->dhat != p_.dhat || rest->self_contact != p_.self_contact) return bind(level, material);
-  return std::make_unique<BoundIpc>(p_, trees_[std::min<std::size_t>(level.index, trees_.size() - 1)], rest,
-                                    material);
+  return bind(level, material, rest);
 }
 
 }  // namespace drape::ipc

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 namespace drape::ipc {
 
 struct ObstacleTree;
+struct RestCloth;
 
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
 class Ipc final : public ContactModel, public Rebindable {
@@ -38,10 +40,15 @@ class Ipc final : public ContactModel, public Rebindable {
 
  private:
   Ipc(const Parameters& parameters, const Ipc* before);
+  std::unique_ptr<BoundContact> bind(const Level& level, const Material& material,
+                                     std::shared_ptr<const RestCloth> rest) const;
 
   Parameters p_;
-  std::vector<ObstacleMeshes> meshes_;                      // of each obstacle
-  std::vector<std::shared_ptr<const ObstacleTree>> trees_;  // by level; finer levels use the last
+  std::vector<ObstacleMeshes> meshes_;                       // of each obstacle
+  std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
+  // Of each of them, made when a level is first bound: a load may be bound to one level alone.
+  mutable std::vector<std::shared_ptr<const ObstacleTree>> trees_;
+  mutable std::mutex busy_;
 };
 
 }  // namespace drape::ipc
