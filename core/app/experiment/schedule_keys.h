@@ -24,7 +24,7 @@ class KeyedValues {
   std::vector<double> first() const;
   /// The number of values of key k.
   std::size_t count(std::size_t k) const { return values_[k][0].size(); }
-  /// The first values as the parameter of key k is written: a number or a list.
+  /// The values of key k from `values` on, as its parameter is written: a number or a list.
   ConfigNode node(std::size_t k, const double* values) const;
 
  private:
