@@ -14,6 +14,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/machine.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/version.h"
 
@@ -70,6 +71,21 @@ class LevelZero : public Observer {
   bool ended_ = false;
 };
 
+/// Milliseconds of each increment before any step, on level 0 at the scene's start: the new load and its
+/// model.
+std::vector<double> load_milliseconds(const Scene& scene) {
+  LoadStepping& stepping = *scene.schedule;
+  stepping.begin(0, true);
+  std::vector<double> milliseconds;
+  for (std::size_t k = 0; k <= std::size(changes); ++k) {
+    const Stopwatch watch;
+    if (k > 0) stepping.advance(0, scene.starts[0]);
+    stepping.model(0);
+    milliseconds.push_back(1e3 * watch.seconds());
+  }
+  return milliseconds;
+}
+
 int run(const char* result_file, const std::string& side) {
   Registry registry;
   load_plugins(registry, plugin_directories());
@@ -93,9 +109,12 @@ int run(const char* result_file, const std::string& side) {
         solver->solve(scene->problem(), level);
         all.push_back(level.rows);
       }
+  const std::vector<double> load = load_milliseconds(*scene);
   for (std::size_t k = 0; k <= std::size(changes); ++k) {
     const char* what = k == 0 ? "from the start" : changes[k - 1].what;
     rows[k]["change"] = what;
+    rows[k]["load_milliseconds"] = load[k];
+    std::printf("%-28s %-9s %21.2f ms\n", what, "load", load[k]);
     for (std::size_t m = 0; m < all.size(); ++m) {
       if (k >= all[m].size()) continue;
       const IncrementRow& r = all[m][k];

@@ -21,7 +21,7 @@ struct Increments : Observer {
     states.push_back(x);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
-    for (const auto& contact : s.scene->models[row.level]->contacts())
+    for (const auto& contact : s.scene->model(row.level).contacts())
       intersections += contact->intersections(x).size();
   }
 };

@@ -20,7 +20,7 @@ struct Solved {
   std::vector<drape::LevelResult> levels;
 
   const drape::Level& level() const { return scene->hierarchy.levels.back(); }
-  const drape::LevelModel& model() const { return *scene->models.back(); }
+  const drape::LevelModel& model() const { return scene->finest_model(); }
   const drape::Positions& rest() const { return level().rest.vertices; }
   const drape::Positions& x() const { return levels.back().x; }
 };

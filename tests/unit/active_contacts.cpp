@@ -250,10 +250,9 @@ TEST_CASE("Ten layers that stick to each other do not creep") {
     CHECK((friction(x1) - f).norm() <= 1e-9 * f.norm());
   }
   // Nor under a common translation, while an obstacle elsewhere moves.
-  const BoundContacts before = models;
   models = beside_a_box("[0, 9.1, 0]");
   const Positions x2 = x1.rowwise() + Eigen::RowVector3d(0.02, -0.01, 0.03);
-  contacts.update_obstacles(before, x1, x2);
+  contacts.update_obstacles(models, x1, x2);
   CHECK((friction(x2) - f).norm() <= 1e-9 * f.norm());
 }
 
@@ -262,16 +261,13 @@ TEST_CASE("Tangential displacements are advected by obstacle motion") {
   const double height = 0.4 * dhat, force = normal_force(height);
   const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
   // The sheet slides on a plate, which then moves in the opposite direction, twice by 0.2 ε.
-  BoundContacts models = bound(level, {a_plate(0)}), before = models;
-  ActiveContacts contacts(models);
+  ActiveContacts contacts(bound(level, {a_plate(0)}));
   contacts.begin_step(x0);
   contacts.max_step(x0, x1);
   contacts.begin_step(x1);
   CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon)));
   for (const double moved : {-0.2 * epsilon, -0.4 * epsilon}) {
-    before = models;
-    models = bound(level, {a_plate(moved)});
-    contacts.update_obstacles(before, x1, x1);
+    contacts.update_obstacles(bound(level, {a_plate(moved)}), x1, x1);
     CHECK(contacts.advected());
     CHECK(contacts.friction(x1) == Approx(force * potential(0.3 * epsilon - moved)));
   }
@@ -288,14 +284,12 @@ TEST_CASE("A moving cloth's tangential displacements are relative to the obstacl
   const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
   for (const auto& [obstacle_motion, expected] :
        {std::pair(7 * epsilon, 0.3 * epsilon), std::pair(5 * epsilon, 2.3 * epsilon)}) {
-    BoundContacts models = bound(level, {a_plate(0)}), before = models;
-    ActiveContacts contacts(models);
+    ActiveContacts contacts(bound(level, {a_plate(0)}));
     contacts.begin_step(x0);
     contacts.max_step(x0, x1);
     contacts.begin_step(x1);
-    models = bound(level, {a_plate(obstacle_motion)});
     const Positions x2 = at(level, 7.3 * epsilon, height);
-    contacts.update_obstacles(before, x1, x2);
+    contacts.update_obstacles(bound(level, {a_plate(obstacle_motion)}), x1, x2);
     CHECK(contacts.friction(x2) == Approx(force * potential(expected)));
     contacts.begin_step(x2);
     CHECK(contacts.friction(x2) == Approx(force * potential(expected)));
@@ -316,21 +310,19 @@ TEST_CASE("Tangential displacements on a static obstacle are the cloth's own, an
   };
   const Positions x1 = at(level, 0.3 * epsilon, height), x2 = at(level, 2.3 * epsilon, height);
   for (int k = 0; k < 2; ++k) {
-    BoundContacts models = on_floor(5)[k], before = models;
-    ActiveContacts contacts(models);
+    const BoundContacts before = on_floor(5)[k];
+    ActiveContacts contacts(before);
     contacts.begin_step(at(level, 0, height));
     contacts.max_step(at(level, 0, height), x1);
     contacts.begin_step(x1);
-    models = on_floor(5.5)[k];
+    BoundContacts models = on_floor(5.5)[k];
     if (k == 1) models[0] = before[0];
-    contacts.update_obstacles(before, x1, x2);
+    contacts.update_obstacles(models, x1, x2);
     CHECK(contacts.friction(x2) == Approx(force * potential(2.3 * epsilon)));
 
-    before = models;
     ActiveContacts far(models);
     far.begin_step(at(level, 0, 3 * dhat));
-    models = on_floor(6)[k];
-    far.update_obstacles(before, at(level, 0, 3 * dhat), x2);
+    far.update_obstacles(on_floor(6)[k], at(level, 0, 3 * dhat), x2);
     CHECK(far.count() > 0);
     CHECK(far.friction(x2) == 0);
   }

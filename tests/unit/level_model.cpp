@@ -63,6 +63,28 @@ class Springs : public Energy, public BoundEnergy {
   int count_;
 };
 
+/// Nothing to collide with; knows what it was bound from.
+class Traced : public ContactModel, public Rebindable {
+ public:
+  struct Bound : BoundContact {
+    const BoundContact* from = nullptr;
+    std::unique_ptr<CollisionCandidates> build_candidates(const Positions&, const Positions&) const override {
+      return nullptr;
+    }
+    std::vector<Intersection> intersections(const Positions&) const override { return {}; }
+    std::vector<TriangleMesh> obstacles() const override { return {}; }
+  };
+  std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override {
+    return std::make_unique<Bound>();
+  }
+  std::unique_ptr<BoundContact> rebind(const Level&, const Material&,
+                                       const BoundContact& before) const override {
+    auto bound = std::make_unique<Bound>();
+    bound->from = &before;
+    return bound;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
@@ -84,4 +106,28 @@ TEST_CASE("linear energies are evaluated together, and limits apart", "[level_mo
   const Positions forces = 1.5 * level.rest.vertices.array().cos();
   CHECK((g - (x - forces)).norm() < 1e-12 * g.norm());
   CHECK(model.load_norm(x) == Approx(2.5 / 1.5 * forces.norm()).epsilon(1e-12));
+}
+
+TEST_CASE("A model shares with another what is equal, and binds contacts from those before",
+          "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const std::vector<NamedEnergy> energies = {{"limit", std::make_shared<Springs>(EnergyRole::limit, 0)}};
+  const auto kept = std::make_shared<Traced>(), changed = std::make_shared<Traced>();
+  const auto from = [](const LevelModel& model, std::size_t k) {
+    return dynamic_cast<const Traced::Bound&>(*model.contacts().at(k)).from;
+  };
+  const LevelModel first(level, Material(), energies, {}, {kept, kept});
+  CHECK(from(first, 0) == nullptr);
+  const LevelModel next(level, Material(), energies, {{3, {0, 0, 1}, 0}}, {kept, changed}, &first);
+  CHECK(next.pattern() == first.pattern());
+  CHECK(next.limits() == first.limits());
+  CHECK(next.contacts()[0] == first.contacts()[0]);
+  CHECK(from(next, 1) == first.contacts()[1].get());
+  CHECK(next.dirichlet().size() == 1);
+  CHECK(first.dirichlet().empty());
+  Material heavier;
+  heavier.density *= 2;
+  const LevelModel heavy(level, heavier, energies, {}, {kept, changed}, &next);
+  CHECK(heavy.limits() != next.limits());
+  CHECK(from(heavy, 0) == next.contacts()[0].get());
 }

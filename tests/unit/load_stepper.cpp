@@ -17,6 +17,7 @@ class FakeLoads : public LoadStepping {
   double allowed = 1;   ///< by advance()
   bool follows = true;  ///< whether advance_by() applies anything
   bool to_equilibrium = true;
+  const LevelModel* unchanged = nullptr;  ///< the model under every load
   std::vector<double> fractions;  ///< that advance_by() applied
   Positions last;                 ///< the cloth that was last asked about
 
@@ -25,6 +26,7 @@ class FakeLoads : public LoadStepping {
   void begin(int, bool) override {}
   LoadSteppingState state() const override { return {increment_, {applied_}}; }
   void restore(int, const LoadSteppingState&) override {}
+  std::shared_ptr<const LevelModel> model(int) override { return {std::shared_ptr<void>(), unchanged}; }
   int increment() const override { return increment_; }
   bool complete() const override { return applied_ == 1; }
   double time() const override { return 10.0 * increment_; }
@@ -63,6 +65,8 @@ struct Case {
   Stopwatch clock;
   DirichletEnforcer dirichlet{problem.model};
   LoadStepper stepper{&loads, problem.iterate, dirichlet, clock, observer};
+
+  Case() { loads.unchanged = &problem.model; }
 
   /// Moves the cloth as a solve to equilibrium would.
   void move(double by) { problem.move_to(problem.iterate.x().array() + by); }

@@ -210,11 +210,13 @@ namespace {
 /// Increments that change nothing, each followed by one implicit step.
 class Idle : public LoadStepping {
  public:
+  explicit Idle(std::shared_ptr<const LevelModel> model) : model_(std::move(model)) {}
   int increment_count() const override { return 3; }
   bool equilibrates() const override { return false; }
   void begin(int, bool) override { increment_ = 0; }
   LoadSteppingState state() const override { return {increment_, {}}; }
   void restore(int, const LoadSteppingState& state) override { increment_ = state.increment; }
+  std::shared_ptr<const LevelModel> model(int) override { return model_; }
   int increment() const override { return increment_; }
   bool complete() const override { return true; }
   double time() const override { return increment_; }
@@ -222,6 +224,7 @@ class Idle : public LoadStepping {
   bool advance_by(double, int, const Positions&) override { return false; }
 
  private:
+  const std::shared_ptr<const LevelModel> model_;
   int increment_ = 0;
 };
 
@@ -233,10 +236,11 @@ TEST_CASE("Steps from an equilibrium in doubles change nothing and do not fail",
       Case c;
       NewtonParameters p;
       p.form = form;
-      const LevelModel model(c.level, Material(), {{"wells", std::make_shared<Wells>(c.centres, 1e7, 0.1)}},
-                             {});
+      const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, 1e7, 0.1)}};
+      const auto model =
+          std::make_shared<const LevelModel>(c.level, Material(), wells, std::vector<DirichletVertex>());
       PlainObjective objective(model);
-      Idle idle;
+      Idle idle(model);
       // At the minimum up to round-off: in the ring around each centre.
       Positions x = c.centres;
       x.col(2).array() += 0.1 + away;
@@ -288,10 +292,10 @@ TEST_CASE("The smooth part is evaluated once for the same x, and again for anoth
   };
   Case c;
   const auto model_of = [&](double k) {
-    return LevelModel(c.level, Material(), {{"wells", std::make_shared<Wells>(c.centres, k, 0)}}, {});
+    const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, k, 0)}};
+    return std::make_shared<const LevelModel>(c.level, Material(), wells, std::vector<DirichletVertex>());
   };
-  LevelModel model = model_of(10);
-  Counted objective(model);
+  Counted objective(model_of(10));
   const Positions x = c.level.rest.vertices;
   Positions first, again;
   const double energy = objective.gradient(x, first);
@@ -304,9 +308,7 @@ TEST_CASE("The smooth part is evaluated once for the same x, and again for anoth
   CHECK(objective.gradient(x, again) == energy);
   CHECK(objective.evaluated == 3);
 
-  const BoundContacts none;
-  model = model_of(20);
-  objective.model_changed(none, x, x);
+  objective.set_model(model_of(20), x, x);
   CHECK(objective.gradient(x, again) == Approx(2 * energy));
   CHECK((again - 2 * first).norm() <= 1e-12 * first.norm());
   CHECK(objective.evaluated == 4);

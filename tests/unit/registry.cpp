@@ -52,6 +52,19 @@ struct Linear final : Refiner {
   Refinement refine(const Level&) const override { return {}; }
 };
 
+/// Shares a number with the object that it is made from.
+struct Sharing final : Ballast, Refiner {
+  struct Parameters {
+    int columns = 1;
+    static void declare(Declaration<Parameters>& d) { d.add("columns", &Parameters::columns); }
+  };
+  explicit Sharing(const Parameters& p) : columns(p.columns), shared(std::make_shared<int>(p.columns)) {}
+  Sharing(const Parameters& p, const Sharing& before) : columns(p.columns), shared(before.shared) {}
+  Refinement refine(const Level&) const override { return {}; }
+  int columns;
+  std::shared_ptr<int> shared;
+};
+
 Registry filled() {
   Registry registry;
   registry.current_library = "/lib/a.so";
@@ -183,4 +196,25 @@ TEST_CASE("the JSON schema of a node allows the registered plugins and their par
     "additionalProperties": false, "required": ["type"], "description": "Loop subdivision."})"));
   CHECK(schema["properties"]["refiners"]["items"]["anyOf"] == one["anyOf"]);
   CHECK(json_schema(schema_of<Top>())["properties"]["refiners"]["items"] == nlohmann::ordered_json::object());
+}
+
+TEST_CASE("an object is made from the one before, if its plugin knows how to") {
+  Registry registry = filled();
+  registry.add<Refiner, Sharing>("sharing", "Shares a number.");
+  ConfigErrors errors;
+  const auto first = make_from<Refiner>(registry, node_of("sharing"), errors);
+  const auto next =
+      make_from<Refiner>(registry, node_of("{type: sharing, columns: 2}"), errors, nullptr, first.get());
+  const auto alone = make_from<Refiner>(registry, node_of("{type: sharing, columns: 2}"), errors);
+  REQUIRE(errors.empty());
+  const auto& made = dynamic_cast<const Sharing&>(*next);
+  CHECK(made.columns == 2);
+  CHECK(made.shared == dynamic_cast<const Sharing&>(*first).shared);
+  CHECK(*dynamic_cast<const Sharing&>(*alone).shared == 2);
+  // Others are made anew.
+  const auto loop = make_from<Refiner>(registry, node_of("loop"), errors);
+  const auto other =
+      make_from<Refiner>(registry, node_of("{type: loop, corner_angle: 45}"), errors, nullptr, loop.get());
+  REQUIRE(other);
+  CHECK(other->refine(Level()).weights.rows() == 45);
 }

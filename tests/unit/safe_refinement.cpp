@@ -17,7 +17,7 @@ namespace {
 /// A cloth on two levels, refined by Loop's weights, with pins, contact and limits on both.
 struct TwoLevels {
   Hierarchy hierarchy;
-  std::vector<std::unique_ptr<LevelModel>> models;
+  std::vector<std::shared_ptr<const LevelModel>> models;
   std::vector<Positions> starts;
   std::vector<NamedEnergy> energies_;
   std::vector<std::shared_ptr<ContactModel>> contacts_;
@@ -33,8 +33,8 @@ struct TwoLevels {
     for (const Level& level : hierarchy.levels) {
       std::vector<DirichletVertex> dirichlet;
       for (const int v : pins) dirichlet.push_back({v, level.rest.vertices.row(v), 0});
-      models.push_back(
-          std::make_unique<LevelModel>(level, Material(), own, std::move(dirichlet), models_of_contact));
+      models.push_back(std::make_shared<const LevelModel>(level, Material(), own, std::move(dirichlet),
+                                                          models_of_contact));
       starts.push_back(level.rest.vertices);
       energies_ = own;
       contacts_ = models_of_contact;
@@ -42,10 +42,11 @@ struct TwoLevels {
   }
   /// Replaces the Dirichlet vertices of the finer level.
   void prescribe(std::vector<DirichletVertex> dirichlet) {
-    *models[1] = LevelModel(hierarchy.levels[1], Material(), energies_, std::move(dirichlet), contacts_);
+    models[1] = std::make_shared<const LevelModel>(hierarchy.levels[1], Material(), energies_,
+                                                   std::move(dirichlet), contacts_);
   }
 
-  Problem problem() const { return {hierarchy, {models[0].get(), models[1].get()}, starts}; }
+  Problem problem() const { return {hierarchy, models, starts}; }
   Positions target(const Positions& x) const { return hierarchy.prolongations[0] * x; }
   Positions midpoint(const Positions& x) const { return hierarchy.midpoints[0] * x; }
 
@@ -250,8 +251,7 @@ TEST_CASE("If refinement fails, the level starts from the scene's start, and its
   Observer silent;
   const std::vector<LevelResult> results = solve_progressively(
       problem, cloth.hierarchy.midpoints,
-      [&](int level) { return std::make_unique<PlainObjective>(*problem.models[level]); }, newton, {},
-      silent);
+      [&](int level) { return std::make_unique<PlainObjective>(problem.model(level)); }, newton, {}, silent);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
   CHECK_FALSE(results[1].from_initial_state);       // the attempt counts as cost

@@ -57,6 +57,7 @@ struct Forty : LoadStepping {
   void begin(int, bool) override {}
   LoadSteppingState state() const override { return {at, {}}; }
   void restore(int, const LoadSteppingState&) override {}
+  std::shared_ptr<const LevelModel> model(int) override { return nullptr; }
   int increment() const override { return at; }
   bool complete() const override { return true; }
   double time() const override { return at; }

@@ -5,7 +5,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/app/experiment/schedule.h"
+#include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/mesh/message_text.h"

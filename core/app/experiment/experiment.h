@@ -149,7 +149,7 @@ struct Experiment {
   std::vector<std::shared_ptr<ContactModel>> contacts;
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
-  const Registry* registry = nullptr;  ///< of the plugins; a schedule makes further ones
+  const Registry* registry = nullptr;  ///< of the plugins; a schedule makes others of them
 
   /// The solver of a method. Throws std::logic_error for an unknown method.
   const Solver& solver_of(const std::string& method) const;
@@ -174,12 +174,15 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
 /// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;
-  std::vector<NamedEnergy> energies;  ///< of the models, handles included
-  std::vector<std::unique_ptr<LevelModel>> models;
+  std::vector<NamedEnergy> energies;                      ///< of the models, handles included
+  std::vector<std::shared_ptr<const LevelModel>> models;  ///< at the start, before any load stepping
   std::vector<Positions> starts;
   std::optional<Positions> reference;      ///< on the finest level, if the experiment names its file
   std::unique_ptr<LoadStepping> schedule;  ///< null without one
 
+  /// The model of a level under the load that it has reached; valid until the next load step.
+  const LevelModel& model(int level) const;
+  const LevelModel& finest_model() const { return model(static_cast<int>(models.size()) - 1); }
   Problem problem() const;
 };
 

@@ -5,7 +5,7 @@
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/reference_file.h"
-#include "core/app/experiment/schedule.h"
+#include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
@@ -150,11 +150,11 @@ Location Experiment::location_of(const std::string& key) const {
   return node ? node->where : source.where;
 }
 
-Problem Scene::problem() const {
-  Problem p{hierarchy, {}, starts, schedule.get()};
-  for (const auto& model : models) p.models.push_back(model.get());
-  return p;
+const LevelModel& Scene::model(int level) const {
+  return schedule ? *schedule->model(level) : *models[level];
 }
+
+Problem Scene::problem() const { return {hierarchy, models, starts, schedule.get()}; }
 
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
                                    IntersectingStart intersecting) {
@@ -192,8 +192,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {
-      scene->models.push_back(
-          std::make_unique<LevelModel>(level, p.material, scene->energies, std::move(dirichlet), e.contacts));
+      scene->models.push_back(std::make_shared<const LevelModel>(level, p.material, scene->energies,
+                                                                 std::move(dirichlet), e.contacts));
     } catch (const std::exception& error) {
       errors.push_back({e.location_of("energies"), reason_of(error)});
       return nullptr;
@@ -202,7 +202,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
-  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<Schedule>(e, *scene);
+  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;
 }

@@ -165,22 +165,11 @@ void set_places(ConfigNode& node, const Location& where) {
   for (Location& key : node.key_locations) key = where;
 }
 
-/// Whether the word is the type or the name of a list's item.
-bool is_called(const ConfigNode& item, const std::string& word) {
-  if (item.kind == Kind::scalar) return item.scalar == word;
-  for (const char* key : {"type", "name"})
-    if (const ConfigNode* name = item.find(key); name && name->scalar == word) return true;
-  return false;
-}
-
 /// The child of `node` that one word of a path names; a new key is added. Null without such a child.
 ConfigNode* step(ConfigNode& node, const std::string& word, const Location& where) {
   if (node.kind == Kind::list) {
-    if (const auto index = parse_integer(word))
-      return *index >= 0 && *index < int(node.items.size()) ? &node.items[size_t(*index)] : nullptr;
-    for (ConfigNode& item : node.items)
-      if (is_called(item, word)) return &item;
-    return nullptr;
+    const auto index = node.index_of(word);
+    return index ? &node.items[*index] : nullptr;
   }
   if (node.kind == Kind::scalar) {
     ConfigNode map;

@@ -85,7 +85,7 @@ class Check {
     const int level = c_.state.level, n = static_cast<int>(s.so_far.x.rows());
     require(s.so_far.level == level, "the level under way");
     result(s.so_far);
-    const std::size_t held = scene_.models[level]->dirichlet().size();
+    const std::size_t held = scene_.model(level).dirichlet().size();
     for (const int k : s.dirichlet.unsatisfied)
       require(k >= 0 && static_cast<std::size_t>(k) < held, "a Dirichlet vertex out of range");
     const int blend = s.step.factor.modification.blend;
@@ -104,7 +104,7 @@ class Check {
   }
 
   void contacts(const ContactMemory& memory, int level) const {
-    const BoundContacts& models = scene_.models[level]->contacts();
+    const BoundContacts& models = scene_.model(level).contacts();
     if (models.empty()) return;
     for (const Positions* x : {&memory.reference, &memory.candidates_begin, &memory.candidates_end})
       positions(*x, level, "the contacts");

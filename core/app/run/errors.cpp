@@ -30,7 +30,7 @@ std::string cells(const StateError& error) {
 
 double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
                         const Positions& x) {
-  return scene.models.back()->value(
+  return scene.finest_model().value(
       scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1, weights));
 }
 
@@ -41,7 +41,7 @@ StateError state_error(const Experiment& experiment, const Scene& scene, const P
     if (metric->scope() != MetricScope::pair) continue;
     try {
       const MetricResult result =
-          metric->evaluate({scene.hierarchy.levels.back(), *scene.models.back(), target.x, &x});
+          metric->evaluate({scene.hierarchy.levels.back(), scene.finest_model(), target.x, &x});
       for (const MetricValue& v : result.values)
         for (std::size_t k = 0; k < metric_values.size(); ++k)
           if (v.name == metric_values[k]) error[k] = v.better == Better::higher ? 1 - v.value : v.value;
@@ -86,7 +86,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     for (const char* measure : error_measures) text += "," + std::string(target) + "_" + measure;
   text += "\n";
   std::optional<ErrorTarget> standard;
-  if (reference) standard = {*reference, scene_.models.back()->value(*reference)};
+  if (reference) standard = {*reference, scene_.finest_model().value(*reference)};
   for (const LevelSnapshots& level : levels_) {
     std::optional<ErrorTarget> own;
     for (const LevelSnapshots& other : levels_)

@@ -158,7 +158,7 @@ void Recorder::level_started(int level) {
 }
 
 Recorder::Json Recorder::intersections(int level, const Positions& x) {
-  const auto& contacts = scene_.models[level]->contacts();
+  const auto& contacts = scene_.model(level).contacts();
   if (contacts.empty()) return nullptr;
   std::size_t count = 0;
   for (const auto& contact : contacts) {
@@ -200,7 +200,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
   double energy = 0;
-  for (const auto& [name, joules] : scene_.models[r.level]->energy_parts(r.x)) energy += joules;
+  for (const auto& [name, joules] : scene_.model(r.level).energy_parts(r.x)) energy += joules;
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
@@ -285,7 +285,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
-        measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.models[level], x, &other}, row);
+        measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
     for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
     for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
   }
@@ -310,7 +310,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :
-             measure(name, *metric, {scene_.hierarchy.levels[r.level], *scene_.models[r.level], r.x}, state)
+             measure(name, *metric, {scene_.hierarchy.levels[r.level], scene_.model(r.level), r.x}, state)
                  .values)
           at_dotted(state, v.name) = finite_or_null(v.value);
   }

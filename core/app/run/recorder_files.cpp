@@ -88,7 +88,7 @@ Recorder::Names Recorder::write_scene() {
   if (scene_.reference)
     write("reference.ply", {*scene_.reference, scene_.hierarchy.levels.back().rest.triangles});
   results_["obstacles"] = Json::array();
-  for (const auto& contact : scene_.models.back()->contacts())
+  for (const auto& contact : scene_.finest_model().contacts())
     for (const TriangleMesh& obstacle : contact->obstacles()) {
       const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
       write(name, obstacle);

@@ -69,7 +69,7 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 class StartProbe {
  public:
   explicit StartProbe(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
-    for (const auto& contact : scene.models[0]->contacts())
+    for (const auto& contact : scene.model(0).contacts())
       for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
     const Positions& x = scene.starts[0];
     diagonal_ = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
@@ -82,7 +82,7 @@ class StartProbe {
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
       const Positions x = scene_.starts[l].rowwise() + translation.transpose();
       clearance.level = static_cast<int>(l);
-      for (const auto& contact : scene_.models[l]->contacts()) {
+      for (const auto& contact : scene_.model(static_cast<int>(l)).contacts()) {
         clearance.touches = contact->intersections(x);
         if (!clearance.touches.empty()) return clearance;
         const auto near = contact->build_candidates(x, x)->build_collisions(x);

@@ -17,7 +17,7 @@ constexpr double looked_lately = 5;      // since a page last asked [s]
 
 std::vector<TriangleMesh> obstacles_of(const Scene& scene) {
   std::vector<TriangleMesh> all;
-  for (const auto& contact : scene.models.back()->contacts())
+  for (const auto& contact : scene.finest_model().contacts())
     for (TriangleMesh& mesh : contact->obstacles()) all.push_back(std::move(mesh));
   return all;
 }
@@ -30,7 +30,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
       tolerance_(experiment.parameters.newton.force_tolerance),
       finest_(static_cast<int>(scene.models.size()) - 1),
       obstacles_(obstacles_of(scene)),
-      document_(scene.hierarchy.levels, obstacles_, !scene.models.back()->contacts().empty(),
+      document_(scene.hierarchy.levels, obstacles_, !scene.finest_model().contacts().empty(),
                 [this](const std::string& name, std::string bytes) { keep(name, std::move(bytes)); }) {
   for (const auto& [name, solver] : experiment.methods)
     if (methods.empty() || std::find(methods.begin(), methods.end(), name) != methods.end())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace drape {
 
@@ -51,13 +52,15 @@ bool ActiveContacts::has_friction() const {
                      [](const auto& friction) { return friction != nullptr; });
 }
 
-void ActiveContacts::update_obstacles(const BoundContacts& before, const Positions& from,
+void ActiveContacts::update_obstacles(const BoundContacts& models, const Positions& from,
                                       const Positions& x) {
-  if (models_ == before) return;
+  if (models_ == models) return;
   if (!advected_ && has_friction()) {
     store_tangential_displacements(from);
     update_lagging(from);
   }
+  // Until the end: the friction below refers to them.
+  const BoundContacts before = std::exchange(models_, models);
   Positions obstacle_motion = Positions::Zero(x.rows(), 3);
   for (std::size_t k = 0; k < models_.size(); ++k)
     if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[k].get());

@@ -21,8 +21,7 @@ struct ContactMemory {
 /// without contact models.
 class ActiveContacts {
  public:
-  /// Keeps a reference to `models`.
-  explicit ActiveContacts(const BoundContacts& models) : models_(models) {}
+  explicit ActiveContacts(BoundContacts models) : models_(std::move(models)) {}
 
   bool any() const { return !models_.empty(); }
   bool has_friction() const;
@@ -32,9 +31,9 @@ class ActiveContacts {
   /// Starts a step at x: lags friction's normal forces and tangents there, and stores the tangential
   /// displacements.
   void begin_step(const Positions& x);
-  /// Replaces the models `before`, with the cloth at `from`, by the current ones, with the cloth at x.
-  /// Updates tangential displacements by the relative motion of cloth and obstacles.
-  void update_obstacles(const BoundContacts& before, const Positions& from, const Positions& x);
+  /// Replaces the models, with the cloth at `from`, by those of the same level under another load, with the
+  /// cloth at x. Updates tangential displacements by the relative motion of cloth and obstacles.
+  void update_obstacles(const BoundContacts& models, const Positions& from, const Positions& x);
   /// Whether obstacle motion has advected tangential displacements since the last step began.
   bool advected() const { return advected_; }
   /// Lags normal forces and tangents at x. The reference of tangential displacements stays.
@@ -72,7 +71,7 @@ class ActiveContacts {
   /// advected and not limited.
   void store_tangential_displacements(const Positions& x, const Positions* obstacle_motion = nullptr);
 
-  const BoundContacts& models_;
+  BoundContacts models_;
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
   std::shared_ptr<const LinearMotion> candidates_motion_, collisions_motion_;  // that each was built for

@@ -111,4 +111,14 @@ class ContactModel {
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
 };
 
+/// Optional interface of a ContactModel whose binding is costly, for load stepping.
+class Rebindable {
+ public:
+  virtual ~Rebindable() = default;
+  /// The same as bind(level, material). Shares what did not change with `before`, which a model of the same
+  /// plugin was bound to on this level under another load.
+  virtual std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
+                                               const BoundContact& before) const = 0;
+};
+
 }  // namespace drape

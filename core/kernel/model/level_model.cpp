@@ -75,16 +75,16 @@ void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>&
                                const LevelModel* before) {
   contact_kinds_ = contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const bool same = before && before->contact_kinds_.at(k) == contacts[k] && before->material_ == material_;
-    bound_.push_back(same ? before->bound_[k] : contacts[k]->bind(*level_, material_));
+    const BoundContact* old = before ? before->bound_.at(k).get() : nullptr;
+    const auto* rebindable = old ? dynamic_cast<const Rebindable*>(contacts[k].get()) : nullptr;
+    if (before && before->contact_kinds_[k] == contacts[k] && before->material_ == material_)
+      bound_.push_back(before->bound_[k]);
+    else if (rebindable)
+      bound_.push_back(rebindable->rebind(*level_, material_, *old));
+    else
+      bound_.push_back(contacts[k]->bind(*level_, material_));
     if (bound_.back()) contacts_.push_back(bound_.back());
   }
-}
-
-void LevelModel::take_contacts(const LevelModel& other) {
-  contact_kinds_ = other.contact_kinds_;
-  bound_ = other.bound_;
-  contacts_ = other.contacts_;
 }
 
 void LevelModel::add_up_linear_energies() {

@@ -28,8 +28,8 @@ struct DirichletVertex {
 };
 
 /// The plain model of one level at one point of the pseudo-time: the sum E_l of its energies, its contacts,
-/// its lumped masses and its Dirichlet vertices (docs/method.md, section 1). Load stepping assigns another
-/// model to it. Refers to `level`, which must outlive it.
+/// its lumped masses and its Dirichlet vertices (docs/method.md, section 1). Immutable: load stepping makes
+/// another one. Refers to `level`, which must outlive it.
 class LevelModel {
  public:
   /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
@@ -39,9 +39,6 @@ class LevelModel {
              std::vector<DirichletVertex> dirichlet,
              const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
              const LevelModel* before = nullptr);
-
-  /// Takes over the contacts of another model of the same level.
-  void take_contacts(const LevelModel& other);
 
   const Level& level() const { return *level_; }
   const Material& material() const { return material_; }

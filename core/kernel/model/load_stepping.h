@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/kernel/model/energy.h"
 #include "core/kernel/model/level.h"
 
 namespace drape {
+
+class LevelModel;
 
 /// How far load stepping has come.
 struct LoadSteppingState {
@@ -14,9 +17,9 @@ struct LoadSteppingState {
 };
 
 /// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
-/// is solved (docs/method.md, section 8). The increments are 0 … increment_count(); the models of a problem
-/// always have the parameters that were reached. An increment that the cloth does not allow at once, such as
-/// an obstacle that would hit it, is applied in part and continued later.
+/// is solved (docs/method.md, section 8). The increments are 0 … increment_count(). An increment that the
+/// cloth does not allow at once, such as an obstacle that would hit it, is applied in part and continued
+/// later. Models are values: every load that is reached has its own.
 class LoadStepping {
  public:
   virtual ~LoadStepping() = default;
@@ -26,13 +29,17 @@ class LoadStepping {
   /// always solved to equilibrium.
   virtual bool equilibrates() const = 0;
 
-  /// Prepares a level: gives its model and the energies of finer levels the parameters of increment 0 if the
-  /// level starts from the scene's start, and those that the previous level reached otherwise.
+  /// Begins a level: returns to increment 0 if the level starts from the scene's start, and otherwise goes on
+  /// from the load that the previous level reached.
   virtual void begin(int level, bool from_start) = 0;
 
   virtual LoadSteppingState state() const = 0;
-  /// Prepares a level with the parameters of an earlier state.
+  /// Begins a level with the load of an earlier state.
   virtual void restore(int level, const LoadSteppingState& state) = 0;
+
+  /// The plain model of a level under the current load. Levels coarser than the one that was begun keep the
+  /// load that they reached.
+  virtual std::shared_ptr<const LevelModel> model(int level) = 0;
 
   /// The current increment, and whether it has been applied in full.
   virtual int increment() const = 0;

@@ -22,7 +22,7 @@ double Objective::gradient(const Positions& x, Positions& g) {
 }
 
 double Objective::plain_energy(const Positions& x) {
-  double sum = model_.value(x) + contacts_.barrier(x);
+  double sum = model_->value(x) + contacts_.barrier(x);
   for (const BoundEnergy* limit : limits_) sum += limit->value(x);
   return sum;
 }
@@ -48,10 +48,13 @@ void Objective::smooth_pattern_changed() {
   assembler_ = HessianAssembler();
 }
 
-void Objective::model_changed(const BoundContacts& before, const Positions& from, const Positions& x) {
+void Objective::set_model(std::shared_ptr<const LevelModel> model, const Positions& from,
+                          const Positions& x) {
+  model_ = std::move(model);
+  model_changed();
   smooth_changed();
-  set_limits(model_.limits());
-  contacts_.update_obstacles(before, from, x);
+  set_limits(model_->limits());
+  contacts_.update_obstacles(model_->contacts(), from, x);
 }
 
 std::shared_ptr<const BlockPattern> Objective::restore(PatternState state, const Positions& x) {

@@ -15,12 +15,15 @@ namespace drape {
 /// limits S_l, barrier B_l and friction D_l. Not thread-safe: it owns the work space of its evaluations.
 class Objective {
  public:
+  explicit Objective(std::shared_ptr<const LevelModel> model)
+      : model_(std::move(model)), limits_(model_->limits()), contacts_(model_->contacts()) {}
+  /// Of a model that outlives the objective.
   explicit Objective(const LevelModel& model)
-      : model_(model), limits_(model.limits()), contacts_(model.contacts()) {}
+      : Objective(std::shared_ptr<const LevelModel>(std::shared_ptr<void>(), &model)) {}
   virtual ~Objective() = default;
 
   /// The level's plain model, which gives masses, fixed vertices and the force scale.
-  const LevelModel& model() const { return model_; }
+  const LevelModel& model() const { return *model_; }
 
   /// F(x) [J]; overwrites g with ∇F(x) [N]. +∞ outside the domain.
   double gradient(const Positions& x, Positions& g);
@@ -45,9 +48,9 @@ class Objective {
   /// next call F may be evaluated at x0 and up to that step; with contact, nowhere else.
   StepLimit max_step(const Positions& x0, const Positions& x1);
 
-  /// Load stepping has changed the model. Its contacts were `before` with the cloth at `from`; the cloth is
-  /// now at x.
-  void model_changed(const BoundContacts& before, const Positions& from, const Positions& x);
+  /// Goes on with the model of the same level under another load. The cloth was at `from` when the load
+  /// changed, and is now at x.
+  void set_model(std::shared_ptr<const LevelModel> model, const Positions& from, const Positions& x);
   /// Sets an additional energy that is not part of the model, such as a position penalty; null for none.
   void set_penalty(const BoundEnergy* penalty) {
     if (penalty || penalty_) invalidate_pattern();
@@ -61,7 +64,7 @@ class Objective {
 
   /// Scale [N] of the force residual: the norm of ∇F over free vertices is divided by it.
   virtual double residual_scale(const Positions& x, const Positions& gradient) const {
-    return model_.residual_scale(x, gradient);
+    return model_->residual_scale(x, gradient);
   }
   /// Whether the smooth part differs from the level's plain energy.
   virtual bool is_proxy() const = 0;
@@ -70,10 +73,13 @@ class Objective {
   virtual bool switch_to_plain() { return false; }
 
  protected:
-  /// Must depend on x alone until smooth_changed() or model_changed() is called: the last value is cached.
+  /// Must depend on x alone until smooth_changed() or set_model() is called: the last value is cached.
   virtual double smooth_gradient(const Positions& x, Positions& g) = 0;
   /// Other terms are added to the matrix in place if its pattern has all their blocks.
   virtual BlockMatrix& smooth_matrix(const Positions& x, Projection projection) = 0;
+
+  /// set_model() has given the level another model. For objectives that hold more than model().
+  virtual void model_changed() {}
 
   /// To be called when the smooth part becomes another function.
   void smooth_changed() { evaluated_at_.resize(0, 3); }
@@ -91,7 +97,7 @@ class Objective {
   void invalidate_pattern();
   double cached_smooth_gradient(const Positions& x, Positions& g);
 
-  const LevelModel& model_;
+  std::shared_ptr<const LevelModel> model_;
   std::vector<const BoundEnergy*> limits_;
   const BoundEnergy* penalty_ = nullptr;
   ActiveContacts contacts_;
@@ -106,6 +112,8 @@ class Objective {
 /// The plain energy E_l.
 class PlainObjective : public Objective {
  public:
+  explicit PlainObjective(std::shared_ptr<const LevelModel> model)
+      : Objective(std::move(model)), matrix_(this->model().pattern()) {}
   explicit PlainObjective(const LevelModel& model) : Objective(model), matrix_(model.pattern()) {}
   bool is_proxy() const override { return false; }
 

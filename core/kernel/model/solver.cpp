@@ -4,7 +4,8 @@ namespace drape {
 
 Positions Problem::prolong(const ProlongationMatrix& weights, int level, const Positions& x) const {
   Positions y = weights * x;
-  for (const DirichletVertex& d : models[level + 1]->dirichlet()) y.row(d.vertex) = d.target.transpose();
+  const std::shared_ptr<const LevelModel> finer = model(level + 1);
+  for (const DirichletVertex& d : finer->dirichlet()) y.row(d.vertex) = d.target.transpose();
   return y;
 }
 

@@ -16,12 +16,16 @@ namespace drape {
 /// Input of a method. Refers to objects that the experiment owns.
 struct Problem {
   const Hierarchy& hierarchy;
-  std::vector<const LevelModel*> models;  ///< the plain model of every level
+  std::vector<std::shared_ptr<const LevelModel>> models;  ///< the plain model of every level at the start
   std::vector<Positions>
       starts;  ///< the scene's start on every level, with Dirichlet vertices at their targets
   LoadStepping* load_stepping = nullptr;  ///< null without a schedule
 
   int finest() const { return static_cast<int>(models.size()) - 1; }
+  /// The plain model of a level under the current load.
+  std::shared_ptr<const LevelModel> model(int level) const {
+    return load_stepping ? load_stepping->model(level) : models[level];
+  }
   /// A level's state prolonged to the next level by `weights` (n_{l+1} × n_l), with Dirichlet vertices at
   /// their targets.
   Positions prolong(const ProlongationMatrix& weights, int level, const Positions& x) const;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 namespace {
@@ -70,6 +71,19 @@ std::string Location::text() const {
 std::string ConfigError::text() const {
   const std::string place = where.text();
   return printable(place.empty() ? message : place + ": " + message);
+}
+
+std::optional<std::size_t> ConfigNode::index_of(const std::string& word) const {
+  if (const auto index = parse_integer(word)) {
+    if (*index < 0 || *index >= static_cast<int>(items.size())) return std::nullopt;
+    return static_cast<std::size_t>(*index);
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].kind == Kind::scalar && items[i].scalar == word) return i;
+    for (const char* key : {"type", "name"})
+      if (const ConfigNode* own = items[i].find(key); own && own->scalar == word) return i;
+  }
+  return std::nullopt;
 }
 
 const ConfigNode* ConfigNode::find(const std::string& key) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,8 @@ struct ConfigNode {
   std::vector<Location> key_locations;                      ///< map only, one per entry
 
   const ConfigNode* find(const std::string& key) const;  ///< map entry or null
+  /// Index of the list's item that a word of a path names by its index from 0, its type or its name.
+  std::optional<std::size_t> index_of(const std::string& word) const;
 
   void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
 

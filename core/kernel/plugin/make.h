@@ -9,17 +9,30 @@ namespace drape {
 const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
                                  ConfigErrors& errors);
 
-/// As `make_from` for a kind given by name; the pointer is to the kind's interface.
-std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
-                                  ConfigErrors& errors, ConfigNode* resolved = nullptr);
+/// A plugin's parameters, before the object is made from them.
+struct PluginParameters {
+  const RegistryEntry* entry = nullptr;
+  std::shared_ptr<void> values;  ///< the entry's parameter struct; null if the node is not valid
+};
+PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
+                                        const ConfigNode& node, ConfigErrors& errors,
+                                        ConfigNode* resolved = nullptr);
+
+/// The object with these parameters, a pointer to the kind's interface, which may share with `before` what
+/// does not differ (RegistryEntry::make). Null, with an error at `where` appended, if the plugin refuses
+/// them.
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Location& where,
+                                  ConfigErrors& errors, const void* before = nullptr);
 
 /// The plugin object of a node, `loop` or `{type: loop, corner_angle: 30}`; null, with every error appended,
-/// if the node is not valid. `resolved` receives the node with every parameter.
+/// if the node is not valid. `resolved` receives the node with every parameter. The object may share with
+/// `before`, an object of the same plugin, what does not differ.
 template <class Interface>
 std::shared_ptr<Interface> make_from(const Registry& registry, const ConfigNode& node, ConfigErrors& errors,
-                                     ConfigNode* resolved = nullptr) {
-  return std::static_pointer_cast<Interface>(
-      make_plugin(registry, Kind<Interface>::name, node, errors, resolved));
+                                     ConfigNode* resolved = nullptr, const Interface* before = nullptr) {
+  const PluginParameters parameters =
+      read_plugin_parameters(registry, Kind<Interface>::name, node, errors, resolved);
+  return std::static_pointer_cast<Interface>(make_plugin(parameters, node.where, errors, before));
 }
 
 }  // namespace drape

@@ -148,6 +148,11 @@ ConfigNode absolute_path(ConfigNode path) {
 
 }  // namespace
 
+void read_parameter(const Parameter& p, void* object, const ConfigNode& value, ConfigErrors& errors) {
+  if (check(value, p, errors))
+    p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
+}
+
 std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
 std::optional<int> parse_integer(const std::string& text) { return parse_all<int>(text); }
 
@@ -215,10 +220,8 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
                                : known.empty()  ? "; it takes no keys"
                                                 : "; known keys are " + joined(known);
       errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
-    } else if (check(node, parameters[index], errors)) {
-      parameters[index].read(
-          object, parameters[index].path ? relative_path(node) : expand_shorthand(node, parameters[index]),
-          errors);
+    } else {
+      read_parameter(parameters[index], object, node, errors);
     }
   }
   for (const Parameter& p : parameters)

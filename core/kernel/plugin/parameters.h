@@ -39,7 +39,12 @@ struct Parameter {
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
   std::function<ConfigNode(const void* object)> write;
   std::shared_ptr<const class Schema> section;  ///< type "section" and "list of sections"
+  /// The struct of a section, or of an item of a list of sections; for these types only.
+  std::function<void*(void* object, std::size_t item)> section_in;
 };
+
+/// Reads a value of one parameter into the struct `object`. Appends an error if the value is not valid.
+void read_parameter(const Parameter& parameter, void* object, const ConfigNode& value, ConfigErrors& errors);
 
 /// The parameters of one struct.
 class Schema {
@@ -49,6 +54,7 @@ class Schema {
   std::map<std::string, std::string>
       moved;  ///< former keys whose parameter is in another section now → its path
   std::function<std::shared_ptr<void>()> fresh;  ///< a default-constructed struct
+  std::function<std::shared_ptr<void>(const void* object)> copy;
 
   /// Reads a map into `object` (a struct with this schema). Appends an error for every unknown key (with its
   /// new name or the nearest known one), wrong type, value out of range, missing required and repeated key.

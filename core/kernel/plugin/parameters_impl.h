@@ -165,6 +165,7 @@ class Declaration {
     p.write = [member, section](const void* object) {
       return section->write(&(static_cast<const Struct*>(object)->*member));
     };
+    p.section_in = [member](void* object, std::size_t) { return &(static_cast<Struct*>(object)->*member); };
     return ParameterHandle(p);
   }
 
@@ -182,6 +183,9 @@ class Declaration {
     p.write = [member, section](const void* object) {
       return parameter_detail::list_node(static_cast<const Struct*>(object)->*member,
                                          [&](const Section& item) { return section->write(&item); });
+    };
+    p.section_in = [member](void* object, std::size_t item) {
+      return &(static_cast<Struct*>(object)->*member)[item];
     };
     return ParameterHandle(p);
   }
@@ -213,6 +217,9 @@ Schema schema_of(const std::string& name) {
   parameter_detail::check_former_names(declaration.schema);
   declaration.schema.name = name;
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
+  declaration.schema.copy = [](const void* object) -> std::shared_ptr<void> {
+    return std::make_shared<Struct>(*static_cast<const Struct*>(object));
+  };
   return declaration.schema;
 }
 

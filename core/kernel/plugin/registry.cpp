@@ -67,26 +67,32 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   return nullptr;
 }
 
-std::shared_ptr<void> make_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
-                                  ConfigErrors& errors, ConfigNode* resolved) {
-  const RegistryEntry* entry = find_plugin(registry, kind, node, errors);
-  if (!entry) return nullptr;
+PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
+                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved) {
+  PluginParameters read{find_plugin(registry, kind, node, errors), nullptr};
+  if (!read.entry) return read;
   ConfigNode map = node;
   if (node.kind == ConfigNode::Kind::scalar) {
     map = ConfigNode();
     map.where = node.where;
     map.add("type", node);
   }
-  const Schema schema = section_schema(*entry);
-  const std::shared_ptr<void> parameters = entry->make_parameters();
+  const Schema schema = section_schema(*read.entry);
+  const std::shared_ptr<void> values = read.entry->make_parameters();
   const size_t before = errors.size();
-  schema.read(parameters.get(), map, errors);
-  if (resolved) *resolved = schema.write(parameters.get());
-  if (errors.size() != before) return nullptr;
+  schema.read(values.get(), map, errors);
+  if (resolved) *resolved = schema.write(values.get());
+  if (errors.size() == before) read.values = values;
+  return read;
+}
+
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Location& where,
+                                  ConfigErrors& errors, const void* before) {
+  if (!parameters.values) return nullptr;
   try {
-    return entry->make(parameters.get());
+    return parameters.entry->make(parameters.values.get(), before);
   } catch (const std::exception& error) {
-    errors.push_back({node.where, entry->name + ": " + reason_of(error)});
+    errors.push_back({where, parameters.entry->name + ": " + reason_of(error)});
     return nullptr;
   }
 }

@@ -19,8 +19,9 @@ struct RegistryEntry {
   Schema schema;        ///< its parameters
   /// A default-constructed parameter struct, for `schema` to read into.
   std::function<std::shared_ptr<void>()> make_parameters;
-  /// Makes the object from such a struct; the pointer is to the kind's interface.
-  std::function<std::shared_ptr<void>(const void* parameters)> make;
+  /// Makes the object from such a struct. `before`, null or an object of this entry with other parameters,
+  /// may share with it what does not differ. Both pointers to objects are to the kind's interface.
+  std::function<std::shared_ptr<void>(const void* parameters, const void* before)> make;
 };
 
 /// The schema of a plugin's section in a config: the key `type`, then its parameters.
@@ -29,7 +30,10 @@ Schema section_schema(const RegistryEntry& entry);
 /// All plugins. The loader fills it, the experiment reads it.
 class Registry {
  public:
-  /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name.
+  /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name. An
+  /// implementation that is costly to make can have a second constructor, from the parameters and a `const
+  /// Implementation&`: when a schedule changes its parameters, that one is given the object before, to share
+  /// what stays the same.
   /// Interface is one of the five of core/model. Throws std::runtime_error on a repeated name, with
   /// the paths of both libraries.
   template <class Interface, class Implementation>

@@ -2,6 +2,8 @@
 
 // Templates of registry.h; include that one.
 
+#include <type_traits>
+
 namespace drape {
 
 class ContactModel;
@@ -44,10 +46,15 @@ void Registry::add(const std::string& name, const std::string& summary) {
   entry->library = current_library;
   entry->schema = schema_of<Parameters>(name);
   entry->make_parameters = entry->schema.fresh;
-  entry->make = [](const void* parameters) -> std::shared_ptr<void> {
+  entry->make = [](const void* parameters, [[maybe_unused]] const void* before) -> std::shared_ptr<void> {
+    const auto& p = *static_cast<const Parameters*>(parameters);
     // Through Interface*, the type that the void pointer is cast back to.
-    std::shared_ptr<Interface> object =
-        std::make_shared<Implementation>(*static_cast<const Parameters*>(parameters));
+    std::shared_ptr<Interface> object;
+    if constexpr (std::is_constructible_v<Implementation, const Parameters&, const Implementation&>)
+      if (before)
+        object = std::make_shared<Implementation>(
+            p, dynamic_cast<const Implementation&>(*static_cast<const Interface*>(before)));
+    if (!object) object = std::make_shared<Implementation>(p);
     return object;
   };
   add_entry(std::move(entry));

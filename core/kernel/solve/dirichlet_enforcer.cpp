@@ -25,12 +25,12 @@ constexpr double min_initial_stiffness = 0.1;
 }  // namespace
 
 void DirichletEnforcer::begin(const Positions& x) {
-  fixed_ = model_.fixed();
+  fixed_ = model_->fixed();
   unsatisfied_.clear();
   penalty_.reset();
   infeasible_ = false;
   idle_ = 0;
-  const auto& vertices = model_.dirichlet();
+  const auto& vertices = model_->dirichlet();
   for (std::size_t k = 0; k < vertices.size(); ++k)
     if (x.row(vertices[k].vertex) != vertices[k].target.transpose())
       unsatisfied_.push_back(static_cast<int>(k));
@@ -39,14 +39,14 @@ void DirichletEnforcer::begin(const Positions& x) {
 Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
   Positions displacement = Positions::Zero(x.rows(), 3);
   for (int k : unsatisfied_) {
-    const DirichletVertex& d = model_.dirichlet()[k];
+    const DirichletVertex& d = model_->dirichlet()[k];
     displacement.row(d.vertex) = d.target.transpose() - x.row(d.vertex);
   }
   return displacement;
 }
 
 void DirichletEnforcer::set_satisfied() {
-  fixed_ = model_.fixed();
+  fixed_ = model_->fixed();
   blocked_by_.clear();
   unsatisfied_.clear();
   penalty_.reset();
@@ -56,28 +56,28 @@ void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
   blocked_by_ = blocked_by;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
   // (departure).
-  stiffness_ = std::max(model_.material().membrane_modulus,
+  stiffness_ = std::max(model_->material().membrane_modulus,
                         min_initial_stiffness * membrane_stiffness() / smallest_mass());
   best_ = INFINITY;
   release();
 }
 
 double DirichletEnforcer::membrane_stiffness() const {
-  return model_.material().membrane_modulus * model_.material().thickness;
+  return model_->material().membrane_modulus * model_->material().thickness;
 }
 
 double DirichletEnforcer::smallest_mass() const {
   double least = INFINITY;
-  for (int k : unsatisfied_) least = std::min(least, model_.masses()[model_.dirichlet()[k].vertex]);
+  for (int k : unsatisfied_) least = std::min(least, model_->masses()[model_->dirichlet()[k].vertex]);
   return least;
 }
 
 double DirichletEnforcer::patch_width() const {
-  return std::sqrt(smallest_mass() / (model_.material().density * model_.material().thickness));
+  return std::sqrt(smallest_mass() / (model_->material().density * model_->material().thickness));
 }
 
 void DirichletEnforcer::restore(const State& s) {
-  fixed_ = model_.fixed();
+  fixed_ = model_->fixed();
   unsatisfied_ = s.unsatisfied;
   stiffness_ = s.stiffness;
   best_ = s.best;
@@ -88,15 +88,15 @@ void DirichletEnforcer::restore(const State& s) {
 }
 
 void DirichletEnforcer::release() {
-  for (int k : unsatisfied_) fixed_[model_.dirichlet()[k].vertex] = 0;
+  for (int k : unsatisfied_) fixed_[model_->dirichlet()[k].vertex] = 0;
   make_penalty();
 }
 
 void DirichletEnforcer::make_penalty() {
   std::vector<PositionPenalty::Term> terms;
   for (int k : unsatisfied_) {
-    const DirichletVertex& d = model_.dirichlet()[k];
-    terms.push_back({d.vertex, d.target, stiffness_ * model_.masses()[d.vertex]});
+    const DirichletVertex& d = model_->dirichlet()[k];
+    terms.push_back({d.vertex, d.target, stiffness_ * model_->masses()[d.vertex]});
   }
   penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
 }
@@ -112,7 +112,7 @@ bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
   }
   if (idle_ >= max_idle && stiffness_ * smallest_mass() > excess_stiffness * membrane_stiffness()) {
     infeasible_ = true;
-    fixed_ = model_.fixed();
+    fixed_ = model_->fixed();
     penalty_.reset();
     return false;
   }
@@ -122,7 +122,7 @@ bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
 }
 
 double DirichletEnforcer::violation(const Positions& x, int unsatisfied) const {
-  const DirichletVertex& d = model_.dirichlet()[unsatisfied];
+  const DirichletVertex& d = model_->dirichlet()[unsatisfied];
   return (x.row(d.vertex) - d.target.transpose()).norm();
 }
 
@@ -135,14 +135,14 @@ double DirichletEnforcer::max_violation(const Positions& x) const {
 std::string DirichletEnforcer::message(const Positions& x) const {
   std::map<int, int> worst_of_pin;
   for (int k : unsatisfied_) {
-    const auto [it, first] = worst_of_pin.try_emplace(model_.dirichlet()[k].pin, k);
+    const auto [it, first] = worst_of_pin.try_emplace(model_->dirichlet()[k].pin, k);
     if (!first && violation(x, k) > violation(x, it->second)) it->second = k;
   }
   std::string text;
   for (const auto& [pin, k] : worst_of_pin) {
     text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " +
             three_digits(violation(x, k)) + " m short of its target (vertex " +
-            std::to_string(model_.dirichlet()[k].vertex) + ")";
+            std::to_string(model_->dirichlet()[k].vertex) + ")";
   }
   return text + (blocked_by_.empty() ? "" : ", blocked by " + blocked_by_);
 }

@@ -15,7 +15,10 @@ namespace drape {
 /// reached the vertices are fixed and the penalty is dropped.
 class DirichletEnforcer {
  public:
-  explicit DirichletEnforcer(const LevelModel& model) : model_(model) { fixed_ = model.fixed(); }
+  /// Of a model that outlives it, or that set_model replaces.
+  explicit DirichletEnforcer(const LevelModel& model) : model_(&model) { fixed_ = model.fixed(); }
+  /// Goes on with the same level's model under another load; begin() takes over its targets.
+  void set_model(const LevelModel& model) { model_ = &model; }
 
   /// Everything that does not follow from the model.
   struct State {
@@ -64,9 +67,9 @@ class DirichletEnforcer {
   double smallest_mass() const;       // of the unsatisfied vertices [kg]
   double patch_width() const;         // of the cloth that one such vertex stands for [m]
 
-  const LevelModel& model_;
+  const LevelModel* model_;
   std::vector<char> fixed_;
-  std::vector<int> unsatisfied_;  // indices into model_.dirichlet()
+  std::vector<int> unsatisfied_;  // indices into model_->dirichlet()
   std::unique_ptr<PositionPenalty> penalty_;
   double stiffness_ = 0;  // κ_B [1/s²]
   double best_ = 0;       // violation when a doubling last helped [m]

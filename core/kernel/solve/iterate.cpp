@@ -56,9 +56,9 @@ void Iterate::swap(Positions& x, Positions& gradient, double energy) {
   energy_ = energy;
 }
 
-void Iterate::model_changed(const BoundContacts& before, const Positions& from) {
+void Iterate::set_model(std::shared_ptr<const LevelModel> model, const Positions& from) {
   PhaseTimer t(result_.seconds_by_phase, "gradient");  // builds collisions
-  f_.model_changed(before, from, result_.x);
+  f_.set_model(std::move(model), from, result_.x);
 }
 
 const BlockMatrix& Iterate::hessian(Projection projection) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,8 @@ class Iterate {
   void move_to(const Positions& x) { result_.x = x; }
   /// Exchanges x and its forces with those of another point with this energy [J].
   void swap(Positions& x, Positions& gradient, double energy);
-  /// Load stepping has changed the model; its contacts were `before` with the cloth at `from`.
-  void model_changed(const BoundContacts& before, const Positions& from);
+  /// Goes on with the model of the same level under another load; the cloth was at `from` when it changed.
+  void set_model(std::shared_ptr<const LevelModel> model, const Positions& from);
 
   /// The objective's matrix at x [N/m]; overwrites the one before.
   const BlockMatrix& hessian(Projection projection) const;

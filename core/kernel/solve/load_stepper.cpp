@@ -26,7 +26,7 @@ constexpr double gap_reduction = 0.5;
 
 }  // namespace
 
-LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, const DirichletEnforcer& dirichlet,
+LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
                          const Stopwatch& clock, Observer& observer)
     : load_stepping_(load_stepping),
       iterate_(iterate),
@@ -55,12 +55,11 @@ void LoadStepper::advance(bool at_equilibrium) {
   Positions predicted = iterate_.x();
   // If the predictor gains no more than the last time, the obstacles advance without it.
   if (applied < 1 && applied * (1 - s_.response.fraction) <= s_.response.fraction) {
-    const BoundContacts before = iterate_.model().contacts();
     const StepLimit limit = load_stepping_->advance(result.level, iterate_.x());
     iterate_.set_limited_by(limit.by);
     applied += limit.fraction * (1 - applied);
     predicted = from;  // the cloth has not responded yet
-    iterate_.model_changed(before, iterate_.x());
+    update_model(iterate_.x());
   }
   s_.response = at_equilibrium && !load_stepping_->complete()
                     ? IncrementResponse{from, std::move(predicted), applied}
@@ -69,6 +68,12 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
+}
+
+/// Takes over the load that was reached; the cloth was at `from` when it changed.
+void LoadStepper::update_model(const Positions& from) {
+  iterate_.set_model(load_stepping_->model(iterate_.result().level), from);
+  dirichlet_.set_model(iterate_.model());
 }
 
 bool LoadStepper::gaps_are_closed() {
@@ -107,14 +112,13 @@ double LoadStepper::extrapolate() {
       if (pass < min_pass * reach) break;
       trial = from + (applied + pass) * direction;
     }
-    const BoundContacts before = iterate_.model().contacts();
     if (!is_finite_at(trial) ||
         !load_stepping_->advance_by(pass / (1 - applied), iterate_.result().level, trial)) {
       pass *= 0.5;
       continue;
     }
     iterate_.move_to(trial);
-    iterate_.model_changed(before, here);
+    update_model(here);
     applied += pass;
     if (contacts.smallest_gap() < gap_reduction * gap) break;
     pass *= 2;

@@ -35,7 +35,7 @@ class LoadStepper {
   void restore(const State& state) { s_ = state; }
 
   /// Refers to all arguments; without load stepping (null) there are no increments. `clock` is the method's.
-  LoadStepper(LoadStepping* load_stepping, Iterate& iterate, const DirichletEnforcer& dirichlet,
+  LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
               const Stopwatch& clock, Observer& observer);
 
   bool has_schedule() const { return load_stepping_ != nullptr; }
@@ -66,10 +66,11 @@ class LoadStepper {
   double extrapolate();
   bool is_finite_at(const Positions& x);
   bool gaps_are_closed();
+  void update_model(const Positions& from);
 
   LoadStepping* load_stepping_;
   Iterate& iterate_;
-  const DirichletEnforcer& dirichlet_;
+  DirichletEnforcer& dirichlet_;
   const Stopwatch& clock_;
   Observer& observer_;
   State s_;

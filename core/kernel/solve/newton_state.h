@@ -37,7 +37,7 @@ struct MethodState {
   const NewtonState* of(int l) const { return l == level && under_way ? &*under_way : nullptr; }
 };
 
-/// Gives a problem's models the load stepping parameters that they had in the state.
+/// Returns the levels of a problem to the loads that they had in the state.
 inline void restore_load_stepping(const Problem& problem, const MethodState& state) {
   if (!problem.load_stepping) return;
   for (const LevelResult& level : state.finished)

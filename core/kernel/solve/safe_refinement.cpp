@@ -156,7 +156,8 @@ bool is_collision_free(const LevelModel& model, const Positions& x, const Positi
 Refined refine_safely(const Problem& problem, int level, const Positions& x,
                       const ProlongationMatrix& weights, const Stopwatch& clock, Observer& observer) {
   const Stopwatch watch;
-  const LevelModel& model = *problem.models[level + 1];
+  const std::shared_ptr<const LevelModel> finer = problem.model(level + 1);
+  const LevelModel& model = *finer;
   Refined refined;
   if (model.contacts().empty() && model.limits().empty()) {
     refined.x = problem.prolong(weights, level, x);

@@ -8,10 +8,8 @@
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/contact/stiffness.h"
-#include "core/kernel/mesh/same_triangles.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "plugins/contact/ipc/surface_contacts.h"
-#include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {
 namespace {
@@ -126,51 +124,36 @@ class IpcCandidates final : public CollisionCandidates {
 }  // namespace
 
 std::shared_ptr<const RestCloth> RestCloth::of(const Level& level, double dhat, bool self_contact) {
-  static WeakCache<RestCloth> all;
-  const TriangleMesh& rest = level.rest;
-  return all.find_or_make(
-      [&](const RestCloth& cloth) {
-        return cloth.dhat == dhat && cloth.self_contact == self_contact &&
-               cloth.rest.vertices.rows() == rest.vertices.rows() && cloth.rest.vertices == rest.vertices &&
-               same_triangles(cloth.rest.triangles, rest.triangles);
-      },
-      [&] {
-        RestCloth cloth{rest, dhat, self_contact, Surface::of(rest, level.topology), {}};
-        if (self_contact)
-          cloth.rest_proximity_pairs = find_rest_proximity_pairs(cloth.surface, rest.vertices, dhat);
-        return cloth;
-      });
+  auto cloth =
+      std::make_shared<RestCloth>(RestCloth{dhat, self_contact, Surface::of(level.rest, level.topology), {}});
+  if (self_contact)
+    cloth->rest_proximity_pairs = find_rest_proximity_pairs(cloth->surface, level.rest.vertices, dhat);
+  return cloth;
 }
 
 std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obstacles> obstacles, double dhat,
                                                      BroadPhaseKind kind) {
-  static WeakCache<ObstacleTree> all;
-  return all.find_or_make(
-      [&](const ObstacleTree& tree) {
-        return tree.obstacles == obstacles && tree.dhat == dhat && tree.kind == kind;
-      },
-      [&] {
-        ObstacleTree tree{obstacles,
-                          dhat,
-                          kind,
-                          {},
-                          OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat),
-                          make_broad_phase(kind)};
-        tree.boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
-        tree.tree->update(tree.boxes.triangles);
-        return tree;
-      });
+  auto tree = std::make_shared<ObstacleTree>(
+      ObstacleTree{obstacles,
+                   dhat,
+                   kind,
+                   {},
+                   OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat),
+                   make_broad_phase(kind)});
+  tree->boxes.update(obstacles->surface, obstacles->vertices, obstacles->vertices, 0.5 * dhat);
+  tree->tree->update(tree->boxes.triangles);
+  return tree;
 }
 
-BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> obstacles, const Level& level,
-                   const Material& material)
+BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const ObstacleTree> obstacles,
+                   std::shared_ptr<const RestCloth> rest, const Material& material)
     : friction_(p.friction),
       min_gap_fraction_(p.min_gap_fraction),
       self_contact_(p.self_contact),
       barrier_{p.dhat, p.stiffness.value_or(contact_stiffness(material)), p.friction_smoothing_distance},
-      obstacles_(std::move(obstacles)),
-      obstacle_tree_(ObstacleTree::of(obstacles_, p.dhat, p.broad_phase)),
-      rest_(RestCloth::of(level, p.dhat, p.self_contact)),
+      obstacle_tree_(std::move(obstacles)),
+      obstacles_(obstacle_tree_->obstacles),
+      rest_(std::move(rest)),
       cloth_(rest_->surface),
       broad_phase_(p.broad_phase),
       cloth_tree_(make_broad_phase(p.broad_phase)) {}

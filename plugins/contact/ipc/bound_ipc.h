@@ -19,17 +19,15 @@ struct ClassifiedPairs {
 
 /// Data of the cloth's rest shape, shared when the level is bound again under other loads.
 struct RestCloth {
-  TriangleMesh rest;
   double dhat = 0;  ///< d̂ [m]
   bool self_contact = true;
   Surface surface;
   std::vector<std::array<int, 4>> rest_proximity_pairs;  ///< self pairs within d̂ at rest, sorted
 
-  /// Cached for as long as anyone owns it.
   static std::shared_ptr<const RestCloth> of(const Level& level, double dhat, bool self_contact);
 };
 
-/// The obstacles' boxes, their BVH and what else depends on d̂; cached in the same way.
+/// The obstacles with their boxes, their BVH and what else depends on d̂.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
   double dhat;
@@ -45,8 +43,10 @@ struct ObstacleTree {
 /// The contact model `ipc` bound to one level.
 class BoundIpc final : public BoundContact, public KinematicObstacles, public SmallestGapProvider {
  public:
-  BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const Obstacles> obstacles, const Level& level,
-           const Material& material);
+  BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const ObstacleTree> obstacles,
+           std::shared_ptr<const RestCloth> rest, const Material& material);
+
+  const std::shared_ptr<const RestCloth>& rest() const { return rest_; }
 
   /// Shortens the motion, and with it max_step, if it has too many candidate pairs (see README.md, "Long
   /// steps").
@@ -72,8 +72,8 @@ class BoundIpc final : public BoundContact, public KinematicObstacles, public Sm
   double friction_, min_gap_fraction_;
   bool self_contact_;
   BarrierParameters barrier_;
-  std::shared_ptr<const Obstacles> obstacles_;
   std::shared_ptr<const ObstacleTree> obstacle_tree_;
+  std::shared_ptr<const Obstacles> obstacles_;  // the tree's
   std::shared_ptr<const RestCloth> rest_;
   const Surface& cloth_;
   BroadPhaseKind broad_phase_;

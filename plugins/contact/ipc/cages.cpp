@@ -12,7 +12,6 @@
 
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/mesh/check.h"
-#include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {
 namespace {
@@ -39,7 +38,7 @@ void check_piece_count(const TriangleMesh& mesh, double alpha) {
         "a cage would take more than 20 million pieces of its mesh; raise the cages' alpha");
 }
 
-ValidatedMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
+std::shared_ptr<const ValidatedMesh> wrap(const TriangleMesh& mesh, double alpha, double offset) {
   check_piece_count(mesh, alpha);
   std::vector<Point> points;
   std::vector<std::array<std::size_t, 3>> faces;
@@ -50,24 +49,22 @@ ValidatedMesh wrap(const TriangleMesh& mesh, double alpha, double offset) {
   SurfaceMesh wrapped;
   CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped);
   wrapped.collect_garbage();
-  ValidatedMesh validated;
-  validated.mesh.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
+  TriangleMesh cage;
+  cage.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
   for (const auto v : wrapped.vertices()) {
     const Point& p = wrapped.point(v);
-    validated.mesh.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
+    cage.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
   }
-  validated.mesh.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
+  cage.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
   Eigen::Index row = 0;
   for (const auto f : wrapped.faces()) {
     int k = 0;
     for (const auto v : wrapped.vertices_around_face(wrapped.halfedge(f)))
-      validated.mesh.triangles(row, k++) = static_cast<int>(v.idx());
+      cage.triangles(row, k++) = static_cast<int>(v.idx());
     ++row;
   }
-  if (const auto faults = check_mesh(validated.mesh); !faults.empty()) throw std::runtime_error(faults[0]);
-  validated.topology =
-      Topology::of(validated.mesh.triangles, static_cast<int>(validated.mesh.vertices.rows()));
-  return validated;
+  if (const auto faults = check_mesh(cage); !faults.empty()) throw std::runtime_error(faults[0]);
+  return ValidatedMesh::of(std::move(cage));
 }
 
 /// One vertex of each connected component.
@@ -89,30 +86,6 @@ std::vector<int> one_vertex_per_component(const ValidatedMesh& mesh) {
     }
   }
   return found;
-}
-
-struct Cages {
-  std::shared_ptr<const ValidatedMesh> mesh;
-  CageParameters parameters;
-  std::vector<std::shared_ptr<const ValidatedMesh>> wraps;
-};
-
-Cages make_cages(const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& p) {
-  const Positions& x = mesh->mesh.vertices;
-  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
-  Cages cages{mesh, p, std::vector<std::shared_ptr<const ValidatedMesh>>(p.count)};
-  double size = diagonal;
-  for (int k = p.count - 1; k >= 0; --k, size *= p.growth) {
-    const bool innermost = k == p.count - 1;
-    const std::shared_ptr<const ValidatedMesh>& inner = innermost ? mesh : cages.wraps[k + 1];
-    cages.wraps[k] =
-        std::make_shared<const ValidatedMesh>(wrap(inner->mesh, p.alpha * size, p.offset * size));
-    if (const std::string fault = enclosure_fault(*cages.wraps[k], *inner); !fault.empty())
-      throw std::runtime_error("cage " + std::to_string(k) + " does not enclose " +
-                               (innermost ? "its mesh" : "cage " + std::to_string(k + 1)) + ": " + fault +
-                               "; change the cages' alpha or offset");
-  }
-  return cages;
 }
 
 }  // namespace
@@ -167,13 +140,21 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
   return "";
 }
 
-std::shared_ptr<const std::vector<std::shared_ptr<const ValidatedMesh>>> cages_of(
-    const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& parameters) {
-  static WeakCache<Cages> all;
-  const auto cages =
-      all.find_or_make([&](const Cages& made) { return made.mesh == mesh && made.parameters == parameters; },
-                       [&] { return make_cages(mesh, parameters); });
-  return {cages, &cages->wraps};
+ValidatedMeshes make_cages(const ValidatedMesh& mesh, const CageParameters& p) {
+  const Positions& x = mesh.mesh.vertices;
+  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  ValidatedMeshes cages(p.count);
+  double size = diagonal;
+  for (int k = p.count - 1; k >= 0; --k, size *= p.growth) {
+    const bool innermost = k == p.count - 1;
+    const ValidatedMesh& inner = innermost ? mesh : *cages[k + 1];
+    cages[k] = wrap(inner.mesh, p.alpha * size, p.offset * size);
+    if (const std::string fault = enclosure_fault(*cages[k], inner); !fault.empty())
+      throw std::runtime_error("cage " + std::to_string(k) + " does not enclose " +
+                               (innermost ? "its mesh" : "cage " + std::to_string(k + 1)) + ": " + fault +
+                               "; change the cages' alpha or offset");
+  }
+  return cages;
 }
 
 }  // namespace drape::ipc

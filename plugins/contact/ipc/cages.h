@@ -17,11 +17,9 @@ struct CageParameters {
   bool operator==(const CageParameters&) const = default;
 };
 
-/// The cages, outermost first, cached for as long as anyone owns them: alpha wraps (Portaneri et al. 2022) of
-/// the mesh, of that wrap, and so on. Throws std::runtime_error if a cage does not enclose the next, by exact
-/// predicates.
-std::shared_ptr<const std::vector<std::shared_ptr<const ValidatedMesh>>> cages_of(
-    const std::shared_ptr<const ValidatedMesh>& mesh, const CageParameters& parameters);
+/// The cages, outermost first: alpha wraps (Portaneri et al. 2022) of the mesh, of that wrap, and so on.
+/// Throws std::runtime_error if a cage does not enclose the next, by exact predicates.
+ValidatedMeshes make_cages(const ValidatedMesh& mesh, const CageParameters& parameters);
 
 /// Why `outer` does not enclose `inner`, by exact predicates. Empty if `outer` is closed, free of
 /// self-intersections and of contact with `inner`, and has all components of `inner` inside.

@@ -5,7 +5,6 @@
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
-#include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {
 
@@ -53,23 +52,50 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
           "broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
 }
 
-Ipc::Ipc(const Parameters& parameters) : p_(parameters) {
-  static WeakCache<Obstacles> all;
-  int levels = 1;
-  for (const ObstacleParameters& p : p_.obstacles) levels = std::max(levels, p.cages.count + 1);
-  for (int level = 0; level < levels; ++level) {
-    std::vector<Obstacle> bodies;
-    for (const ObstacleParameters& p : p_.obstacles)
-      bodies.push_back(Obstacle::of(p, static_cast<int>(bodies.size()), level));
-    obstacles_.push_back(all.find_or_make([&](const Obstacles& made) { return made.bodies == bodies; },
-                                          [&] { return Obstacles::of(bodies); }));
+Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
+  std::size_t levels = 1;
+  for (const ObstacleParameters& p : p_.obstacles) {
+    const std::size_t k = meshes_.size();
+    const bool same =
+        before && k < before->meshes_.size() && ObstacleMeshes::are_same(p, before->p_.obstacles[k]);
+    meshes_.push_back(same ? before->meshes_[k] : ObstacleMeshes::of(p, static_cast<int>(k)));
+    levels = std::max<std::size_t>(levels, p.cages.count + 1);
   }
+  for (std::size_t level = 0; level < levels; ++level) {
+    std::vector<Obstacle> bodies;
+    for (std::size_t k = 0; k < meshes_.size(); ++k)
+      bodies.push_back(
+          Obstacle::of(p_.obstacles[k], static_cast<int>(k), meshes_[k], static_cast<int>(level)));
+    const bool same =
+        before && level < before->obstacles_.size() && before->obstacles_[level]->bodies == bodies;
+    obstacles_.push_back(same ? before->obstacles_[level]
+                              : std::make_shared<const Obstacles>(Obstacles::of(std::move(bodies))));
+  }
+  trees_.resize(levels);
+  if (!before || before->p_.dhat != p_.dhat || before->p_.broad_phase != p_.broad_phase) return;
+  const std::lock_guard lock(before->busy_);
+  for (std::size_t level = 0; level < std::min(levels, before->trees_.size()); ++level)
+    if (obstacles_[level] == before->obstacles_[level]) trees_[level] = before->trees_[level];
+}
+
+std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material,
+                                        std::shared_ptr<const RestCloth> rest) const {
+  const std::size_t k = std::min<std::size_t>(level.index, obstacles_.size() - 1);
+  const std::lock_guard lock(busy_);
+  if (!trees_[k]) trees_[k] = ObstacleTree::of(obstacles_[k], p_.dhat, p_.broad_phase);
+  return std::make_unique<BoundIpc>(p_, trees_[k], std::move(rest), material);
 }
 
 std::unique_ptr<BoundContact> Ipc::bind(const Level& level, const Material& material) const {
   if (!p_.self_contact && p_.obstacles.empty()) return nullptr;
-  return std::make_unique<BoundIpc>(p_, obstacles_[std::min<std::size_t>(level.index, obstacles_.size() - 1)],
-                                    level, material);
+  return bind(level, material, RestCloth::of(level, p_.dhat, p_.self_contact));
+}
+
+std::unique_ptr<BoundContact> Ipc::rebind(const Level& level, const Material& material,
+                                          const BoundContact& before) const {
+  const std::shared_ptr<const RestCloth>& rest = dynamic_cast<const BoundIpc&>(before).rest();
+  if (rest->dhat != p_.dhat || rest->self_contact != p_.self_contact) return bind(level, material);
+  return bind(level, material, rest);
 }
 
 }  // namespace drape::ipc

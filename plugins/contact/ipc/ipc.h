@@ -1,5 +1,6 @@
 #pragma once
 
+#include <mutex>
 #include <optional>
 #include <vector>
 
@@ -9,8 +10,11 @@
 
 namespace drape::ipc {
 
+struct ObstacleTree;
+struct RestCloth;
+
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
-class Ipc final : public ContactModel {
+class Ipc final : public ContactModel, public Rebindable {
  public:
   struct Parameters {
     bool self_contact = true;
@@ -26,12 +30,25 @@ class Ipc final : public ContactModel {
   };
 
   /// Reads and validates the obstacles. Throws std::runtime_error naming an invalid one.
-  explicit Ipc(const Parameters& parameters);
+  explicit Ipc(const Parameters& parameters) : Ipc(parameters, nullptr) {}
+  /// The same with the meshes, cages and trees of `before` where they are equal.
+  Ipc(const Parameters& parameters, const Ipc& before) : Ipc(parameters, &before) {}
+
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
+  std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
+                                       const BoundContact& before) const override;
 
  private:
+  Ipc(const Parameters& parameters, const Ipc* before);
+  std::unique_ptr<BoundContact> bind(const Level& level, const Material& material,
+                                     std::shared_ptr<const RestCloth> rest) const;
+
   Parameters p_;
+  std::vector<ObstacleMeshes> meshes_;                       // of each obstacle
   std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
+  // Of each of them, made when a level is first bound: a load may be bound to one level alone.
+  mutable std::vector<std::shared_ptr<const ObstacleTree>> trees_;
+  mutable std::mutex busy_;
 };
 
 }  // namespace drape::ipc

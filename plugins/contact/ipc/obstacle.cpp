@@ -11,8 +11,6 @@
 namespace drape::ipc {
 namespace {
 
-using Frames = std::vector<std::shared_ptr<const ValidatedMesh>>;
-
 /// The difference between the triangles of two files, empty if there is none.
 std::string difference(const Triangles& first, const Triangles& other) {
   const auto in_each = [](Eigen::Index a, Eigen::Index b, const std::string& what) {
@@ -24,39 +22,34 @@ std::string difference(const Triangles& first, const Triangles& other) {
   return "";
 }
 
-Frames read_animation(const ObstacleParameters& p) {
+ValidatedMeshes read_animation(const ObstacleParameters& p) {
   if (!p.file.empty()) throw std::runtime_error("\"file\" and \"animation\" exclude each other");
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
-  Frames frames;
+  ValidatedMeshes frames;
   for (const std::string& file : p.animation) {
     frames.push_back(load_validated_mesh(file));
     if (const auto what = difference(frames[0]->mesh.triangles, frames.back()->mesh.triangles); !what.empty())
       throw std::runtime_error(file + " " + what + " as " + p.animation[0] +
                                " has; all files of an animation must have the same triangles");
   }
-  const int last = static_cast<int>(frames.size()) - 1;
-  if (p.frame > last) throw std::runtime_error("the last frame of its animation is " + std::to_string(last));
   return frames;
 }
 
-ObstacleGeometry geometry_of(const ObstacleParameters& p) {
-  ObstacleGeometry geometry;
-  geometry.pose = {p.scale, p.rotate, p.translate};
-  if (p.shape == "box") {
-    geometry.frames = {unit_box()};
-    geometry.local_scale = p.size;
-  } else if (p.shape == "sphere") {
-    geometry.frames = {unit_sphere(p.subdivisions)};
-    geometry.local_scale.setConstant(p.radius);
-  } else if (!p.animation.empty()) {
-    geometry.frames = read_animation(p);
-    geometry.frame = p.frame;
-  } else if (p.file.empty()) {
+ValidatedMeshes frames_of(const ObstacleParameters& p) {
+  if (p.shape == "box") return {unit_box()};
+  if (p.shape == "sphere") return {unit_sphere(p.subdivisions)};
+  if (!p.animation.empty()) return read_animation(p);
+  if (p.file.empty())
     throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read, or \"animation\"");
-  } else {
-    geometry.frames = {load_validated_mesh(p.file)};
-  }
-  return geometry;
+  return {load_validated_mesh(p.file)};
+}
+
+std::string name_of(const ObstacleParameters& p, int number) {
+  return p.name.empty() ? p.shape + " " + std::to_string(number) : p.name;
+}
+
+std::runtime_error fault_of(const std::string& name, const std::string& what) {
+  return std::runtime_error("obstacle \"" + name + "\": " + what);
 }
 
 }  // namespace
@@ -129,20 +122,40 @@ Positions ObstacleGeometry::local_positions(double frame) const {
   return positions;
 }
 
-Obstacle Obstacle::of(const ObstacleParameters& p, int number, int level) {
-  Obstacle body{p.name.empty() ? p.shape + " " + std::to_string(number) : p.name, {}, p.friction, {}};
+ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
   try {
-    body.geometry = geometry_of(p);
-    if (p.cages.count > 0) {
-      const auto cages = cages_of(body.geometry.frames[0], p.cages);
-      if (level < p.cages.count)
-        body.geometry.frames = {std::shared_ptr<const ValidatedMesh>(cages, (*cages)[level].get())};
-    }
+    ObstacleMeshes meshes{frames_of(p), {}};
+    if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
+    return meshes;
   } catch (const std::exception& error) {
-    throw std::runtime_error("obstacle \"" + body.name + "\": " + reason_of(error));
+    throw fault_of(name_of(p, number), reason_of(error));
   }
-  if (level < p.cages.count) body.name += " (cage " + std::to_string(level) + ")";
-  const ObstacleGeometry& geometry = body.geometry;
+}
+
+bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParameters& b) {
+  return a.shape == b.shape && a.file == b.file && a.subdivisions == b.subdivisions &&
+         a.animation == b.animation && a.cages == b.cages;
+}
+
+Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMeshes& meshes, int level) {
+  Obstacle body{name_of(p, number), {}, p.friction, {}};
+  ObstacleGeometry& geometry = body.geometry;
+  geometry.frames = meshes.frames;
+  geometry.pose = {p.scale, p.rotate, p.translate};
+  if (p.shape == "box") {
+    geometry.local_scale = p.size;
+  } else if (p.shape == "sphere") {
+    geometry.local_scale.setConstant(p.radius);
+  } else if (!p.animation.empty()) {
+    const std::size_t last = meshes.frames.size() - 1;
+    if (p.frame > static_cast<double>(last))
+      throw fault_of(body.name, "the last frame of its animation is " + std::to_string(last));
+    geometry.frame = p.frame;
+  }
+  if (level < p.cages.count) {
+    geometry.frames = {meshes.cages[level]};
+    body.name += " (cage " + std::to_string(level) + ")";
+  }
   body.mesh.triangles = geometry.frames[0]->mesh.triangles;
   body.mesh.vertices =
       (geometry.local_positions(geometry.frame) * geometry.pose.linear().transpose()).rowwise() +

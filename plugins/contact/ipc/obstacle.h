@@ -29,6 +29,18 @@ struct ObstacleParameters {
   static void declare(Declaration<ObstacleParameters>& d);
 };
 
+/// The meshes that an obstacle is placed from, whatever its numbers under a load.
+struct ObstacleMeshes {
+  ValidatedMeshes frames;  ///< one mesh, or an animation with the same triangles
+  ValidatedMeshes cages;   ///< outermost first
+
+  /// Reads or makes them. Throws std::runtime_error naming the obstacle if its file cannot be read or its
+  /// mesh is invalid.
+  static ObstacleMeshes of(const ObstacleParameters& parameters, int number);
+  /// Whether both parameters ask for the same meshes.
+  static bool are_same(const ObstacleParameters& a, const ObstacleParameters& b);
+};
+
 /// The transform from an obstacle's local to world coordinates: scale, rotate, translate.
 struct Pose {
   double scale = 1;
@@ -41,14 +53,16 @@ struct Pose {
 
 /// The local mesh and the transform that determine an obstacle's vertex positions.
 struct ObstacleGeometry {
-  std::vector<std::shared_ptr<const ValidatedMesh>>
-      frames;                            ///< one mesh, or an animation with the same triangles
+  ValidatedMeshes frames;                ///< one mesh, or an animation with the same triangles
   double frame = 0;                      ///< index of the frame, interpolated linearly
   Eigen::Vector3d local_scale{1, 1, 1};  ///< factors on local coordinates
   Pose pose;
 
   Positions local_positions(double frame) const;  ///< [m]
-  bool operator==(const ObstacleGeometry&) const = default;
+  bool operator==(const ObstacleGeometry& other) const {
+    return frame == other.frame && local_scale == other.local_scale && pose == other.pose &&
+           are_equal(frames, other.frames);
+  }
 };
 
 /// A mesh that the cloth collides with.
@@ -63,9 +77,9 @@ struct Obstacle {
     return !geometry.frames.empty() && geometry == other.geometry && name == other.name &&
            friction == other.friction;
   }
-  /// Throws std::runtime_error naming the obstacle if its file cannot be read or its mesh is invalid. On a
-  /// level with a cage, the obstacle is the cage.
-  static Obstacle of(const ObstacleParameters& parameters, int number,
+  /// Places the meshes. On a level with a cage, the obstacle is the cage. Throws std::runtime_error naming
+  /// the obstacle if its animation has no such frame.
+  static Obstacle of(const ObstacleParameters& parameters, int number, const ObstacleMeshes& meshes,
                      int level = std::numeric_limits<int>::max());
 };
 

@@ -169,7 +169,7 @@ double ObstacleTrajectory::segment_end(double begin, double end) const {
     const ObstacleGeometry &from = before_.bodies[i].geometry, &to = after_.bodies[i].geometry;
     if (const double angle = rotation_angle(from.pose, to.pose); angle > 0)
       end = std::min(end, begin + max_rotation / angle);
-    if (from.frames != to.frames || from.frame == to.frame) continue;
+    if (!are_equal(from.frames, to.frames) || from.frame == to.frame) continue;
     const double rate = to.frame - from.frame, now = from.frame + begin * rate;
     // A frame exceeded by less than round-off counts as reached.
     const double next = rate > 0 ? std::floor(now + 1e-12) + 1 : std::ceil(now - 1e-12) - 1;
@@ -192,7 +192,7 @@ TrajectorySegment ObstacleTrajectory::segment(double begin, double end) const {
     body.end = interpolate(from.pose, to.pose, end);
     body.rotation = rotation_matrix(body.begin.rotate);
     const auto local_at = [&](double t) {
-      if (from.frames == to.frames && from.local_scale == to.local_scale)
+      if (are_equal(from.frames, to.frames) && from.local_scale == to.local_scale)
         return from.local_positions(interpolate<double>(from.frame, to.frame, t));
       return interpolate<Positions>(from.local_positions(from.frame), to.local_positions(to.frame), t);
     };

@@ -16,6 +16,8 @@ using namespace drape::ipc;
 
 namespace {
 
+Obstacle obstacle_of(const ObstacleParameters& p) { return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0)); }
+
 using Vector = Eigen::Vector3d;
 
 ObstacleParameters box_obstacle(const Vector& size, const Vector& translate) {
@@ -150,7 +152,7 @@ TEST_CASE("ipc: a surface's areas and representative triangles") {
 
 TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are not") {
   ObstacleParameters p = sphere_obstacle(0.3, 3, {1, 2, 3});
-  const Obstacle ball = Obstacle::of(p, 0);
+  const Obstacle ball = obstacle_of(p);
   CHECK(ball.mesh.triangles.rows() == 20 * 64);
   CHECK(((ball.mesh.vertices.rowwise() - Eigen::RowVector3d(1, 2, 3)).rowwise().norm().array() - 0.3)
             .abs()
@@ -158,7 +160,7 @@ TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are 
   p = box_obstacle({1, 2, 4}, {0, 0, 1});
   p.rotate = {0, 90, 0};
   p.scale = 0.5;
-  const Obstacle box = Obstacle::of(p, 0);
+  const Obstacle box = obstacle_of(p);
   CHECK((box.mesh.vertices.colwise().maxCoeff() - Eigen::RowVector3d(1, 0.5, 1.25)).norm() < 1e-14);
   double volume = 0;  // positive: triangles face outwards
   for (const auto& t : box.mesh.triangles.rowwise())
@@ -175,9 +177,9 @@ TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are 
 
   ObstacleParameters missing;
   missing.name = "bunny";
-  CHECK_THROWS_WITH(Obstacle::of(missing, 0), Catch::Contains("\"bunny\"") && Catch::Contains("\"file\""));
+  CHECK_THROWS_WITH(obstacle_of(missing), Catch::Contains("\"bunny\"") && Catch::Contains("\"file\""));
   missing.file = "no/such/bunny.off";
-  CHECK_THROWS_WITH(Obstacle::of(missing, 0),
+  CHECK_THROWS_WITH(obstacle_of(missing),
                     Catch::Contains("\"bunny\"") && Catch::Contains("no/such/bunny.off"));
 
   Ipc::Parameters nothing;
@@ -211,7 +213,7 @@ TEST_CASE(
   p.obstacles = {sphere_obstacle(0.1, 2, {0, 0.5, -0.105}),
                  box_obstacle({0.3, 0.4, 0.1}, {-0.1, 0.2, -0.06})};
   std::vector<Obstacle> bodies;
-  for (const auto& obstacle : p.obstacles) bodies.push_back(Obstacle::of(obstacle, 0));
+  for (const auto& obstacle : p.obstacles) bodies.push_back(obstacle_of(obstacle));
   const Obstacles obstacles = Obstacles::of(bodies);
   const Positions x0 = folded(level, 4, 0.02, 0.002, 1);
   Positions x1 = folded(level, 4, 0.011, 0.003, 2);
@@ -283,7 +285,8 @@ TEST_CASE("ipc: whatever the obstacle's triangles, the pressure on a flat cloth 
       auto obstacles = std::make_shared<Obstacles>(Obstacles::of({{"floor", floor, {}}}));
       Positions x = level.rest.vertices;
       x.col(2).setConstant(s * dhat);
-      const BoundIpc contact(p, obstacles, level, Material());
+      const BoundIpc contact(p, ObstacleTree::of(obstacles, dhat, p.broad_phase),
+                             RestCloth::of(level, dhat, p.self_contact), Material());
       const auto set = contact.build_candidates(x, x)->build_collisions(x);
       const Positions force = -gradient_of(*set, x);
       CAPTURE(dhat, columns);
@@ -389,4 +392,43 @@ TEST_CASE("ipc: time of a search without contacts") {
     CAPTURE(wave, search, filter, build);
     CHECK(search + filter + build < 1.5);  // 0.1 on two idle cores
   }
+}
+
+TEST_CASE("ipc: a model made and bound from another is as a new one, and shares what stays the same") {
+  const Level level = Level::of(0, grid({0.4, 0.4}, 9, 9, Diagonals::criss_cross));
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  Ipc::Parameters p;
+  p.stiffness = 7;
+  p.friction = 0.2;
+  p.obstacles = {box_obstacle({1, 1, 0.1}, {0.2, 0.2, -0.05}), sphere_obstacle(0.05, 2, {0.2, 0.2, -0.5})};
+  const Ipc model(p);
+  const auto contact = model.bind(level, Material());
+  const auto barrier = [&](const BoundContact& c) {
+    return c.build_candidates(x, x)->build_collisions(x)->value(x);
+  };
+  const auto vertices = [](const BoundContact& c) { return c.obstacles().at(1).vertices; };
+  const double before = barrier(*contact);
+  REQUIRE(before > 0);
+  const Positions ball = vertices(*contact);
+  const auto rest = [](const BoundContact& c) { return dynamic_cast<const BoundIpc&>(c).rest(); };
+
+  for (const auto& change :
+       {+[](Ipc::Parameters& q) { q.stiffness = 14; }, +[](Ipc::Parameters& q) { q.dhat = 2e-3; },
+        +[](Ipc::Parameters& q) { q.obstacles[0].translate.z() = -0.0501; },
+        +[](Ipc::Parameters& q) { q.obstacles[1].radius = 0.06; },
+        +[](Ipc::Parameters& q) { q.obstacles[1].subdivisions = 3; }}) {
+    Ipc::Parameters q = p;
+    change(q);
+    const Ipc next(q, model);
+    const auto again = next.rebind(level, Material(), *contact), alone = Ipc(q).bind(level, Material());
+    CHECK(barrier(*again) == barrier(*alone));
+    REQUIRE(vertices(*again).rows() == vertices(*alone).rows());
+    CHECK((vertices(*again) - vertices(*alone)).norm() == 0);
+    CHECK((barrier(*again) != before || vertices(*again).rows() != ball.rows() || vertices(*again) != ball));
+    CHECK((rest(*again) == rest(*contact)) == (q.dhat == p.dhat));
+    CHECK(rest(*alone) != rest(*contact));
+  }
+  CHECK(barrier(*contact) == before);
+  CHECK(vertices(*contact) == ball);
 }

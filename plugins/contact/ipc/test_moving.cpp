@@ -15,6 +15,8 @@ using Vector = Eigen::Vector3d;
 
 namespace {
 
+Obstacle obstacle_of(const ObstacleParameters& p) { return Obstacle::of(p, 0, ObstacleMeshes::of(p, 0)); }
+
 std::mt19937 generator(11);
 double uniform(double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(generator);
@@ -72,10 +74,7 @@ Bodies blended(const Bodies& from, const Bodies& to, double part) {
 }
 
 double distance_moved(const Bodies& from, const Bodies& to) {
-  return (Obstacle::of(to[0], 0).mesh.vertices - Obstacle::of(from[0], 0).mesh.vertices)
-      .rowwise()
-      .norm()
-      .maxCoeff();
+  return (obstacle_of(to[0]).mesh.vertices - obstacle_of(from[0]).mesh.vertices).rowwise().norm().maxCoeff();
 }
 
 /// The number of samples, at most `step` apart, of the motion up to `part` at which cloth and obstacle
@@ -89,7 +88,7 @@ int crossings(const Bodies& from, const Bodies& to, double part, const Level& le
   const TriangleMesh cloth{x, level.rest.triangles};
   int found = 0;
   for (int k = 0; k <= samples; ++k)
-    found += !intersections(cloth, Obstacle::of(blended(from, to, part * k / samples)[0], 0).mesh).empty();
+    found += !intersections(cloth, obstacle_of(blended(from, to, part * k / samples)[0]).mesh).empty();
   return found;
 }
 
@@ -139,7 +138,7 @@ TEST_CASE("ipc: no obstacle motion passes through the cloth; a shortened step is
       if (i % 3 == 0)  // near already
         from[0].translate.z() = 0.5 * from[0].size.z() * from[0].scale + uniform(0.02, 0.03),
         from[0].rotate.head<2>().setZero();
-    } while (!intersections(cloth, Obstacle::of(from[0], 0).mesh).empty());
+    } while (!intersections(cloth, obstacle_of(from[0]).mesh).empty());
     to = from;
     to[0].translate += i % 5 == 0 ? any(0.02) : any(0.5);
     to[0].rotate += i % 2 ? any(60) : any(720);
@@ -217,11 +216,11 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
     write_mesh(from[0].animation.back(), mesh);
   }
   from[0].frame = 1.25;
-  const Positions between = Obstacle::of(from[0], 0).mesh.vertices;
+  const Positions between = obstacle_of(from[0]).mesh.vertices;
   from[0].frame = 1;
-  Positions expected = 0.75 * Obstacle::of(from[0], 0).mesh.vertices;
+  Positions expected = 0.75 * obstacle_of(from[0]).mesh.vertices;
   from[0].frame = 2;
-  expected += 0.25 * Obstacle::of(from[0], 0).mesh.vertices;
+  expected += 0.25 * obstacle_of(from[0]).mesh.vertices;
   CHECK((between - expected).norm() < 1e-14);
 
   const Level level = square(9, 0.2);
@@ -248,7 +247,7 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
 
   ObstacleParameters wrong = from[0];
   wrong.frame = 3.5;
-  CHECK_THROWS_WITH(Obstacle::of(wrong, 0),
+  CHECK_THROWS_WITH(obstacle_of(wrong),
                     Catch::Contains("\"wing\"") && Catch::Contains("last frame of its animation is 3"));
   wrong.frame = 0;
   wrong.animation.push_back((folder / "other.ply").string());
@@ -256,11 +255,11 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
   std::swap(other.triangles(7, 0), other.triangles(7, 1));
   std::swap(other.triangles(7, 1), other.triangles(7, 2));
   write_mesh(wrong.animation.back(), other);
-  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("other.ply has other vertices in triangle 7"));
+  CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("other.ply has other vertices in triangle 7"));
   write_mesh(wrong.animation.back(), grid({0.3, 0.3}, 5, 6, Diagonals::one_way));
-  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("other.ply has 40 triangles and not 50"));
+  CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("other.ply has 40 triangles and not 50"));
   wrong.file = "x.obj";
-  CHECK_THROWS_WITH(Obstacle::of(wrong, 0), Catch::Contains("exclude each other"));
+  CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("exclude each other"));
 }
 
 TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any number of threads") {
@@ -333,7 +332,7 @@ TEST_CASE("ipc: the reference of tangential displacements is advected by obstacl
   Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
   const Positions start = reference;
   dynamic_cast<const KinematicObstacles&>(*after).advect(*before, x, reference);
-  const Eigen::Matrix3d turn = Obstacle::of(to[0], 0).geometry.pose.linear();
+  const Eigen::Matrix3d turn = obstacle_of(to[0]).geometry.pose.linear();
   int advected = 0;
   for (int v = 0; v < x.rows(); ++v) {
     const Vector own = Vector(x(v, 0), x(v, 1), 0) - from[0].translate;

@@ -1,12 +1,13 @@
 #include "plugins/contact/ipc/validated_mesh.h"
 
-#include <functional>
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/io.h"
-#include "plugins/contact/ipc/weak_cache.h"
+#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape::ipc {
 namespace {
@@ -58,50 +59,37 @@ TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
   return fine;
 }
 
-struct Named {
-  std::string key;
-  ValidatedMesh validated;
-};
-
-/// The mesh from make(), cached under a key.
-std::shared_ptr<const ValidatedMesh> cached(const std::string& key,
-                                            const std::function<TriangleMesh()>& make) {
-  static WeakCache<Named> all;
-  const auto found = all.find_or_make([&](const Named& named) { return named.key == key; },
-                                      [&] {
-                                        Named named{key, {make(), {}}};
-                                        const TriangleMesh& mesh = named.validated.mesh;
-                                        named.validated.topology = Topology::of(
-                                            mesh.triangles, static_cast<int>(mesh.vertices.rows()));
-                                        return named;
-                                      });
-  return {found, &found->validated};
+bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
+  return a.vertices.rows() == b.vertices.rows() && a.vertices == b.vertices &&
+         same_triangles(a.triangles, b.triangles);
 }
 
 }  // namespace
 
-std::shared_ptr<const ValidatedMesh> load_validated_mesh(const fs::path& file) {
-  std::error_code none;
-  std::string key = fs::absolute(file, none).string();
-  const auto size = fs::file_size(file, none);
-  const auto modified = fs::last_write_time(file, none).time_since_epoch().count();
-  key += " " + std::to_string(size) + " " + std::to_string(modified);
-  return cached(key, [&] {
-    TriangleMesh mesh = read_mesh(file);
-    if (const auto faults = check_mesh(mesh); !faults.empty())
-      throw std::runtime_error(file.string() + ": " + faults[0]);
-    return mesh;
+std::shared_ptr<const ValidatedMesh> ValidatedMesh::of(TriangleMesh mesh) {
+  Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+  return std::make_shared<const ValidatedMesh>(ValidatedMesh{std::move(mesh), std::move(topology)});
+}
+
+bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& one, const auto& other) {
+    return one == other || same_mesh(one->mesh, other->mesh);
   });
 }
 
-std::shared_ptr<const ValidatedMesh> unit_box() { return cached("box", box); }
+std::shared_ptr<const ValidatedMesh> load_validated_mesh(const fs::path& file) {
+  TriangleMesh mesh = read_mesh(file);
+  if (const auto faults = check_mesh(mesh); !faults.empty())
+    throw std::runtime_error(file.string() + ": " + faults[0]);
+  return ValidatedMesh::of(std::move(mesh));
+}
+
+std::shared_ptr<const ValidatedMesh> unit_box() { return ValidatedMesh::of(box()); }
 
 std::shared_ptr<const ValidatedMesh> unit_sphere(int subdivisions) {
-  return cached("sphere " + std::to_string(subdivisions), [&] {
-    TriangleMesh mesh = icosahedron();
-    for (int i = 0; i < subdivisions; ++i) mesh = split_on_sphere(mesh);
-    return mesh;
-  });
+  TriangleMesh mesh = icosahedron();
+  for (int i = 0; i < subdivisions; ++i) mesh = split_on_sphere(mesh);
+  return ValidatedMesh::of(std::move(mesh));
 }
 
 }  // namespace drape::ipc

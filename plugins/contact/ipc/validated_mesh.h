@@ -2,21 +2,25 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "core/kernel/mesh/topology.h"
 
 namespace drape::ipc {
 
-/// A mesh that has passed check_mesh, in local coordinates. Obstacles that are rebuilt as loads change share
-/// it.
+/// A mesh that has passed check_mesh, in local coordinates. Obstacles under different loads share it.
 struct ValidatedMesh {
   TriangleMesh mesh;
   Topology topology;
+
+  static std::shared_ptr<const ValidatedMesh> of(TriangleMesh mesh);
 };
 
-// All are cached for as long as anyone owns the mesh. Throw std::runtime_error with the fault.
+using ValidatedMeshes = std::vector<std::shared_ptr<const ValidatedMesh>>;
+/// Whether they are the same objects, or have the same vertices and triangles.
+bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b);
 
-/// Reads a file. The cache compares path, size and modification time.
+/// Reads a file. Throws std::runtime_error with the fault.
 std::shared_ptr<const ValidatedMesh> load_validated_mesh(const std::filesystem::path& file);
 /// Edge length 1 m, centred at the origin, with outward normals.
 std::shared_ptr<const ValidatedMesh> unit_box();

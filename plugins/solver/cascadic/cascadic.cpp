@@ -27,9 +27,7 @@ class CascadicSolver : public ResumableSolver {
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
-    const auto objective = [&](int level) {
-      return std::make_unique<PlainObjective>(*problem.models[level]);
-    };
+    const auto objective = [&](int level) { return std::make_unique<PlainObjective>(problem.model(level)); };
     return solve_progressively(problem, problem.hierarchy.weights(p_.prolongation), objective, p_.newton,
                                from, observer);
   }

@@ -28,7 +28,7 @@ class NewtonSolver : public ResumableSolver {
       const NewtonState* state = from.of(l);
       if (!state) observer.level_started(l);
       if (problem.load_stepping && !state) problem.load_stepping->begin(l, true);
-      PlainObjective objective(*problem.models[l]);
+      PlainObjective objective(problem.model(l));
       results.push_back(minimise(objective, problem.starts[l], parameters,
                                  {clock, observer, l < problem.finest(), {}, state, problem.load_stepping}));
       results.back().from_initial_state = true;

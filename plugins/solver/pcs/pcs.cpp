@@ -64,7 +64,7 @@ class PcsSolver : public ResumableSolver {
                                   Observer& observer) const override {
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
       const int to_finest = problem.finest() - level;
-      if (to_finest == 0) return std::make_unique<PlainObjective>(*problem.models[level]);
+      if (to_finest == 0) return std::make_unique<PlainObjective>(problem.model(level));
       const int above = p_.target == 0 ? to_finest : std::min(p_.target, to_finest);
       return std::make_unique<ProxyObjective>(problem, level,
                                               proxy_parts(problem, level, above, p_.depth, p_.interpolation),

@@ -43,12 +43,7 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 
 ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
                                ProxyMatrix matrix, bool relaxes)
-    : Objective(*problem.models[level]),
-      problem_(problem),
-      plain_(*problem.models[level]),
-      level_(level),
-      kind_(matrix),
-      relaxes_(relaxes) {
+    : Objective(problem.model(level)), problem_(problem), level_(level), kind_(matrix), relaxes_(relaxes) {
   std::vector<std::shared_ptr<const BlockPattern>> patterns;
   for (const ProxyPart& part : parts) {
     if (part.above == 0) {
@@ -60,24 +55,36 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     for (int k = 0; k < part.above; ++k) finer.transfers.emplace_back((*part.interpolation)[level + k]);
     finer.prolonged.resize(part.above);
     finer.forces.resize(part.above);
+  }
+  ProxyObjective::model_changed();
+  for (FinerPart& finer : finer_) {
     if (kind_ == ProxyMatrix::coarse) continue;
-    finer.matrices.emplace_back(problem.models[level + part.matrix_above]->pattern());
+    const ProxyPart& part = finer.part;
+    finer.matrices.emplace_back(finer.matrix_model->pattern());
     for (int k = part.matrix_above; k > 0; --k) {
       finer.products.emplace_back(*finer.matrices.back().pattern, (*part.interpolation)[level + k - 1]);
       finer.matrices.emplace_back(finer.products.back().coarse_pattern());
     }
     patterns.push_back(finer.matrices.back().pattern);
   }
-  if (kind_ == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(plain_.pattern());
+  if (kind_ == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
   build_pattern(patterns);
+}
+
+void ProxyObjective::model_changed() {
+  for (FinerPart& finer : finer_) {
+    finer.model = problem_.model(level_ + finer.part.above);
+    finer.matrix_model =
+        kind_ == ProxyMatrix::galerkin ? problem_.model(level_ + finer.part.matrix_above) : nullptr;
+  }
 }
 
 bool ProxyObjective::switch_to_plain() {
   if (!relaxes_ || is_plain_) return false;
   is_plain_ = true;
   smooth_changed();
-  if (matrix_.pattern != plain_.pattern()) {
-    matrix_ = BlockMatrix(plain_.pattern());
+  if (matrix_.pattern != model().pattern()) {
+    matrix_ = BlockMatrix(model().pattern());
     smooth_pattern_changed();
   }
   return true;
@@ -87,9 +94,9 @@ void ProxyObjective::build_pattern(const std::vector<std::shared_ptr<const Block
   matrix_ = BlockMatrix(united(patterns));
   for (FinerPart& finer : finer_)
     if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
-  if (kind_ == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == plain_.pattern()) return;
-  own_matrix_ = BlockMatrix(plain_.pattern());
-  own_slots_ = slots_of(*plain_.pattern(), *matrix_.pattern);
+  if (kind_ == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
+  own_matrix_ = BlockMatrix(model().pattern());
+  own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
 
 const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int count) {
@@ -102,7 +109,7 @@ const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int coun
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
-  if (is_plain_) return plain_.gradient(x, g);
+  if (is_plain_) return model().gradient(x, g);
   g.resize(x.rows(), 3);
   double sum = 0;
   bool first = true;
@@ -114,14 +121,13 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
     first = false;
   };
   for (const ProxyPart& own : own_) {
-    sum += own.factor * plain_.gradient(x, part_gradient_, own.roles);
+    sum += own.factor * model().gradient(x, part_gradient_, own.roles);
     add(own.factor);
   }
   for (FinerPart& finer : finer_) {
     const int above = finer.part.above;
-    const LevelModel& model = *problem_.models[level_ + above];
     sum += finer.part.factor *
-           model.gradient(finer.prolong(x, above), finer.forces[above - 1], finer.part.roles);
+           finer.model->gradient(finer.prolong(x, above), finer.forces[above - 1], finer.part.roles);
     for (int k = above - 1; k > 0; --k) finer.transfers[k].restrict(finer.forces[k], finer.forces[k - 1]);
     finer.transfers[0].restrict(finer.forces[0], part_gradient_);
     add(finer.part.factor);
@@ -130,12 +136,12 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
 }
 
 void ProxyObjective::add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const {
-  for (const ProxyPart& own : own_) plain_.add_hessian(x, projection, matrix, own.roles, own.factor);
+  for (const ProxyPart& own : own_) model().add_hessian(x, projection, matrix, own.roles, own.factor);
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
   if (is_plain_ || kind_ == ProxyMatrix::coarse) {
-    plain_.hessian(x, projection, matrix_);
+    model().hessian(x, projection, matrix_);
     return matrix_;
   }
   matrix_.set_zero();
@@ -148,8 +154,7 @@ BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projec
   }
   for (FinerPart& finer : finer_) {
     const int above = finer.part.matrix_above;
-    problem_.models[level_ + above]->hessian(finer.prolong(x, above), projection, finer.matrices[0],
-                                             finer.part.roles);
+    finer.matrix_model->hessian(finer.prolong(x, above), projection, finer.matrices[0], finer.part.roles);
     for (std::size_t k = 0; k < finer.products.size(); ++k)
       finer.products[k].form(finer.matrices[k], finer.matrices[k + 1]);
     add_blocks(finer.matrices.back(), finer.slots, finer.part.factor, matrix_);

@@ -40,16 +40,18 @@ class ProxyObjective : public Objective {
  protected:
   double smooth_gradient(const Positions& x, Positions& g) override;
   BlockMatrix& smooth_matrix(const Positions& x, Projection projection) override;
+  void model_changed() override;
 
  private:
   /// Part that is evaluated on a finer level, with its work space.
   struct FinerPart {
     ProxyPart part;
-    std::vector<Transfer> transfers;           // level_ + k → level_ + k + 1
-    std::vector<Positions> prolonged, forces;  // on level_ + 1 + k
-    std::vector<GalerkinProduct> products;     // from level_ + matrix_above downwards
-    std::vector<BlockMatrix> matrices;         // the finer model's first, then each product
-    std::vector<int> slots;                    // index in matrix_ of each block of the last matrix
+    std::shared_ptr<const LevelModel> model, matrix_model;  // part.above and part.matrix_above levels up
+    std::vector<Transfer> transfers;                        // level_ + k → level_ + k + 1
+    std::vector<Positions> prolonged, forces;               // on level_ + 1 + k
+    std::vector<GalerkinProduct> products;                  // from level_ + matrix_above downwards
+    std::vector<BlockMatrix> matrices;                      // the finer model's first, then each product
+    std::vector<int> slots;  // index in matrix_ of each block of the last matrix
 
     const Positions& prolong(const Positions& x, int count);
   };
@@ -58,7 +60,6 @@ class ProxyObjective : public Objective {
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
   const Problem& problem_;
-  const LevelModel& plain_;
   int level_;
   ProxyMatrix kind_;
   bool relaxes_, is_plain_ = false;

@@ -44,7 +44,7 @@ std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above,
                                               std::pair(EnergyRole::position, interpolation.external),
                                               std::pair(EnergyRole::bending, interpolation.bending)}) {
     ProxyPart part;
-    const auto factor = problem.models[level]->midpoint_factor(role);
+    const auto factor = problem.model(level)->midpoint_factor(role);
     if (interpolated_by == Interpolation::midpoint && factor) {
       part.factor = std::pow(*factor, above);
     } else {

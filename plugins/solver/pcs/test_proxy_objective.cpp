@@ -61,7 +61,7 @@ TEST_CASE("The proxy's energy is the finest level's at P x", "[proxy_objective]"
     Positions g;
     CHECK(proxy.gradient(x, g) == Approx(expected).epsilon(1e-13));
     CHECK(proxy.is_proxy());
-    CHECK(&proxy.model() == f.problem.models[level]);
+    CHECK(&proxy.model() == f.problem.models[level].get());
   }
 }
 

@@ -21,7 +21,7 @@ class FinestOnly : public drape::Solver {
     const drape::Stopwatch clock;
     const int finest = problem.finest();
     observer.level_started(finest);
-    drape::PlainObjective objective(*problem.models[finest]);
+    drape::PlainObjective objective(problem.model(finest));
     drape::LevelResult result =
         drape::minimise(objective, problem.starts[finest], p_.newton, {clock, observer});
     observer.level_finished(result);

@@ -1,0 +1,139 @@
+#include "core/app/experiment/load_schedule.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/app/experiment/boundary_conditions.h"
+
+namespace drape {
+
+namespace {
+
+std::vector<std::string> words_of(const std::string& path) {
+  std::vector<std::string> words;
+  std::istringstream text(path);
+  for (std::string word; std::getline(text, word, '.');) words.push_back(word);
+  return words;
+}
+
+const Schema& experiment_schema() {
+  static const Schema schema = schema_of<ExperimentParameters>();
+  return schema;
+}
+
+void throw_first(const ConfigErrors& errors) {
+  if (!errors.empty()) throw std::runtime_error(errors[0].message);
+}
+
+}  // namespace
+
+LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
+    : hierarchy_(scene.hierarchy),
+      starts_(scene.starts),
+      keys_(e.parameters.schedule),
+      increment_count_(e.parameters.schedule.steps),
+      equilibrates_(e.parameters.schedule.equilibrate) {
+  auto parameters = std::make_shared<ExperimentParameters>(e.parameters);
+  std::size_t first = 0;
+  for (std::size_t k = 0; k < e.parameters.schedule.keys.size(); ++k) {
+    const std::string& name = e.parameters.schedule.keys[k].parameter;
+    std::vector<std::string> words = words_of(name), within;
+    Section& section = section_of(e, words, within);
+    const bool of_plugin = section.plugin.entry != nullptr;
+    const auto path = ParameterPath::find(of_plugin ? section.plugin.entry->schema : experiment_schema(),
+                                          of_plugin ? section.plugin.values.get() : parameters.get(), within);
+    if (!path) throw std::runtime_error("the schedule's key \"" + name + "\" names no parameter");
+    section.keys.push_back({k, first, *path});
+    first += keys_.count(k);
+  }
+  first_ = std::make_shared<const LoadState>(
+      LoadState{keys_.first(), std::move(parameters), scene.energies, e.contacts});
+}
+
+/// `rest` receives the words that follow in the struct that the section's parameters are in.
+LoadSchedule::Section& LoadSchedule::section_of(const Experiment& e, const std::vector<std::string>& words,
+                                                std::vector<std::string>& rest) {
+  static const std::vector<std::string> kinds = {"material", "pins", "handles", "energies", "contact"};
+  const auto kind =
+      static_cast<Section::Kind>(std::find(kinds.begin(), kinds.end(), words[0]) - kinds.begin());
+  const bool is_plugin = kind == Section::energy || kind == Section::contact;
+  std::size_t item = 0, used = 0;
+  const ConfigNode* node = e.resolved.find(words[0]);
+  if (is_plugin) {
+    used = 1;
+    if (node->kind == ConfigNode::Kind::list) {
+      const auto index = words.size() > 1 ? node->index_of(words[1]) : std::nullopt;
+      if (!index) throw std::runtime_error("the schedule's keys name no item of \"" + words[0] + "\"");
+      item = *index;
+      node = &node->items[item];
+      used = 2;
+    }
+  }
+  rest.assign(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
+  for (Section& section : sections_)
+    if (section.kind == kind && section.item == item) return section;
+  ConfigErrors errors;
+  PluginParameters plugin;
+  if (is_plugin)
+    plugin =
+        read_plugin_parameters(*e.registry, kind == Section::energy ? "energy" : "contact", *node, errors);
+  throw_first(errors);
+  return sections_.emplace_back(Section{kind, item, std::move(plugin)});
+}
+
+bool LoadSchedule::differs(const Section& section, const std::vector<double>& a,
+                           const std::vector<double>& b) const {
+  return std::any_of(section.keys.begin(), section.keys.end(), [&](const Key& key) {
+    const auto first = static_cast<std::ptrdiff_t>(key.first),
+               last = first + static_cast<std::ptrdiff_t>(keys_.count(key.index));
+    return !std::equal(a.begin() + first, a.begin() + last, b.begin() + first);
+  });
+}
+
+void LoadSchedule::write(const Section& section, const std::vector<double>& values, void* object) const {
+  ConfigErrors errors;
+  for (const Key& key : section.keys) key.path.set(object, keys_.node(key.index, &values[key.first]), errors);
+  throw_first(errors);
+}
+
+std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, const LoadState& before) const {
+  auto load = std::make_shared<LoadState>(before);
+  std::shared_ptr<ExperimentParameters> parameters;  // once a section of the experiment's own differs
+  bool new_handles = false;
+  ConfigErrors errors;
+  for (const Section& section : sections_) {
+    if (!differs(section, values, before.values)) continue;
+    if (!section.plugin.entry) {
+      if (!parameters) parameters = std::make_shared<ExperimentParameters>(*before.parameters);
+      write(section, values, parameters.get());
+      new_handles = new_handles || section.kind == Section::handles;
+      continue;
+    }
+    const PluginParameters own{section.plugin.entry,
+                               section.plugin.entry->schema.copy(section.plugin.values.get())};
+    write(section, values, own.values.get());
+    if (section.kind == Section::energy) {
+      auto& energy = load->energies[section.item].energy;
+      energy = std::static_pointer_cast<Energy>(make_plugin(own, {}, errors, energy.get()));
+    } else {
+      auto& contact = load->contacts[section.item];
+      contact = std::static_pointer_cast<ContactModel>(make_plugin(own, {}, errors, contact.get()));
+    }
+    throw_first(errors);
+  }
+  if (parameters) load->parameters = parameters;
+  if (new_handles) load->energies.back().energy = handles_energy(*parameters, hierarchy_.levels[0]);
+  load->values = std::move(values);
+  return load;
+}
+
+std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int level,
+                                                      const LevelModel& before) const {
+  const Level &own = hierarchy_.levels[level], &coarsest = hierarchy_.levels[0];
+  return std::make_shared<const LevelModel>(
+      own, load.parameters->material, load.energies,
+      dirichlet_vertices(*load.parameters, own, coarsest, starts_[level]), load.contacts, &before);
+}
+
+}  // namespace drape

@@ -1,0 +1,168 @@
+#include "core/app/experiment/load_schedule.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/app/experiment/schedule_stepping.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Two levels whose pin, gravity, bending modulus and obstacle change; the membrane and `ipc` do not.
+const std::string two_levels = R"(name: loads
+cloth: {shape: square, side: 0.4, columns: 5, rows: 5}
+levels: 2
+pins: [{region: nearest, point: [0, 0, 0]}]
+handles: [{region: nearest, point: [0.4, 0.4, 0]}]
+energies: [neo_hookean, hinge, {type: gravity, acceleration: [0, 0, -9.81]}]
+contact:
+  - {type: ipc, friction: 0.1}
+  - {type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.1, centre: [0.2, 0.2, -0.2]}]}
+methods: {newton: {}}
+schedule:
+  steps: 4
+  keys:
+    - {parameter: pins.0.translate, times: [0, 4], values: [[0, 0, 0], [0, 0, 0.4]]}
+    - {parameter: energies.gravity.acceleration.2, times: [0, 4], values: [-9.81, -1.81]}
+    - {parameter: material.bending_modulus, times: [2, 4], values: [8e4, 8e2], interpolation: log}
+    - {parameter: contact.shapes.shapes.ball.centre, times: [0, 4], values: [[0.2, 0.2, -0.2], [0.2, 0.2, -0.12]]}
+)";
+
+/// What a model gives, for comparison.
+struct Figures {
+  std::vector<double> energies;
+  Positions gradient, obstacle;
+  std::vector<Eigen::Vector3d> targets;
+  bool operator==(const Figures&) const = default;
+};
+
+Figures figures_of(const LevelModel& model) {
+  Positions x = model.level().rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    x.row(i) *= 1 + 1e-2 * std::sin(7.0 * static_cast<double>(i));
+    x(i, 2) = 1e-2 * std::cos(static_cast<double>(i * i));
+  }
+  Figures figures;
+  for (const auto& [name, energy] : model.energy_parts(x)) figures.energies.push_back(energy);
+  model.gradient(x, figures.gradient);
+  figures.obstacle = model.contacts().back()->obstacles().back().vertices;
+  for (const DirichletVertex& d : model.dirichlet()) figures.targets.push_back(d.target);
+  return figures;
+}
+
+}  // namespace
+
+TEST_CASE("The keys' values follow the pseudo-time, one after another") {
+  const Solved s = scene_from(two_levels);
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  CHECK(schedule.increment_count() == 4);
+  CHECK(schedule.time(3) == 3);
+  CHECK(schedule.values(0) == schedule.first()->values);
+  const std::vector<double> expected = {0, 0, 0.3, -3.81, 8e3, 0.2, 0.2, -0.14}, values = schedule.values(3);
+  REQUIRE(values.size() == expected.size());
+  for (std::size_t c = 0; c < values.size(); ++c) CHECK(values[c] == Approx(expected[c]));
+}
+
+TEST_CASE("A load is a value: equal when asked for twice, by whatever way, and never changed") {
+  const Solved s = scene_from(two_levels);
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const auto half = schedule.at(schedule.values(2)), again = schedule.at(schedule.values(2));
+  const auto end = schedule.at(schedule.values(4), *half), back = schedule.at(schedule.values(2), *end);
+  CHECK(half->parameters->pins[0].translate.value().z() == 0.2);
+  CHECK(end->parameters->pins[0].translate.value().z() == 0.4);
+  CHECK(end->parameters->material.bending_modulus == 800);
+  CHECK(schedule.first()->parameters->pins[0].translate.value().z() == 0);
+  for (int level = 0; level < 2; ++level) {
+    const LevelModel& first = *s.scene->models[level];
+    const Figures at_first = figures_of(first);
+    const auto model = schedule.model(*half, level, first);
+    const Figures at_half = figures_of(*model);
+    const auto last = schedule.model(*end, level, *model);
+    const Figures at_end = figures_of(*last);
+    CHECK(figures_of(*schedule.model(*again, level, first)) == at_half);
+    CHECK(figures_of(*schedule.model(*back, level, *last)) == at_half);
+    // All that is keyed has changed, and the earlier models have not.
+    CHECK(at_half.obstacle != at_first.obstacle);
+    CHECK(at_end.obstacle != at_half.obstacle);
+    CHECK(at_end.targets != at_half.targets);
+    CHECK(at_end.gradient != at_half.gradient);
+    CHECK(at_end.energies[0] == at_half.energies[0]);  // neo_hookean
+    REQUIRE(at_half.energies[1] > 0);
+    CHECK(at_end.energies[1] == Approx(0.01 * at_half.energies[1]));
+    CHECK(at_end.energies[2] == Approx(1.81 / 5.81 * at_half.energies[2]));
+    CHECK(figures_of(*model) == at_half);
+    CHECK(figures_of(first) == at_first);
+  }
+}
+
+TEST_CASE("Loads share what is equal in them") {
+  const Solved s = scene_from(two_levels);
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const LoadState& first = *schedule.first();
+  std::vector<double> values = first.values;
+  values[7] += 0.01;  // the ball's height
+  const auto moved = schedule.at(values);
+  CHECK(moved->parameters == first.parameters);
+  for (std::size_t k = 0; k < first.energies.size(); ++k)
+    CHECK(moved->energies[k].energy == first.energies[k].energy);
+  CHECK(moved->contacts[0] == first.contacts[0]);
+  CHECK(moved->contacts[1] != first.contacts[1]);
+  const LevelModel& before = *s.scene->models[1];
+  const auto model = schedule.model(*moved, 1, before);
+  CHECK(model->pattern() == before.pattern());
+  CHECK(model->contacts()[0] == before.contacts()[0]);
+  CHECK(model->contacts()[1] != before.contacts()[1]);
+  CHECK(schedule.at(values, *moved)->contacts == moved->contacts);
+}
+
+TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
+  const Solved s = scene_from(two_levels);
+  LoadStepping& stepping = *s.scene->schedule;
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const auto expected = [&](int increment, int level) {
+    return figures_of(
+        *schedule.model(*schedule.at(schedule.values(increment)), level, *s.scene->models[level]));
+  };
+  stepping.begin(0, true);
+  const auto first = stepping.model(0);
+  CHECK(figures_of(*first) == expected(0, 0));
+  CHECK(stepping.model(0) == first);
+  for (int k = 1; k <= 2; ++k) REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
+  CHECK(stepping.increment() == 2);
+  CHECK(stepping.complete());
+  CHECK(stepping.model(0) != first);
+  CHECK(figures_of(*first) == expected(0, 0));
+  CHECK(figures_of(*stepping.model(0)) == expected(2, 0));
+  CHECK(figures_of(*stepping.model(1)) == expected(2, 1));
+  CHECK(&s.scene->model(1) == stepping.model(1).get());
+
+  REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
+  const LoadSteppingState third = stepping.state();
+  const Figures at_third = figures_of(*stepping.model(0));
+  stepping.begin(1, true);
+  CHECK(stepping.increment() == 0);
+  CHECK(figures_of(*stepping.model(1)) == expected(0, 1));
+  CHECK(figures_of(*stepping.model(0)) == at_third);
+  stepping.restore(0, third);
+  CHECK(stepping.increment() == 3);
+  CHECK(figures_of(*stepping.model(0)) == at_third);
+  CHECK(figures_of(*stepping.model(1)) == expected(3, 1));
+}
+
+TEST_CASE("An increment whose value a parameter refuses is named") {
+  const Solved s = scene_from(R"(name: fraction
+cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
+levels: 1
+energies: [neo_hookean, gravity]
+contact: {type: ipc, obstacles: [{shape: sphere, radius: 0.1, subdivisions: 1, translate: [0.2, 0.2, -1]}]}
+methods: {newton: {}}
+schedule: {steps: 4, keys: [{parameter: contact.obstacles.0.subdivisions, times: [0, 2], values: [1, 2]}]}
+)");
+  LoadStepping& stepping = *s.scene->schedule;
+  stepping.begin(0, true);
+  CHECK_THROWS_WITH(stepping.advance(0, s.scene->starts[0]),
+                    Catch::StartsWith("the schedule at pseudo-time 0.5") &&
+                        Catch::EndsWith("\"subdivisions\" must be an integer, not 1.25"));
+  CHECK(s.scene->schedule->state().values == std::vector<double>{1});
+}
