@@ -48,9 +48,9 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
       .formerly("keep")
       .source("Li et al. 2021");
   d.add_choice("broad_phase", &P::broad_phase,
-               {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
+               {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}})
       .description(
-          "broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
+          "broad phase algorithm: own BVH or FCL's; the pairs are the same");
 }
 
 Ipc::Ipc(const Parameters& parameters) : p_(parameters) {

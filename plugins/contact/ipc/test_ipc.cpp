@@ -219,7 +219,7 @@ TEST_CASE(
   Material material;
   std::vector<double> energies;
   REQUIRE(Ipc(p).bind(level, material)->intersections(x0).empty());
-  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl, BroadPhaseKind::cgal}) {
+  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl}) {
     p.broad_phase = kind;
     const auto contact = Ipc(p).bind(level, material);
     const auto candidates = contact->build_candidates(x0, x1);
