@@ -456,7 +456,7 @@ class Newton {
     direction_ = displacement - direction_;
     factor_age_ = p_.hessian_update_interval;
     trial_ = result_.x + direction_;
-    for (const DirichletVertex& d : model_.dirichlet()) trial_.row(d.vertex) = d.target.transpose();
+    model_.set_dirichlet(trial_);
     limit_ = f_.max_step(result_.x, trial_);
     double fraction = limit_.fraction;
     while (fraction > min_step_length) {

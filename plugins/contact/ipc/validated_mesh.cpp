@@ -6,6 +6,7 @@
 
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/split_triangles.h"
 #include "plugins/contact/ipc/weak_cache.h"
 
 namespace drape::ipc {
@@ -48,13 +49,14 @@ TriangleMesh split_on_sphere(const TriangleMesh& coarse) {
   for (int e = 0; e < topology.edges.rows(); ++e)
     fine.vertices.row(n + e) =
         (coarse.vertices.row(topology.edges(e, 0)) + coarse.vertices.row(topology.edges(e, 1))).normalized();
-  fine.triangles.resize(4 * coarse.triangles.rows(), 3);
-  for (int t = 0; t < coarse.triangles.rows(); ++t) {
-    const auto v = coarse.triangles.row(t);
-    const Eigen::RowVector3i e = topology.triangle_edges.row(t).array() + n;
-    fine.triangles.middleRows<4>(4 * t) << v[0], e[2], e[1], v[1], e[0], e[2], v[2], e[1], e[0], e[0], e[1],
-        e[2];
-  }
+  fine.triangles = split_triangles(coarse.triangles, topology);
+  // Each corner's triangle begins at the corner: the edges' order, and with it that of contacts, depends on
+  // it.
+  for (int t = 0; t < coarse.triangles.rows(); ++t)
+    for (int k = 1; k < 3; ++k) {
+      const Eigen::RowVector3i v = fine.triangles.row(4 * t + k);
+      fine.triangles.row(4 * t + k) << v[k], v[(k + 1) % 3], v[(k + 2) % 3];
+    }
   return fine;
 }
 
