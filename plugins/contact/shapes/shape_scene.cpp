@@ -204,7 +204,7 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<Triang
     triangles = finder.triangles_near(triangles);
     finder.add_point_triangle(triangles, scene.first_point[k], c.pairs);
     if (solid.kind == SolidKind::sphere) continue;
-    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k, scene.vertex_area[i]});
+    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
     if (solid.kind == SolidKind::half_space) continue;
     finder.add_edge_edge(finder.edges_of(triangles), scene.first_point[k], c.pairs);
   }

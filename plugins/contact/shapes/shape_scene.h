@@ -5,7 +5,6 @@
 #include "core/kernel/contact/pair_contacts.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
-#include "plugins/contact/shapes/vertex_contacts.h"
 
 namespace drape::shapes {
 
@@ -41,6 +40,12 @@ struct TriangleSolidPair {
 /// Triangles that may come within d̂ of a solid during the linear motion from x0 to x1, grouped by solid.
 std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
                                               const Positions& x1);
+
+/// A cloth vertex and a solid that may come within d̂.
+struct VertexSolidPair {
+  int vertex;
+  int solid;
+};
 
 /// The candidate pairs of a linear motion.
 struct CandidatePairs {

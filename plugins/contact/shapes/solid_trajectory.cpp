@@ -127,10 +127,10 @@ void advect_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, c
   for (const VertexSolidPair& pair : candidates.vertices) {
     const Vector3d p = x.row(pair.vertex);
     const Solid& solid = scene.solids[pair.solid];
-    const Nearest nearest = solid.nearest(p);
+    const SignedDistance nearest = solid.nearest(p);
     if (nearest.distance < dhat && solid.friction > 0)
       add(pair.vertex, pair.solid, p - nearest.distance * nearest.normal,
-          -pair.weight * solid.friction * barrier(nearest.distance / dhat).first);
+          -scene.vertex_area[pair.vertex] * solid.friction * barrier(nearest.distance / dhat).first);
   }
   const int n = static_cast<int>(x.rows());
   for (const ContactPair& pair : candidates.pairs) {
