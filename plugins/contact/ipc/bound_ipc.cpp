@@ -7,7 +7,6 @@
 #include "core/kernel/contact/contact_kernel.h"
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
-#include "core/kernel/contact/stiffness.h"
 #include "core/kernel/mesh/same_triangles.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "plugins/contact/ipc/surface_contacts.h"
@@ -167,7 +166,7 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const Obstacles> ob
     : friction_(p.friction),
       min_gap_fraction_(p.min_gap_fraction),
       self_contact_(p.self_contact),
-      barrier_{p.dhat, p.stiffness.value_or(contact_stiffness(material)), p.friction_smoothing_distance},
+      barrier_(p.barrier(material)),
       obstacles_(std::move(obstacles)),
       obstacle_tree_(ObstacleTree::of(obstacles_, p.dhat, p.broad_phase)),
       rest_(RestCloth::of(level, p.dhat, p.self_contact)),

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/linear_algebra/parallel.h"
 

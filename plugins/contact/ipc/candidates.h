@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/surface.h"
 #include "core/kernel/mesh/topology.h"
 #include "plugins/contact/ipc/nearest_features.h"
 #include "plugins/contact/ipc/obstacle.h"
-#include "plugins/contact/ipc/surface.h"
 
 namespace drape::ipc {
 
@@ -30,9 +30,6 @@ struct BroadPhasePairs {
     vertex_triangles.clear();
   }
 };
-
-/// ε of the mollifier over |e|²|e'|² of the edges' rest lengths (Li et al. 2020, section 5).
-inline constexpr double mollifier_threshold = 1e-3;
 
 // Both append to `found` the pairs of primitives that may come within d̂ during the motion, from rows of
 // triangles whose swept boxes overlap. The order depends on the rows alone. They return false once `found`

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "plugins/contact/ipc/surface.h"
+#include "core/kernel/contact/surface.h"
 
 namespace drape::ipc {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/contact/surface.h"
 #include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/dihedrals.h"
-#include "plugins/contact/ipc/surface.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {

@@ -128,12 +128,9 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
   StepLimit max_step(const BoundContact& before, const Positions& x) const override {
     const std::vector<SolidTrajectory> trajectories =
         solid_trajectories(solids_before(before), scene_->solids);
-    const double min_gap = min_gap_after_step(scene_->barrier.dhat, smallest_gap(trajectories, x));
-    const StepLimit full =
-        advance(trajectories, x, full_step_min_gap_factor * min_gap, full_step_max_iterations);
-    if (full.fraction == 1) return {};
-    const StepLimit partial = advance(trajectories, x, min_gap, partial_step_max_iterations);
-    return partial.fraction < full.fraction ? partial : full;
+    return max_obstacle_step(
+        scene_->barrier.dhat, smallest_gap(trajectories, x),
+        [&](double min_gap, int iterations) { return advance(trajectories, x, min_gap, iterations); });
   }
 
   void advect(const BoundContact& before, const Positions& x, Positions& reference) const override {
@@ -144,7 +141,7 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
  private:
   double smallest_gap(const std::vector<SolidTrajectory>& trajectories, const Positions& x) const {
     const double dhat = scene_->barrier.dhat;
-    std::vector<double> gaps(scene_->triangles.rows());
+    std::vector<double> gaps(scene_->cloth.triangles.rows());
     double smallest = dhat;
     for (const SolidTrajectory& trajectory : trajectories) {
       if (trajectory.is_static()) continue;
@@ -159,7 +156,7 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
   StepLimit advance(const std::vector<SolidTrajectory>& trajectories, const Positions& x, double min_gap,
                     int max_iterations) const {
     StepLimit limit;
-    std::vector<double> fractions(scene_->triangles.rows());
+    std::vector<double> fractions(scene_->cloth.triangles.rows());
     for (const SolidTrajectory& trajectory : trajectories) {
       if (trajectory.is_static()) continue;
       parallel_for(static_cast<int>(fractions.size()), 256, [&](int begin, int end) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/surface.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 
@@ -10,11 +11,9 @@ namespace drape::shapes {
 
 /// The cloth of one level at rest and its solids. Immutable.
 struct ShapeScene {
-  Triangles triangles, triangle_edges;  ///< m×3, column k of triangle_edges opposite vertex k
-  Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges;  ///< e×2
-  Eigen::VectorXd vertex_area, edge_area, triangle_area;         ///< of the rest shape [m²]
-  Eigen::VectorXd edge_length;                                   ///< of the rest shape [m]
-  double diagonal = 0;                                           ///< of the rest shape's bounding box [m]
+  Surface cloth;
+  Eigen::VectorXd vertex_area;  ///< the level's [m²]
+  double diagonal = 0;          ///< of the rest shape's bounding box [m]
 
   std::vector<Solid> solids;
   std::vector<Features> features;  ///< of each solid
@@ -28,7 +27,8 @@ struct ShapeScene {
                        double min_gap_fraction);
 
   Corners corners(int triangle, const Positions& x) const {
-    return {x.row(triangles(triangle, 0)), x.row(triangles(triangle, 1)), x.row(triangles(triangle, 2))};
+    const auto v = cloth.triangles.row(triangle);
+    return {x.row(v[0]), x.row(v[1]), x.row(v[2])};
   }
 };
 
