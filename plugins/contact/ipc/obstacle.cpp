@@ -43,10 +43,10 @@ ObstacleGeometry geometry_of(const ObstacleParameters& p) {
   ObstacleGeometry geometry;
   geometry.pose = {p.scale, p.rotate, p.translate};
   if (p.shape == "box") {
-    geometry.frames = {unit_box()};
+    geometry.frames = {validated_box()};
     geometry.local_scale = p.size;
   } else if (p.shape == "sphere") {
-    geometry.frames = {unit_sphere(p.subdivisions)};
+    geometry.frames = {validated_sphere(p.subdivisions)};
     geometry.local_scale.setConstant(p.radius);
   } else if (!p.animation.empty()) {
     geometry.frames = read_animation(p);
