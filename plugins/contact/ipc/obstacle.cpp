@@ -158,6 +158,7 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.vertices.conservativeResize(n + m, 3);
     all.vertices.bottomRows(m) = body.mesh.vertices;
     all.first_vertex.push_back(n + m);
+    all.body_friction.push_back(body.friction);
     all.surface.append(Surface::of(body.mesh, body.geometry.frames.empty()
                                                   ? Topology::of(body.mesh.triangles, m)
                                                   : body.geometry.frames[0]->topology));
@@ -165,11 +166,6 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);
   return all;
-}
-
-int Obstacles::body_of(int vertex) const {
-  const auto next = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
-  return static_cast<int>(next - first_vertex.begin()) - 1;
 }
 
 }  // namespace drape::ipc

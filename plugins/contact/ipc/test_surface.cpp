@@ -7,9 +7,10 @@
 
 #include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/contact/surface_contacts.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/friction.h"
-#include "plugins/contact/ipc/surface_contacts.h"
+#include "plugins/contact/ipc/obstacle.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;

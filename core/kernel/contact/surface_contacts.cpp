@@ -1,4 +1,4 @@
-#include "plugins/contact/ipc/surface_contacts.h"
+#include "core/kernel/contact/surface_contacts.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/model/friction.h"
 
-namespace drape::ipc {
+namespace drape {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
@@ -114,7 +114,7 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions {
 
 }  // namespace
 
-SurfaceContacts SurfaceContacts::of(const Positions& x, const Obstacles& obstacles,
+SurfaceContacts SurfaceContacts::of(const Positions& x, const ObstacleSurface& obstacles,
                                     const OperatorCoefficients& coefficients,
                                     const std::vector<VertexTriangleCandidate>& candidates,
                                     const Eigen::VectorXd& vertex_area, double friction, double dhat) {
@@ -174,4 +174,4 @@ std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
   return std::make_unique<SurfaceCollisions>(std::move(contacts), parameters);
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

@@ -4,7 +4,7 @@
 
 #include "core/kernel/contact/surface.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// Dihedral angles and curvatures of a surface at its edges and vertices.
 struct Dihedrals {
@@ -41,4 +41,4 @@ struct OperatorCoefficients {
   static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double dhat);
 };
 
-}  // namespace drape::ipc
+}  // namespace drape
