@@ -3,39 +3,24 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/contact_model.h"
+#include "core/kernel/model/friction.h"
+#include "tests/support/conformance.h"
 #include "tests/support/evaluate.h"
-#include "tests/support/registry.h"
 
 using namespace drape;
 
 namespace {
 
-/// Settings of each contact model: obstacles below the cloth of these tests, a d̂ comparable to its triangles,
+/// Settings of every contact model that declares them: a d̂ comparable to the triangles of these tests' cloth,
 /// and friction.
-const std::map<std::string, std::string> settings = {
-    {"ipc",
-     R"({type: ipc, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3, obstacles: [
-       {name: ball, shape: sphere, radius: 0.15, subdivisions: 2, translate: [0.12, 0.2, -0.165]},
-       {name: table, shape: box, size: [0.2, 0.3, 0.1], rotate: [5, 0, 10],
-        translate: [0.38, 0.2, -0.075]}]})"},
-    {"shapes",
-     R"({type: shapes, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3, shapes: [
-       {shape: sphere, radius: 0.05, centre: [0.05, 0.1, -0.062]},
-       {shape: box, size: [0.1, 0.1, 0.1], rotate: [0, 5, 20], centre: [0.2, 0.1, -0.07]},
-       {shape: capsule, radius: 0.04, height: 0.1, rotate: [90, 0, 0], centre: [0.37, 0.12, -0.052]},
-       {shape: cylinder, radius: 0.06, height: 0.05, rotate: [5, 0, 0], centre: [0.1, 0.3, -0.04]},
-       {shape: half_space, centre: [0, 0, -0.12], normal: [0.05, 0.02, 1]}]})"}};
-
-/// Without obstacles, for models with self-contact.
-const std::map<std::string, std::string> self_contact = {
-    {"ipc", "{type: ipc, dhat: 0.02, stiffness: 50, friction: 0.3, friction_smoothing_distance: 1e-3}"}};
+const std::vector<std::pair<std::string, std::string>> common = {
+    {"dhat", "0.02"}, {"stiffness", "50"}, {"friction", "0.3"}, {"friction_smoothing_distance", "1e-3"}};
 
 Positions noise(Eigen::Index vertices, double size, unsigned seed) {
   std::mt19937 random(seed);
@@ -89,24 +74,66 @@ Positions pressed(const BoundContact& contact, Positions x, unsigned seed) {
 struct NamedModel {
   std::string name;
   std::shared_ptr<ContactModel> model;
+  bool has_friction;
 };
 
-/// Every registered contact model except those without contact.
+/// Every registered contact model except those without contact. Obstacles are those of its conformance.yaml.
 std::vector<NamedModel> all_models() {
   std::vector<NamedModel> all;
   for (const RegistryEntry* entry : test_registry().of_kind("contact")) {
-    const auto own = settings.find(entry->name);
-    auto model = make_plugin_from<ContactModel>(own == settings.end() ? entry->name : own->second);
-    if (model->bind(two_sheets(20), Material())) all.push_back({entry->name, model});
+    auto model =
+        make_plugin_from<ContactModel>(conformance_config(*entry, conformance_parameters(*entry), common));
+    if (model->bind(two_sheets(20), Material()))
+      all.push_back({entry->name, model, declares(*entry, "friction")});
   }
   REQUIRE(all.size() >= 2);
   return all;
 }
 
+/// Those that declare friction.
+std::vector<NamedModel> models_with_friction() {
+  std::vector<NamedModel> all = all_models();
+  std::erase_if(all, [](const NamedModel& named) { return !named.has_friction; });
+  REQUIRE(all.size() >= 2);
+  return all;
+}
+
+/// Those that declare self-contact, without obstacles.
 std::vector<NamedModel> self_contact_models() {
   std::vector<NamedModel> all;
-  for (const auto& [name, yaml] : self_contact) all.push_back({name, make_plugin_from<ContactModel>(yaml)});
+  for (const RegistryEntry* entry : test_registry().of_kind("contact"))
+    if (declares(*entry, "self_contact"))
+      all.push_back({entry->name, make_plugin_from<ContactModel>(conformance_config(*entry, "", common)),
+                     declares(*entry, "friction")});
+  REQUIRE(!all.empty());
   return all;
+}
+
+Positions raised(Positions x, double height) {
+  x.col(2).array() += height;
+  return x;
+}
+
+/// The height by which to raise x so that it clears the obstacles by 5 mm; 0 if it has no intersections.
+double clearance(const BoundContact& contact, const Positions& x) {
+  if (contact.intersections(x).empty()) return 0;
+  double low = 0, high = 1e-3;
+  while (!contact.intersections(raised(x, high)).empty()) {
+    REQUIRE(high < 1e6);
+    low = high;
+    high *= 2;
+  }
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    (contact.intersections(raised(x, middle)).empty() ? high : low) = middle;
+  }
+  return high + 5e-3;
+}
+
+/// The sheets one above the other, above the obstacles.
+Positions stacked(const Level& level, const BoundContact& contact, double gap, unsigned seed) {
+  const Positions x = stacked(level, gap, seed);
+  return raised(x, clearance(contact, x));
 }
 
 /// Runs the body at random states of every model with many contacts.
@@ -117,7 +144,7 @@ void for_each_state(const std::vector<NamedModel>& models, const Body& body) {
     const auto contact = named.model->bind(level, Material());
     for (unsigned seed = 1; seed <= 3; ++seed) {
       INFO(named.name << ", state " << seed);
-      const Positions x = pressed(*contact, stacked(level, 0.015, seed), seed);
+      const Positions x = pressed(*contact, stacked(level, *contact, 0.015, seed), seed);
       REQUIRE(contact->intersections(x).empty());
       REQUIRE(contacts_at(*contact, x)->contact_count() >= 20);
       body(*contact, x);
@@ -242,32 +269,37 @@ TEST_CASE("Contacts give the same bits with any number of threads", "[conformanc
   const Level level = two_sheets(2000);
   for (const NamedModel& named : all_models()) {
     INFO(named.name);
-    Positions down = stacked(level, 0.012, 4);
-    down.col(2).array() -= 0.004;
     std::vector<double> reference;
     for (const int threads : {1, 2, 3}) {
       set_thread_count(threads);
       const auto contact = named.model->bind(level, Material());
-      const Positions above = down.rowwise() + Eigen::RowVector3d(0, 0, 0.02);
+      Positions down = stacked(level, 0.012, 4);
+      down.col(2).array() -= 0.004;
+      Positions above = raised(down, 0.02);
+      const double height = clearance(*contact, above);
+      down = raised(down, height);
+      above = raised(above, height);
       const auto candidates = contact->build_candidates(above, down);
       const double part = candidates->max_step().fraction;
       const Positions x = above + 0.9 * part * (down - above);
       const auto set = candidates->build_collisions(x);
-      const auto friction = set->friction(above, {});
-      REQUIRE(friction);
-      const Positions g = gradient_of(*set, x), f = gradient_of(*friction, x);
+      // From beside, so that friction acts on a level floor too.
+      const auto friction = lagged_friction(*set, above.rowwise() + Eigen::RowVector3d(1e-3, 0, 0), {});
+      REQUIRE((friction != nullptr) == named.has_friction);
+      const Positions g = gradient_of(*set, x);
       REQUIRE(g.norm() > 0);
-      REQUIRE(f.norm() > 0);
-      std::vector<double> all = {part,
-                                 set->smallest_gap(),
-                                 set->value(x),
+      std::vector<double> all = {part, set->smallest_gap(), set->value(x),
                                  static_cast<double>(set->contact_count()),
-                                 friction->value(x),
                                  static_cast<double>(contact->intersections(down).size())};
       all.insert(all.end(), g.data(), g.data() + g.size());
-      all.insert(all.end(), f.data(), f.data() + f.size());
-      for (const BoundEnergy* energy :
-           {static_cast<BoundEnergy*>(set.get()), static_cast<BoundEnergy*>(friction.get())}) {
+      if (friction) {
+        const Positions f = gradient_of(*friction, x);
+        REQUIRE(f.norm() > 0);
+        all.push_back(friction->value(x));
+        all.insert(all.end(), f.data(), f.data() + f.size());
+      }
+      for (const BoundEnergy* energy : std::initializer_list<const BoundEnergy*>{set.get(), friction.get()}) {
+        if (!energy) continue;
         const std::vector<double> h = hessian_of(*energy, x, Projection::clamp).values;
         all.insert(all.end(), h.begin(), h.end());
       }
@@ -284,10 +316,10 @@ TEST_CASE("No step of any motion lets an intersection through", "[conformance]")
   for (const auto& models : {all_models(), self_contact_models()})
     for (const NamedModel& named : models) {
       const auto contact = named.model->bind(level, Material());
-      Positions x = stacked(level, 0.015, 1);
+      Positions x = stacked(level, *contact, 0.015, 1);
       int crossing = 0;
       for (unsigned round = 1; round <= 12; ++round) {
-        if (round % 4 == 0) x = stacked(level, 0.015, round);
+        if (round % 4 == 0) x = stacked(level, *contact, 0.015, round);
         for (const Positions& to : adversarial(x, round)) {
           INFO(named.name << ", round " << round);
           const StepLimit limit = contact->build_candidates(x, to)->max_step();
@@ -316,10 +348,12 @@ TEST_CASE("Intersections are named, with a point near them", "[conformance]") {
       INFO(named.name);
       const auto contact = named.model->bind(level, Material());
       Positions x = stacked(level, 0.015, 1);
-      CHECK(contact->intersections(x).empty());
+      const double height = clearance(*contact, x);
+      CHECK(contact->intersections(raised(x, height)).empty());
       x.col(2) *= 20;  // noise of 3 cm, more than what is between
       x.col(2).array() -= 0.02;
       x.bottomRows(x.rows() - x.rows() / 2).col(2).array() -= 0.3;
+      x = raised(x, height);
       const std::vector<Intersection> found = contact->intersections(x);
       REQUIRE(!found.empty());
       for (const Intersection& intersection : found) {
@@ -333,25 +367,25 @@ TEST_CASE("Intersections are named, with a point near them", "[conformance]") {
 }
 
 TEST_CASE("Contacts keep unique keys and their tangential displacements between states", "[conformance]") {
-  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+  for_each_state(models_with_friction(), [](const BoundContact& contact, const Positions& x) {
     const Positions from = x - noise(x.rows(), 1e-4, 3), above = x.rowwise() + Eigen::RowVector3d(0, 0, 1e-3);
-    const auto before = contacts_at(contact, x)->friction(from, {});
-    TangentialDisplacements displacements;
-    before->append_tangential_displacements(x, displacements);
-    std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
+    const auto before = lagged_friction(*contacts_at(contact, x), from, {});
+    REQUIRE(before);
+    const TangentialDisplacements displacements = before->tangential_displacements(x);
     CHECK(std::ranges::adjacent_find(displacements, {}, &TangentialDisplacement::contact) ==
           displacements.end());
     const Positions f = gradient_of(*before, x);
     REQUIRE(f.norm() > 0);
-    const auto again = contact.build_candidates(x, above)->build_collisions(x)->friction(x, displacements);
+    const auto again =
+        lagged_friction(*contact.build_candidates(x, above)->build_collisions(x), x, displacements);
     CHECK((gradient_of(*again, x) - f).norm() <= 1e-9 * f.norm());
   });
 }
 
 TEST_CASE("Friction opposes motion and is zero without it", "[conformance]") {
-  for_each_state(all_models(), [](const BoundContact& contact, const Positions& x) {
+  for_each_state(models_with_friction(), [](const BoundContact& contact, const Positions& x) {
     const auto set = contacts_at(contact, x);
-    const auto friction = set->friction(x, {});
+    const auto friction = lagged_friction(*set, x, {});
     REQUIRE(friction);
     CHECK(friction->value(x) == 0);
     CHECK(gradient_of(*friction, x).norm() == 0);
@@ -372,7 +406,7 @@ TEST_CASE("Friction opposes motion and is zero without it", "[conformance]") {
     CHECK(force.x() < 0);
   });
   for_each_state(self_contact_models(), [](const BoundContact& contact, const Positions& x) {
-    const auto friction = contacts_at(contact, x)->friction(x, {});
+    const auto friction = lagged_friction(*contacts_at(contact, x), x, {});
     REQUIRE(friction);
     const Positions slid = x.rowwise() + Eigen::RowVector3d(0.05, 0, 0);
     Positions apart = x;

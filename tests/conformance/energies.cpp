@@ -2,7 +2,6 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <map>
 #include <random>
 
 #include "core/kernel/linear_algebra/parallel.h"
@@ -11,8 +10,8 @@
 #include "core/kernel/model/hierarchy.h"
 #include "core/kernel/model/midpoint.h"
 #include "core/kernel/model/refiner.h"
+#include "tests/support/conformance.h"
 #include "tests/support/evaluate.h"
-#include "tests/support/registry.h"
 
 using namespace drape;
 
@@ -26,21 +25,12 @@ struct Candidate {
   double enlarged() const { return energy->role() == EnergyRole::limit ? 1.2 : 1; }
 };
 
-/// Settings of energies that need parameters, or have no effect by default.
-const std::map<std::string, std::string> settings = {
-    {"constant_load",
-     "{type: constant_load, force_density: [1, 2, 3],"
-     " points: [{point: [0.3, 0.3, 0], force: [0.1, 0.2, -0.4]}]}"},
-    {"pressure", "{type: pressure, pressure: 100}"},
-    {"strain_limit", "{type: strain_limit, limit: 10}"}};  // every state satisfies it
-
-/// Every registered energy, with its defaults unless `settings` overrides them.
+/// Every registered energy, with its defaults unless its conformance.yaml overrides them.
 std::vector<Candidate> all_energies() {
   std::vector<Candidate> all;
-  for (const RegistryEntry* entry : test_registry().of_kind("energy")) {
-    const auto own = settings.find(entry->name);
-    all.push_back({entry->name, make_plugin_from<Energy>(own == settings.end() ? entry->name : own->second)});
-  }
+  for (const RegistryEntry* entry : test_registry().of_kind("energy"))
+    all.push_back(
+        {entry->name, make_plugin_from<Energy>(conformance_config(*entry, conformance_parameters(*entry)))});
   REQUIRE(all.size() >= 3);
   return all;
 }

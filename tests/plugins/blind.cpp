@@ -13,10 +13,6 @@ class NoContacts final : public drape::Collisions {
  public:
   int contact_count() const override { return 0; }
   double smallest_gap() const override { return std::numeric_limits<double>::infinity(); }
-  std::unique_ptr<drape::FrictionEnergy> friction(const Positions&,
-                                                  const drape::TangentialDisplacements&) const override {
-    return nullptr;
-  }
   double value(const Positions&) const override { return 0; }
   double add_gradient(const Positions&, Positions&) const override { return 0; }
   drape::Stencils stencils() const override { return drape::Stencils(0, 1); }

@@ -26,7 +26,7 @@ inline drape::TriangleMesh sphere_mesh(double radius, int splits) {
         all.row(coarse.vertex_count() + e) = (mesh.vertices.row(coarse.topology.edges(e, 0)) +
                                               mesh.vertices.row(coarse.topology.edges(e, 1))) /
                                              2;
-      mesh = {all, drape::split_triangles(coarse)};
+      mesh = {all, drape::split_triangles(mesh.triangles, coarse.topology)};
     }
     mesh.vertices.rowwise().normalize();
   }

@@ -6,8 +6,9 @@
 /// command line: so the tests are compiled alike in every folder, and a compiler cache serves all of them.
 namespace folders {
 std::string source();
-std::string commands();      ///< of drape and its companions
-std::string plugins();       ///< that drape is shipped with
-std::string test_plugins();  ///< a folder for each plugin of tests/plugins
-std::string tests();         ///< of the test programs
+std::string commands();         ///< of drape and its companions
+std::string plugins();          ///< that drape is shipped with
+std::string test_plugins();     ///< a folder for each plugin of tests/plugins
+std::string example_plugins();  ///< of the documents (tests/out_of_tree)
+std::string tests();            ///< of the test programs
 }  // namespace folders

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/plugin/loader.h"
@@ -10,11 +12,17 @@
 #include "core/kernel/plugin/registry.h"
 #include "tests/support/folders.h"
 
-/// Everything that the build's plugins offer.
+/// Where test_registry's plugins are; to be changed before it is first called.
+inline std::vector<std::filesystem::path>& test_plugin_folders() {
+  static std::vector<std::filesystem::path> all = {folders::plugins()};
+  return all;
+}
+
+/// Everything that these plugins offer.
 inline const drape::Registry& test_registry() {
   static const drape::Registry* registry = [] {
     auto* r = new drape::Registry;  // like the libraries, it stays for good
-    drape::load_plugins(*r, {folders::plugins()});
+    drape::load_plugins(*r, test_plugin_folders());
     return r;
   }();
   return *registry;

@@ -77,10 +77,6 @@ class Frozen : public ContactModel {
   struct FrozenCollisions : Collisions {
     int contact_count() const override { return 1; }
     double smallest_gap() const override { return 1e-5; }
-    std::unique_ptr<FrictionEnergy> friction(const Positions&,
-                                             const TangentialDisplacements&) const override {
-      return nullptr;
-    }
     double value(const Positions&) const override { return 0; }
     double add_gradient(const Positions&, Positions&) const override { return 0; }
     Stencils stencils() const override { return Stencils(0, 1); }

@@ -13,7 +13,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 constexpr long unlimited = 1L << 40;
-constexpr BroadPhaseKind kinds[] = {BroadPhaseKind::bvh, BroadPhaseKind::fcl, BroadPhaseKind::cgal};
+constexpr BroadPhaseKind kinds[] = {BroadPhaseKind::bvh, BroadPhaseKind::fcl};
 
 std::vector<Box> random_boxes(int count, double size, unsigned seed) {
   std::mt19937 random(seed);
@@ -192,12 +192,11 @@ TEST_CASE("broad phase: eight folded layers of 50 thousand triangles") {
     found.push_back(pairs_of(*phase));
     const double query = watch.seconds();
     CAPTURE(static_cast<int>(kind), build, refit, query);
-    // On one idle core the own tree needs 7, 0.4 and 17 ms, FCL 22, 1.4 and 60 ms, CGAL 150 ms a query.
+    // On one idle core the own tree needs 7, 0.4 and 17 ms, FCL 22, 1.4 and 60 ms.
     CHECK(build + refit + query < 2);
   }
   REQUIRE(found[0].items.size() > 10 * boxes.size());
   check_same(found[1], found[0]);
-  check_same(found[2], found[0]);
   set_thread_count(1);
   const auto alone = make_broad_phase(BroadPhaseKind::bvh);
   alone->update(boxes);

@@ -1,4 +1,4 @@
-#include "core/kernel/contact/friction.h"
+#include "core/kernel/model/friction.h"
 
 #include <algorithm>
 #include <random>
@@ -37,7 +37,7 @@ struct Sliding {
     return reference + by * Eigen::Map<const Positions>(normal_numbers(reference.size(), seed).data(),
                                                         reference.rows(), 3);
   }
-  std::unique_ptr<FrictionEnergy> energy() const { return make_friction(contacts, reference, {}, epsilon); }
+  LaggedFriction energy() const { return LaggedFriction({contacts}, reference, {}, epsilon); }
 };
 
 }  // namespace
@@ -45,20 +45,20 @@ struct Sliding {
 TEST_CASE("friction's derivatives, sticking and sliding") {
   for (int i = 0; i < 30; ++i) {
     const Sliding sliding(1 + i % 5, i);
-    const auto energy = sliding.energy();
+    const LaggedFriction energy = sliding.energy();
     for (const double by : {0.01, 0.3, 3.0}) {
       const Positions x = sliding.moved(by * epsilon, 100 + i);
-      const Positions g = gradient_of(*energy, x);
-      const Eigen::MatrixXd h = dense(hessian_of(*energy, x, Projection::none));
+      const Positions g = gradient_of(energy, x);
+      const Eigen::MatrixXd h = dense(hessian_of(energy, x, Projection::none));
       REQUIRE(g.norm() > 0);
       REQUIRE(h.norm() > 0);
       // The third derivative jumps at |u| = 0 and ε.
-      const auto value = [&](const Positions& y) { return energy->value(y); };
-      const auto gradient = [&](const Positions& y) { return gradient_of(*energy, y); };
+      const auto value = [&](const Positions& y) { return energy.value(y); };
+      const auto gradient = [&](const Positions& y) { return gradient_of(energy, y); };
       CHECK((differences(value, x, 1e-8) - flat(g).transpose()).norm() <= 2e-6 * g.norm());
       CHECK((differences(gradient, x, 1e-8) - h).norm() <= 1e-4 * h.norm());
       CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(h).eigenvalues()[0] >= -1e-13 * h.norm());
-      CHECK(dense(hessian_of(*energy, x, Projection::clamp)) == h);
+      CHECK(dense(hessian_of(energy, x, Projection::clamp)) == h);
     }
   }
 }
@@ -70,48 +70,61 @@ TEST_CASE("friction of a single point: zero at rest, full force above the smooth
   contact.normal = {0, 0, 1};
   contact.force = 0.25;
   const Positions reference = Positions::Zero(1, 3);
-  const auto energy = make_friction({contact}, reference, {}, epsilon);
+  const LaggedFriction energy({{contact}}, reference, {}, epsilon);
   const auto at = [&](double x, double y, double z) {
     return Positions(reference + Positions(Eigen::RowVector3d(x, y, z)));
   };
-  CHECK(energy->value(reference) == 0);
-  CHECK(gradient_of(*energy, reference).norm() == 0);
-  CHECK(energy->value(at(0, 0, 1)) == 0);
+  CHECK(energy.value(reference) == 0);
+  CHECK(gradient_of(energy, reference).norm() == 0);
+  CHECK(energy.value(at(0, 0, 1)) == 0);
   const Eigen::Matrix3d expected = Vector3d(1, 1, 0).asDiagonal() * (2 * 0.25 / epsilon);
-  CHECK((dense(hessian_of(*energy, reference, Projection::none)) - expected).norm() <= 1e-10);
+  CHECK((dense(hessian_of(energy, reference, Projection::none)) - expected).norm() <= 1e-10);
   for (const double part : {1e-6, 0.1, 0.5, 0.999}) {
-    const Positions g = gradient_of(*energy, at(0.6 * part * epsilon, 0.8 * part * epsilon, 2));
+    const Positions g = gradient_of(energy, at(0.6 * part * epsilon, 0.8 * part * epsilon, 2));
     const double f = 0.25 * part * (2 - part);
     CHECK((g - Eigen::RowVector3d(0.6 * f, 0.8 * f, 0)).norm() <= 1e-9 * f);
   }
   for (const double part : {1.0, 1.001, 10.0, 1e4}) {
     const Positions x = at(0, part * epsilon, 0);
-    CHECK(gradient_of(*energy, x).norm() == Approx(0.25).epsilon(1e-10));
-    CHECK(energy->value(x) == Approx(0.25 * epsilon * (part - 1.0 / 3)));
+    CHECK(gradient_of(energy, x).norm() == Approx(0.25).epsilon(1e-10));
+    CHECK(energy.value(x) == Approx(0.25 * epsilon * (part - 1.0 / 3)));
   }
-  CHECK(make_friction({}, reference, {}, epsilon) == nullptr);
 }
 
 TEST_CASE("persistent contacts keep their friction forces from one step to the next") {
   Sliding sliding(200);
-  const auto before = sliding.energy();
+  const LaggedFriction before = sliding.energy();
   const Positions x = sliding.moved(epsilon, 7);
-  TangentialDisplacements displacements;
-  before->append_tangential_displacements(x, displacements);
+  const TangentialDisplacements displacements = before.tangential_displacements(x);
   REQUIRE(displacements.size() == sliding.contacts.size());
   for (const TangentialDisplacement& d : displacements) CHECK(d.displacement.norm() <= epsilon * (1 + 1e-12));
-  std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
-  const Positions f = gradient_of(*before, x);
+  CHECK(std::ranges::is_sorted(displacements, {}, &TangentialDisplacement::contact));
+  const Positions f = gradient_of(before, x);
   std::shuffle(sliding.contacts.begin(), sliding.contacts.end(), std::mt19937(2));
-  CHECK((gradient_of(*make_friction(sliding.contacts, x, displacements, epsilon), x) - f).norm() <=
+  CHECK((gradient_of(LaggedFriction({sliding.contacts}, x, displacements, epsilon), x) - f).norm() <=
         1e-9 * f.norm());
   // A new contact has no displacement.
   FrictionContact& added = sliding.contacts[0];
   added.key[1] += 7;  // among the others
-  CHECK(gradient_of(*make_friction({added}, x, displacements, epsilon), x).norm() == 0);
+  CHECK(gradient_of(LaggedFriction({{added}}, x, displacements, epsilon), x).norm() == 0);
+}
+
+TEST_CASE("friction's groups are summed apart, to the bits of each") {
+  const Sliding all(5000);
+  const std::vector<FrictionContact> first(all.contacts.begin(), all.contacts.begin() + 1500),
+      rest(all.contacts.begin() + 1500, all.contacts.end());
+  const Positions x = all.moved(epsilon, 3);
+  const auto value = [&](const FrictionContacts& groups) {
+    return LaggedFriction(groups, all.reference, {}, epsilon).value(x);
+  };
+  REQUIRE(value({first}) > 0);
+  CHECK(value({first, rest}) == value({first}) + value({rest}));
+  const LaggedFriction both({first, rest}, all.reference, {}, epsilon);
+  CHECK(gradient_of(both, x) == gradient_of(all.energy(), x));
+  CHECK(both.stencils() == all.energy().stencils());
 }
 
 TEST_CASE("friction has the same bits with any number of threads") {
   const Sliding sliding(5000);
-  check_threads(*sliding.energy(), sliding.moved(epsilon, 3));
+  check_threads(sliding.energy(), sliding.moved(epsilon, 3));
 }

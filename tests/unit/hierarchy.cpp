@@ -29,7 +29,7 @@ struct Shrinking : Refiner {
 
 TEST_CASE("children follow the contract of Refinement", "[hierarchy]") {
   const Level coarse = Level::of(0, grid({2, 1}, 4, 3, Diagonals::criss_cross));
-  const Triangles fine = split_triangles(coarse);
+  const Triangles fine = split_triangles(coarse.rest.triangles, coarse.topology);
   const int n = coarse.vertex_count();
   REQUIRE(fine.rows() == 4 * coarse.triangle_count());
   const Refinement refinement = midpoint_refinement(coarse);

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/model/friction.h"
 #include "tests/support/kernel_check.h"
 
 using namespace drape;
@@ -368,7 +369,7 @@ TEST_CASE("the barrier is zero beyond dhat and infinite at contact") {
   CHECK(one.set()->value(one.x) == 0);
   CHECK(one.set()->smallest_gap() == std::numeric_limits<double>::infinity());
   CHECK(one.set()->stencils().rows() == 0);
-  CHECK(one.set()->friction(one.x, {}) == nullptr);
+  CHECK(lagged_friction(*one.set(), one.x, {}) == nullptr);
   one.pair.offset = 1e-3;
   CHECK(one.set()->contact_count() == 1);
   CHECK(one.set()->value(one.x) == std::numeric_limits<double>::infinity());
@@ -389,7 +390,7 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
     one.with_gap_part(0.4);
     one.parameters.friction_smoothing_distance = 1e-5;
     const Positions from = one.x;
-    const auto friction = one.set()->friction(from, {});
+    const auto friction = lagged_friction(*one.set(), from, {});
     REQUIRE(friction);
     const Closest found = closest(kind, one.at());
     const Vector3d n = connection(one.at(), found).normalized();

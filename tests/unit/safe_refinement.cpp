@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/friction.h"
 #include "core/kernel/model/stretch_limit.h"
 #include "core/kernel/solve/newton_state.h"
 #include "core/kernel/solve/progression.h"
@@ -186,7 +187,7 @@ TEST_CASE("Friction does not act during refinement") {
   const Positions x = tent_over_its_own_end(slippery.starts[0], 0.9e-3);
   const auto model = make_plugin_from<ContactModel>("{type: ipc, friction: 1}");
   const auto contact = model->bind(rough.hierarchy.levels[0], Material());
-  REQUIRE(contact->build_candidates(x, x)->build_collisions(x)->friction(x, {}));
+  REQUIRE(lagged_friction(*contact->build_candidates(x, x)->build_collisions(x), x, {}));
   CHECK(slippery.refine(x).x == rough.refine(x).x);
 }
 

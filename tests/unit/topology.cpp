@@ -95,6 +95,14 @@ TEST_CASE("topology of a grid is consistent", "[topology]") {
   }
 }
 
+TEST_CASE("components are named by their first vertices", "[topology]") {
+  Triangles triangles(4, 3);
+  triangles << 0, 2, 4, 1, 3, 5, 4, 2, 7, 8, 9, 6;  // vertex 10 has no triangle
+  CHECK(Topology::of(triangles, 11).components() == std::vector<int>{0, 1, 6, 10});
+  CHECK(Topology::of(grid({1, 1}, 6, 5, Diagonals::criss_cross).triangles, 30).components() ==
+        std::vector<int>{0});
+}
+
 TEST_CASE("topology refuses what it cannot represent", "[topology]") {
   Triangles t(3, 3);
   t << 0, 1, 2, 1, 0, 3, 0, 1, 4;

@@ -199,8 +199,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
-  double energy = 0;
-  for (const auto& [name, joules] : scene_.model(r.level).energy_parts(r.x)) energy += joules;
+  const double energy = scene_.model(r.level).energy(r.x);
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);

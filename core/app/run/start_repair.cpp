@@ -32,26 +32,6 @@ bool same_pair(const Intersection& a, const Intersection& b) {
   return a.first == b.first && a.second == b.second;
 }
 
-/// One vertex of every connected component of the cloth.
-std::vector<int> pieces_of(const Level& level) {
-  std::vector<int> first, open;
-  std::vector<char> seen(level.vertex_count(), 0);
-  for (int v = 0; v < level.vertex_count(); ++v) {
-    if (seen[v]) continue;
-    first.push_back(v);
-    open.push_back(v);
-    seen[v] = 1;
-    while (!open.empty()) {
-      const int from = open.back();
-      open.pop_back();
-      const AdjacencyList& near = level.topology.vertex_vertices;
-      for (const int* to = near.begin(from); to != near.end(from); ++to)
-        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
-    }
-  }
-  return first;
-}
-
 /// The generalised winding number of the mesh around p: 1 inside a closed mesh that faces outwards, 0 outside
 /// (solid angles: van Oosterom and Strackee 1983).
 double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
@@ -68,7 +48,8 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 
 class StartProbe {
  public:
-  explicit StartProbe(const Scene& scene) : scene_(scene), pieces_(pieces_of(scene.hierarchy.levels[0])) {
+  explicit StartProbe(const Scene& scene)
+      : scene_(scene), components_(scene.hierarchy.levels[0].topology.components()) {
     for (const auto& contact : scene.model(0).contacts())
       for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
     const Positions& x = scene.starts[0];
@@ -95,7 +76,7 @@ class StartProbe {
 
   /// Whether a component of the cloth lies inside an obstacle without intersecting it.
   bool enclosed(const Vector3d& translation) const {
-    return std::any_of(pieces_.begin(), pieces_.end(), [&](int v) {
+    return std::any_of(components_.begin(), components_.end(), [&](int v) {
       const Vector3d p = scene_.starts[0].row(v).transpose() + translation;
       return std::any_of(obstacles_.begin(), obstacles_.end(),
                          [&](const TriangleMesh& mesh) { return winding_number(mesh, p) > 0.5; });
@@ -104,7 +85,7 @@ class StartProbe {
 
  private:
   const Scene& scene_;
-  std::vector<int> pieces_;
+  std::vector<int> components_;
   std::vector<TriangleMesh> obstacles_;
   double diagonal_ = 0;
 };

@@ -19,6 +19,9 @@ inline Derivatives barrier(double s) {
   return {-e * e * log, -2 * e * log - e * q, -2 * log - 4 * q + q * q};
 }
 
+/// ε of the mollifier over |e|²|e'|² of the edges' rest lengths (Li et al. 2020, section 5).
+inline constexpr double mollifier_threshold = 1e-3;
+
 /// m(z) = 2 z/ε - (z/ε)² below ε, 1 above (Li et al. 2020, eq. 18), with z = |u × v|² [m⁴]. Fades an
 /// edge-edge contact as the edges become parallel, where their distance is not smooth.
 inline Derivatives mollifier(double z, double epsilon) {

@@ -88,7 +88,6 @@ AdjacencyList rows_of(const std::vector<IndexPairs>& lists, int row_count, int c
 
 std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind) {
   if (kind == BroadPhaseKind::fcl) return make_fcl_broad_phase();
-  if (kind == BroadPhaseKind::cgal) return make_cgal_broad_phase();
   return std::make_unique<BvhBroadPhase>();
 }
 

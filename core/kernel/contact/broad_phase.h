@@ -8,11 +8,10 @@
 
 namespace drape {
 
-/// Algorithms that find overlapping boxes. All find the same pairs.
+/// Algorithms that find overlapping boxes. Both find the same pairs: `fcl` is the check of `bvh`.
 enum class BroadPhaseKind {
   bvh,  ///< own eight-wide BVH, built once and refitted
-  fcl,  ///< FCL's BVHModel, refitted too
-  cgal  ///< CGAL's box_intersection_d, without state between calls
+  fcl   ///< FCL's BVHModel, refitted too
 };
 
 /// Finds the overlapping pairs of closed boxes.

@@ -10,7 +10,6 @@ namespace drape {
 // Shared by the implementations of BroadPhase.
 
 std::unique_ptr<BroadPhase> make_fcl_broad_phase();
-std::unique_ptr<BroadPhase> make_cgal_broad_phase();
 
 using IndexPairs = std::vector<std::pair<int, int>>;
 

@@ -1,19 +1,21 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
 #include "core/kernel/model/contact_model.h"
+#include "core/kernel/model/friction.h"
 
 namespace drape {
 
-/// The sum of several energies, with their elements concatenated. All stencils must have four columns.
-template <class Base, class Part = Base>
-class Stacked : public Base {
+/// The sum of several collisions of one contact model, with their elements concatenated. All stencils must
+/// have four columns, all friction contacts one smoothing distance.
+class CollisionStack final : public Collisions, public FrictionalCollisions {
  public:
-  explicit Stacked(std::vector<std::unique_ptr<Part>> parts) : parts_(std::move(parts)) {}
+  explicit CollisionStack(std::vector<std::unique_ptr<Collisions>> parts) : parts_(std::move(parts)) {}
 
   double value(const Positions& x) const override {
     double sum = 0;
@@ -46,29 +48,6 @@ class Stacked : public Base {
     }
   }
 
- protected:
-  std::vector<std::unique_ptr<Part>> parts_;
-};
-
-class FrictionStack final : public Stacked<FrictionEnergy> {
- public:
-  using Stacked::Stacked;
-
-  void append_tangential_displacements(const Positions& x,
-                                       TangentialDisplacements& displacements) const override {
-    for (const auto& part : parts_) part->append_tangential_displacements(x, displacements);
-  }
-  void append_advected_tangential_displacements(const Positions& x, const Positions& obstacle_motion,
-                                                TangentialDisplacements& displacements) const override {
-    for (const auto& part : parts_)
-      part->append_advected_tangential_displacements(x, obstacle_motion, displacements);
-  }
-};
-
-class CollisionStack final : public Stacked<Collisions> {
- public:
-  using Stacked::Stacked;
-
   int contact_count() const override {
     int sum = 0;
     for (const auto& part : parts_) sum += part->contact_count();
@@ -79,14 +58,21 @@ class CollisionStack final : public Stacked<Collisions> {
     for (const auto& part : parts_) gap = std::min(gap, part->smallest_gap());
     return gap;
   }
-  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
-                                           const TangentialDisplacements& displacements) const override {
-    std::vector<std::unique_ptr<FrictionEnergy>> frictions;
+
+  void append_friction_contacts(FrictionContacts& groups) const override {
     for (const auto& part : parts_)
-      if (auto own = part->friction(reference, displacements)) frictions.push_back(std::move(own));
-    if (frictions.empty()) return nullptr;
-    return std::make_unique<FrictionStack>(std::move(frictions));
+      if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(part.get()))
+        frictional->append_friction_contacts(groups);
   }
+  double friction_smoothing_distance() const override {
+    for (const auto& part : parts_)
+      if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(part.get()))
+        return frictional->friction_smoothing_distance();
+    return 0;
+  }
+
+ private:
+  std::vector<std::unique_ptr<Collisions>> parts_;
 };
 
 }  // namespace drape

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "core/kernel/model/energy.h"
+
 namespace drape {
 
 /// A plane that separates two convex primitives: they lie on the two sides of a slab of this width along the
@@ -50,9 +52,20 @@ inline double min_gap_after_step(double dhat, double smallest_gap) {
   return 0.8 * std::min(0.125 * dhat, smallest_gap);
 }
 
-/// A full step is accepted if it leaves this fraction of the minimum gap. Other steps are shortened to leave
+/// The largest collision-free step of kinematic obstacles, which leaves the minimum gap.
+/// `advance(min_gap, max_iterations)` gives the largest step that leaves min_gap [m].
+///
+/// A full step is accepted if it leaves nine tenths of the minimum gap. Other steps are shortened to leave
 /// all of it, so a shortened step is accepted as a full one afterwards.
-inline constexpr double full_step_min_gap_factor = 0.9;
-inline constexpr int full_step_max_iterations = 4096, partial_step_max_iterations = 256;
+template <class Advance>
+StepLimit max_obstacle_step(double dhat, double smallest_gap, const Advance& advance) {
+  constexpr double full_step_min_gap_factor = 0.9;
+  constexpr int full_step_max_iterations = 4096, partial_step_max_iterations = 256;
+  const double min_gap = min_gap_after_step(dhat, smallest_gap);
+  const StepLimit full = advance(full_step_min_gap_factor * min_gap, full_step_max_iterations);
+  if (full.fraction == 1) return {};
+  const StepLimit partial = advance(min_gap, partial_step_max_iterations);
+  return partial.fraction < full.fraction ? partial : full;
+}
 
 }  // namespace drape

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "core/kernel/contact/contact_kernel.h"
-#include "core/kernel/contact/friction.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/friction.h"
 
 namespace drape {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr int grain = 128;  // contacts per task
 constexpr int run = 1024;   // contacts whose blocks are computed before they are added
 
-class PairCollisions final : public Collisions {
+class PairCollisions final : public Collisions, public FrictionalCollisions {
  public:
   PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
                  const BarrierParameters& parameters)
@@ -62,9 +62,8 @@ class PairCollisions final : public Collisions {
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
-                                           const TangentialDisplacements& displacements) const override {
-    std::vector<FrictionContact> result;
+  void append_friction_contacts(FrictionContacts& groups) const override {
+    std::vector<FrictionContact>& result = groups.emplace_back();
     result.reserve(count_);
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
@@ -77,9 +76,8 @@ class PairCollisions final : public Collisions {
                         contact.normal,
                         contact.pair.friction * parameters_.stiffness * contact.pressure()});
     }
-    return make_friction(std::move(result), reference, displacements,
-                         parameters_.friction_smoothing_distance);
   }
+  double friction_smoothing_distance() const override { return parameters_.friction_smoothing_distance; }
 
  private:
   int cloth_vertex(const Contact& contact, int k) const {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/kernel/contact/barrier_parameters.h"
 #include "core/kernel/contact/closest.h"
 #include "core/kernel/model/contact_model.h"
 
@@ -21,13 +22,6 @@ struct ContactPair {
   double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
   double mollifier = 0;  ///< edge_edge: ε of the mollifier, |u × v|² [m⁴]
   double friction = 0;   ///< μ
-};
-
-/// Barrier and friction parameters that all pairs share (docs/method.md, section 6).
-struct BarrierParameters {
-  double dhat = 1e-3;                         ///< d̂ [m]
-  double stiffness = 1;                       ///< κ [Pa]
-  double friction_smoothing_distance = 1e-4;  ///< ε_v h, below which friction is smoothed [m]
 };
 
 /// The barrier potential κ d̂ Σ_pairs weight · m · b(gap / d̂), b(s) = -(s - 1)² ln s, m the edge-edge

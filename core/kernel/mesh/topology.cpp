@@ -91,6 +91,24 @@ Topology Topology::of(const Triangles& triangles, int vertex_count) {
   return topology;
 }
 
+std::vector<int> Topology::components() const {
+  std::vector<char> seen(on_border.size(), 0);
+  std::vector<int> first, open;
+  for (int v = 0; v < static_cast<int>(seen.size()); ++v) {
+    if (seen[v]) continue;
+    first.push_back(v);
+    open = {v};
+    seen[v] = 1;
+    while (!open.empty()) {
+      const int from = open.back();
+      open.pop_back();
+      for (const int* to = vertex_vertices.begin(from); to != vertex_vertices.end(from); ++to)
+        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
+    }
+  }
+  return first;
+}
+
 Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> Topology::hinges(const Triangles& triangles) const {
   const auto side_of = [&](int triangle, int edge) {
     return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;

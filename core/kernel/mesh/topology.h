@@ -37,6 +37,9 @@ struct Topology {
   /// std::runtime_error on an index out of range, a repeated one or an edge with more than two triangles.
   static Topology of(const Triangles& triangles, int vertex_count);
 
+  /// The first vertex of each connected component, ascending.
+  std::vector<int> components() const;
+
   /// h×4 stencils of the inner edges: edge ends (0, 1), then the vertices opposite it in its two
   /// triangles, so that triangles (0, 1, 2) and (1, 0, 3) have the mesh's orientation.
   Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> hinges(const Triangles& triangles) const;

@@ -37,12 +37,9 @@ void ActiveContacts::store_tangential_displacements(const Positions& x, const Po
   for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
-    if (obstacle_motion)
-      friction_[k]->append_advected_tangential_displacements(x, *obstacle_motion,
-                                                             tangential_displacements_[k]);
-    else
-      friction_[k]->append_tangential_displacements(x, tangential_displacements_[k]);
-    std::ranges::sort(tangential_displacements_[k], {}, &TangentialDisplacement::contact);
+    tangential_displacements_[k] = obstacle_motion
+                                       ? friction_[k]->advected_tangential_displacements(x, *obstacle_motion)
+                                       : friction_[k]->tangential_displacements(x);
   }
   reference_ = x;
 }
@@ -85,7 +82,7 @@ void ActiveContacts::lag_friction() {
   friction_.clear();
   if (!friction_enabled_) return;
   for (std::size_t k = 0; k < collisions_.size(); ++k)
-    friction_.push_back(collisions_[k]->friction(reference_, tangential_displacements_[k]));
+    friction_.push_back(lagged_friction(*collisions_[k], reference_, tangential_displacements_[k]));
 }
 
 ContactMemory ActiveContacts::memory() const {

@@ -5,6 +5,7 @@
 
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/model/contact_model.h"
+#include "core/kernel/model/friction.h"
 
 namespace drape {
 
@@ -75,7 +76,8 @@ class ActiveContacts {
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
   std::shared_ptr<const LinearMotion> candidates_motion_, collisions_motion_;  // that each was built for
-  std::vector<std::unique_ptr<FrictionEnergy>> friction_;  // of each model, or null; empty before a step
+  std::vector<std::unique_ptr<const LaggedFriction>>
+      friction_;  // of each model, or null; empty before a step
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
   Positions state_, reference_;
   bool friction_enabled_ = true;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,44 +19,14 @@ struct Intersection {
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
 std::string to_string(const Intersection& intersection);
 
-/// Identifies a contact of one contact model from one state to the next.
-using ContactKey = std::array<int, 5>;
-
-/// Tangential displacement u of a contact's two sides since the contact began to stick (Li et al. 2020).
-struct TangentialDisplacement {
-  ContactKey contact;
-  Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
-};
-
-/// Ascending by contact, without duplicates.
-using TangentialDisplacements = std::vector<TangentialDisplacement>;
-
-/// The lagged friction potential D of one set of collisions (Li et al. 2020, eq. 15).
-class FrictionEnergy : public BoundEnergy {
- public:
-  /// Appends each contact's tangential displacement at x, in any order. Its length is limited to the friction
-  /// smoothing distance: the next step then starts with the same friction forces.
-  virtual void append_tangential_displacements(const Positions& x,
-                                               TangentialDisplacements& displacements) const = 0;
-  /// Appends the same without the limit, relative to obstacles that have moved: contacts with obstacles
-  /// subtract the tangential part of `obstacle_motion` (n×3) [m], the obstacle's motion at each vertex.
-  virtual void append_advected_tangential_displacements(const Positions& x, const Positions& obstacle_motion,
-                                                        TangentialDisplacements& displacements) const = 0;
-};
-
 /// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
 /// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
-/// columns without a cloth vertex are -1.
+/// columns without a cloth vertex are -1. Collisions with friction are FrictionalCollisions too
+/// (core/kernel/model/friction.h).
 class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
-
-  /// The friction potential with the normal forces and tangents of this state. Displacements are measured
-  /// from `reference` (n×3), and `displacements` are added to those of the contacts that they name. Null
-  /// without friction.
-  virtual std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
-                                                   const TangentialDisplacements& displacements) const = 0;
 };
 
 /// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them.

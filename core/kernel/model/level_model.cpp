@@ -172,15 +172,24 @@ std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
   return common;
 }
 
+double LevelModel::barrier(const Positions& x) const {
+  double sum = 0;
+  for (const auto& contact : contacts_) sum += contact->build_candidates(x, x)->build_collisions(x)->value(x);
+  return sum;
+}
+
+double LevelModel::energy_without_contact(const Positions& x) const {
+  double sum = value(x);
+  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
+  return sum;
+}
+
+double LevelModel::energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
+
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
   std::vector<std::pair<std::string, double>> parts;
   for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
-  if (!contacts_.empty()) {
-    double barrier = 0;
-    for (const auto& contact : contacts_)
-      barrier += contact->build_candidates(x, x)->build_collisions(x)->value(x);
-    parts.emplace_back("contact", barrier);
-  }
+  if (!contacts_.empty()) parts.emplace_back("contact", barrier(x));
   return parts;
 }
 

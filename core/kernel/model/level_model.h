@@ -43,6 +43,10 @@ class LevelModel {
   const Level& level() const { return *level_; }
   const Material& material() const { return material_; }
   const std::vector<DirichletVertex>& dirichlet() const { return dirichlet_; }
+  /// Moves the Dirichlet vertices of x (n×3) [m] to their targets.
+  void set_dirichlet(Positions& x) const {
+    for (const DirichletVertex& d : dirichlet_) x.row(d.vertex) = d.target.transpose();
+  }
   /// One flag a vertex: 1 where it has a Dirichlet condition.
   const std::vector<char>& fixed() const { return fixed_; }
   const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
@@ -66,7 +70,11 @@ class LevelModel {
   /// Empty without contact.
   const BoundContacts& contacts() const { return contacts_; }
 
-  /// Energy of each term, limits included, in the order given, and of the contacts if there are any [J].
+  /// E_l with its limits and without contact [J].
+  double energy_without_contact(const Positions& x) const;
+  /// All of E_l: energies, limits and the contacts' barrier, without friction [J].
+  double energy(const Positions& x) const;
+  /// The parts of energy(x): each term in the order given, and the contacts if there are any [J].
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
   /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance
   /// each other still set the scale of the residual.
@@ -99,6 +107,7 @@ class LevelModel {
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;
+  double barrier(const Positions& x) const;  // of the contacts [J]
   void add_up_linear_energies();
   /// The linear energies' sum; `g`, if given, is overwritten with their gradient.
   double linear_value(const Positions& x, Positions* g, Roles roles) const;

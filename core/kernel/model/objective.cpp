@@ -22,9 +22,7 @@ double Objective::gradient(const Positions& x, Positions& g) {
 }
 
 double Objective::plain_energy(const Positions& x) {
-  double sum = model_->value(x) + contacts_.barrier(x);
-  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
-  return sum;
+  return model_->energy_without_contact(x) + contacts_.barrier(x);
 }
 
 const BlockMatrix& Objective::matrix(const Positions& x, Projection projection) {

@@ -4,8 +4,7 @@ namespace drape {
 
 Positions Problem::prolong(const ProlongationMatrix& weights, int level, const Positions& x) const {
   Positions y = weights * x;
-  const std::shared_ptr<const LevelModel> finer = model(level + 1);
-  for (const DirichletVertex& d : finer->dirichlet()) y.row(d.vertex) = d.target.transpose();
+  model(level + 1)->set_dirichlet(y);
   return y;
 }
 
@@ -26,33 +25,33 @@ Outcome worse_of(Outcome a, Outcome b) {
   return worst;
 }
 
-bool has_converged(const std::string& outcome) {
-  return outcome == to_string(Outcome::converged) || outcome == to_string(Outcome::converged_to_rounding);
+namespace {
+
+constexpr std::pair<Outcome, const char*> names[] = {
+    {Outcome::converged, "converged"},
+    {Outcome::max_steps_reached, "max_steps_reached"},
+    {Outcome::stalled, "stalled"},
+    {Outcome::cancelled, "cancelled"},
+    {Outcome::infeasible, "infeasible"},
+    {Outcome::refined_early_on_request, "refined_early_on_request"},
+    {Outcome::refined_early_at_tolerance, "refined_early_at_tolerance"},
+    {Outcome::converged_to_rounding, "converged_to_rounding"}};
+
+/// Whether `outcome` names an outcome that `holds`.
+bool names_outcome(const std::string& outcome, bool (*holds)(Outcome)) {
+  for (const auto& [value, name] : names)
+    if (name == outcome) return holds(value);
+  return false;
 }
 
-bool succeeded(const std::string& outcome) {
-  return has_converged(outcome) || outcome == to_string(Outcome::refined_early_at_tolerance);
-}
+}  // namespace
+
+bool has_converged(const std::string& outcome) { return names_outcome(outcome, has_converged); }
+bool succeeded(const std::string& outcome) { return names_outcome(outcome, succeeded); }
 
 const char* to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::converged:
-      return "converged";
-    case Outcome::max_steps_reached:
-      return "max_steps_reached";
-    case Outcome::stalled:
-      return "stalled";
-    case Outcome::cancelled:
-      return "cancelled";
-    case Outcome::infeasible:
-      return "infeasible";
-    case Outcome::refined_early_on_request:
-      return "refined_early_on_request";
-    case Outcome::refined_early_at_tolerance:
-      return "refined_early_at_tolerance";
-    case Outcome::converged_to_rounding:
-      return "converged_to_rounding";
-  }
+  for (const auto& [value, name] : names)
+    if (value == outcome) return name;
   return "";
 }
 

@@ -120,8 +120,9 @@ class Declaration {
  public:
   Schema schema;
 
-  template <class Member>
-  ParameterHandle add(const std::string& name, Member Struct::*member) {
+  /// `Owner` is Struct or a base of it.
+  template <class Member, class Owner>
+  ParameterHandle add(const std::string& name, Member Owner::*member) {
     using Shape = parameter_detail::Shape<Member>;
     Parameter& p = append(name, Shape::type());
     p.size = Shape::size;

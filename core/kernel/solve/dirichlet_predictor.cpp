@@ -32,17 +32,16 @@ double DirichletPredictor::predict(bool whole) {
 }
 
 double DirichletPredictor::move(bool whole) {
-  const std::vector<DirichletVertex>& vertices = iterate_.model().dirichlet();
   Objective& objective = iterate_.objective();
   const Positions displacement = enforcer_.displacement_to_targets(iterate_.x());
   Positions force, response;
   step_.factor().matrix().multiply(displacement, force);
-  for (const DirichletVertex& d : vertices) force.row(d.vertex).setZero();
+  for (const DirichletVertex& d : iterate_.model().dirichlet()) force.row(d.vertex).setZero();
   step_.factor().solve(force, response);
   const Positions direction = displacement - response;
 
   Positions trial = iterate_.x() + direction, gradient;
-  for (const DirichletVertex& d : vertices) trial.row(d.vertex) = d.target.transpose();
+  iterate_.model().set_dirichlet(trial);
   const StepLimit limit = objective.max_step(iterate_.x(), trial);
   iterate_.set_limited_by(limit.by);
   double fraction = limit.fraction;

@@ -139,7 +139,7 @@ class Quiet : public Observer {
 /// Moves Dirichlet vertices towards their targets as far as contact allows; the level's solve does the rest.
 void move_dirichlet_vertices(const LevelModel& model, Positions& y) {
   Positions target = y;
-  for (const DirichletVertex& d : model.dirichlet()) target.row(d.vertex) = d.target.transpose();
+  model.set_dirichlet(target);
   if (target == y) return;
   ActiveContacts contacts(model.contacts());
   const StepLimit limit = contacts.max_step(y, target);

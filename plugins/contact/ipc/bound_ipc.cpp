@@ -7,9 +7,8 @@
 #include "core/kernel/contact/contact_kernel.h"
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
-#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/contact/surface_contacts.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
-#include "plugins/contact/ipc/surface_contacts.h"
 
 namespace drape::ipc {
 namespace {
@@ -150,7 +149,7 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const ObstacleTree>
     : friction_(p.friction),
       min_gap_fraction_(p.min_gap_fraction),
       self_contact_(p.self_contact),
-      barrier_{p.dhat, p.stiffness.value_or(contact_stiffness(material)), p.friction_smoothing_distance},
+      barrier_(p.barrier(material)),
       obstacle_tree_(std::move(obstacles)),
       obstacles_(obstacle_tree_->obstacles),
       rest_(std::move(rest)),
@@ -231,14 +230,13 @@ StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) con
 void BoundIpc::advect(const BoundContact& before, const Positions& x, Positions& reference) const {
   const BoundIpc& old = as_ipc(before);
   if (old.obstacles_ == obstacles_) return;
-  const int n = static_cast<int>(x.rows());
   BroadPhasePairs found;
   {
     Counts counts;
     const std::lock_guard lock(old.busy_);
     old.search(x, x, {unlimited, unlimited}, found, counts);
   }
-  AveragedContactDisplacement mean(n);  // weighted by friction force
+  AveragedContactDisplacement mean(x.rows());
   const Positions obstacle_motion = obstacles_->vertices - old.obstacles_->vertices;
   const auto surface =
       SurfaceContacts::of(x, *old.obstacles_, old.obstacle_tree_->coefficients, found.vertex_triangles,
@@ -253,20 +251,13 @@ void BoundIpc::advect(const BoundContact& before, const Positions& x, Positions&
       mean.add(contact.vertex, displacement, f.friction * pressures[i - contact.first]);
     }
   }
-  for (const ContactPair& pair : found.pairs) {
-    const auto is_cloth = [&](int k) { return pair.vertices[k] < n; };
-    if ((is_cloth(0) && is_cloth(3)) || pair.weight == 0 || pair.friction == 0) continue;
-    const PairPositions at = positions_of(pair, x, old.obstacles_->vertices);
-    if (!is_within_dhat(pair, at, old.barrier_.dhat)) continue;
-    const Contact contact = contact_at(pair, at, old.barrier_.dhat);
-    const PairPositions displacement = positions_of(pair, x, obstacles_->vertices) - at;
-    // The displacement's columns of cloth vertices are zero.
-    const Eigen::Vector3d of_obstacle = displacement * contact.closest.c.cwiseAbs();
-    for (int k = 0; k < 4; ++k)
-      if (is_cloth(k))
-        mean.add(pair.vertices[k], of_obstacle,
-                 std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
-  }
+  mean.add_pairs(found.pairs, x, old.obstacles_->vertices, old.barrier_.dhat,
+                 [&](const Contact& contact, const PairPositions& at) -> Eigen::Vector3d {
+                   // The columns of cloth vertices are zero.
+                   const PairPositions displacement =
+                       positions_of(contact.pair, x, obstacles_->vertices) - at;
+                   return displacement * contact.closest.c.cwiseAbs();
+                 });
   mean.add_to(reference);
 }
 

@@ -4,8 +4,8 @@
 #include <mutex>
 
 #include "core/kernel/contact/broad_phase.h"
+#include "core/kernel/contact/candidates.h"
 #include "core/kernel/model/smallest_gap.h"
-#include "plugins/contact/ipc/candidates.h"
 #include "plugins/contact/ipc/ipc.h"
 
 namespace drape::ipc {

@@ -67,27 +67,6 @@ std::shared_ptr<const ValidatedMesh> wrap(const TriangleMesh& mesh, double alpha
   return ValidatedMesh::of(std::move(cage));
 }
 
-/// One vertex of each connected component.
-std::vector<int> one_vertex_per_component(const ValidatedMesh& mesh) {
-  const int n = static_cast<int>(mesh.mesh.vertices.rows());
-  std::vector<char> seen(n, 0);
-  std::vector<int> found, queue;
-  for (int v = 0; v < n; ++v) {
-    if (seen[v]) continue;
-    found.push_back(v);
-    seen[v] = 1;
-    queue = {v};
-    while (!queue.empty()) {
-      const int at = queue.back();
-      queue.pop_back();
-      for (const int* next = mesh.topology.vertex_vertices.begin(at);
-           next != mesh.topology.vertex_vertices.end(at); ++next)
-        if (!seen[*next]) seen[*next] = 1, queue.push_back(*next);
-    }
-  }
-  return found;
-}
-
 }  // namespace
 
 void CageParameters::declare(Declaration<CageParameters>& d) {
@@ -134,7 +113,7 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
     surface.add_face(SurfaceMesh::Vertex_index(t[0]), SurfaceMesh::Vertex_index(t[1]),
                      SurfaceMesh::Vertex_index(t[2]));
   const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
-  for (const int v : one_vertex_per_component(inner))
+  for (const int v : inner.topology.components())
     if (side(point(inner.mesh, v)) != CGAL::ON_BOUNDED_SIDE)
       return "that one's vertex " + std::to_string(v) + " is outside";
   return "";

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 
@@ -12,44 +11,9 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
   d.add("self_contact", &P::self_contact).description("whether the cloth collides with itself");
   d.add_sections("obstacles", &P::obstacles).description("triangle meshes that the cloth collides with");
-  d.add("friction", &P::friction)
-      .unit("1")
-      .at_least(0)
-      .at_most(bounds::largest_friction)
-      .description("Coulomb's friction coefficient μ, for self-contact and for obstacles without their own");
-  d.add("dhat", &P::dhat)
-      .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(1e3)
-      .description("barrier activation distance d̂: the barrier acts on smaller gaps")
-      .formerly("range")
-      .source("docs/method.md, section 6");
-  d.add("stiffness", &P::stiffness)
-      .unit("Pa")
-      .at_least(1e-9)
-      .at_most(bounds::largest_modulus)
-      .description(
-          "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
-          "weight per area")
-      .source("core/kernel/contact/stiffness.h");
-  d.add("friction_smoothing_distance", &P::friction_smoothing_distance)
-      .unit("m")
-      .at_least(1e-12)
-      .at_most(1e3)
-      .description("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
-      .formerly("slip_distance")
-      .source("Li et al. 2020, eq. 14");
-  d.add("min_gap_fraction", &P::min_gap_fraction)
-      .unit("1")
-      .at_least(1e-6)
-      .at_most(0.99)
-      .description("fraction of every gap that a step must leave: s of additive CCD")
-      .formerly("keep")
-      .source("Li et al. 2021");
-  d.add_choice("broad_phase", &P::broad_phase,
-               {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}, {"cgal", BroadPhaseKind::cgal}})
-      .description(
-          "broad phase algorithm: own BVH, FCL's, or CGAL's box intersection; the pairs are the same");
+  declare_contact_parameters(d);
+  d.add_choice("broad_phase", &P::broad_phase, {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}})
+      .description("broad phase algorithm: own BVH or FCL's; the pairs are the same");
 }
 
 Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "core/kernel/contact/broad_phase.h"
+#include "core/kernel/contact/contact_parameters.h"
 #include "core/kernel/model/contact_model.h"
 #include "plugins/contact/ipc/obstacle.h"
 
@@ -16,14 +16,9 @@ struct RestCloth;
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
 class Ipc final : public ContactModel, public Rebindable {
  public:
-  struct Parameters {
+  struct Parameters : ContactParameters {
     bool self_contact = true;
     std::vector<ObstacleParameters> obstacles;
-    double friction = 0;
-    double dhat = 1e-3;
-    std::optional<double> stiffness;
-    double friction_smoothing_distance = 1e-4;
-    double min_gap_fraction = 0.1;
     BroadPhaseKind broad_phase = BroadPhaseKind::bvh;
 
     static void declare(Declaration<Parameters>& d);

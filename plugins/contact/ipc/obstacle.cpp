@@ -36,8 +36,8 @@ ValidatedMeshes read_animation(const ObstacleParameters& p) {
 }
 
 ValidatedMeshes frames_of(const ObstacleParameters& p) {
-  if (p.shape == "box") return {unit_box()};
-  if (p.shape == "sphere") return {unit_sphere(p.subdivisions)};
+  if (p.shape == "box") return {validated_box()};
+  if (p.shape == "sphere") return {validated_sphere(p.subdivisions)};
   if (!p.animation.empty()) return read_animation(p);
   if (p.file.empty())
     throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read, or \"animation\"");
@@ -171,6 +171,7 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.vertices.conservativeResize(n + m, 3);
     all.vertices.bottomRows(m) = body.mesh.vertices;
     all.first_vertex.push_back(n + m);
+    all.body_friction.push_back(body.friction);
     all.surface.append(Surface::of(body.mesh, body.geometry.frames.empty()
                                                   ? Topology::of(body.mesh.triangles, m)
                                                   : body.geometry.frames[0]->topology));
@@ -178,11 +179,6 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);
   all.bodies = std::move(bodies);
   return all;
-}
-
-int Obstacles::body_of(int vertex) const {
-  const auto next = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
-  return static_cast<int>(next - first_vertex.begin()) - 1;
 }
 
 }  // namespace drape::ipc

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/contact/obstacle_surface.h"
 #include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
-#include "plugins/contact/ipc/dihedrals.h"
-#include "plugins/contact/ipc/surface.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {
@@ -83,16 +82,11 @@ struct Obstacle {
                      int level = std::numeric_limits<int>::max());
 };
 
-/// All obstacles of a scene as one surface.
-struct Obstacles {
+/// All obstacles of a scene, also as one surface.
+struct Obstacles : ObstacleSurface {
   std::vector<Obstacle> bodies;
-  std::vector<int> first_vertex;  ///< of each body, then the total number
-  Positions vertices;             ///< of all bodies
-  Surface surface;
-  Dihedrals dihedrals;
 
   static Obstacles of(std::vector<Obstacle> bodies);
-  int body_of(int vertex) const;
 };
 
 }  // namespace drape::ipc

@@ -252,11 +252,9 @@ StepLimit ObstacleTrajectory::max_step(const Surface& cloth, const Positions& x,
                                        BroadPhaseKind broad_phase) const {
   if (is_static()) return {};
   Search search(cloth, x, dhat, broad_phase);
-  const double min_gap = min_gap_after_step(dhat, smallest_gap(search));
-  StepLimit full = advance(search, full_step_min_gap_factor * min_gap, full_step_max_iterations);
-  if (full.fraction == 1) return {};
-  StepLimit partial = advance(search, min_gap, partial_step_max_iterations);
-  return partial.fraction < full.fraction ? partial : full;
+  return max_obstacle_step(dhat, smallest_gap(search), [&](double min_gap, int max_iterations) {
+    return advance(search, min_gap, max_iterations);
+  });
 }
 
 StepLimit ObstacleTrajectory::advance(Search& s, double min_gap, int max_iterations) const {

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "core/kernel/contact/broad_phase.h"
-#include "plugins/contact/ipc/candidates.h"
+#include "core/kernel/contact/candidates.h"
+#include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {
 

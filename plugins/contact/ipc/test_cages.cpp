@@ -3,6 +3,7 @@
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/primitives.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
 
@@ -15,11 +16,11 @@ namespace {
 
 /// A ball with horns and a box beside it: not convex, two components.
 TriangleMesh horned() {
-  TriangleMesh mesh = unit_sphere(3)->mesh;
+  TriangleMesh mesh = unit_sphere(3);
   for (int v = 0; v < mesh.vertices.rows(); ++v)
     mesh.vertices.row(v) *=
         0.1 * (1 + 0.4 * std::sin(5 * mesh.vertices(v, 0)) * std::sin(4 * mesh.vertices(v, 1)));
-  const TriangleMesh second = unit_box()->mesh;
+  const TriangleMesh second = unit_box();
   const int n = static_cast<int>(mesh.vertices.rows()), m = static_cast<int>(mesh.triangles.rows());
   mesh.vertices.conservativeResize(n + 8, 3);
   mesh.vertices.bottomRows(8) = (0.05 * second.vertices).rowwise() + Eigen::RowVector3d(0.3, 0, 0);
@@ -72,7 +73,7 @@ TEST_CASE("ipc: cages enclose each other and have their obstacle's transform") {
 }
 
 TEST_CASE("ipc: a cage that does not enclose its mesh is described") {
-  const ValidatedMesh ball = *unit_sphere(2), box = *unit_box();
+  const ValidatedMesh ball = *validated_sphere(2), box = *validated_box();
   CHECK(enclosure_fault(ball, placed(box, 0.5, {0, 0, 0})).empty());
   CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {3, 0, 0})), Contains("vertex 0 is outside"));
   CHECK_THAT(enclosure_fault(ball, placed(box, 0.5, {0.9, 0, 0})),
@@ -81,7 +82,7 @@ TEST_CASE("ipc: a cage that does not enclose its mesh is described") {
   CHECK_THAT(enclosure_fault(validated(grid({1, 1}, 3, 3, Diagonals::one_way)), ball),
              Contains("not closed"));
   // One component inside, one outside.
-  CHECK_THAT(enclosure_fault(placed(*unit_sphere(3), 0.2, {0, 0, 0}), validated(horned())),
+  CHECK_THAT(enclosure_fault(placed(*validated_sphere(3), 0.2, {0, 0, 0}), validated(horned())),
              Contains("is outside"));
   // A cage may not touch what it encloses.
   CHECK(!enclosure_fault(box, placed(box, 0.5, {0.25, 0, 0})).empty());

@@ -6,6 +6,7 @@
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/contact/stiffness.h"
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/processor_time.h"
@@ -221,7 +222,7 @@ TEST_CASE(
   Material material;
   std::vector<double> energies;
   REQUIRE(Ipc(p).bind(level, material)->intersections(x0).empty());
-  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl, BroadPhaseKind::cgal}) {
+  for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl}) {
     p.broad_phase = kind;
     const auto contact = Ipc(p).bind(level, material);
     const auto candidates = contact->build_candidates(x0, x1);
@@ -237,7 +238,8 @@ TEST_CASE(
       CHECK(found->value(x) == Approx(expected->value(x)).epsilon(1e-10));
       const Positions g = gradient_of(*found, x), exact = gradient_of(*expected, x);
       CHECK((g - exact).norm() <= 1e-10 * exact.norm());
-      const auto friction = found->friction(x0, {}), exact_friction = expected->friction(x0, {});
+      const auto friction = lagged_friction(*found, x0, {}),
+                 exact_friction = lagged_friction(*expected, x0, {});
       REQUIRE(friction);
       CHECK(friction->value(x) == Approx(exact_friction->value(x)).epsilon(1e-10));
       energies.push_back(found->value(x));
@@ -247,10 +249,7 @@ TEST_CASE(
     if (limit.fraction < 1) CHECK(!limit.by.empty());
     CHECK(contact->intersections(x0 + limit.fraction * (x1 - x0)).empty());
   }
-  for (int i = 0; i < 3; ++i) {  // bit for bit, with any broad phase
-    CHECK(energies[i] == energies[3 + i]);
-    CHECK(energies[i] == energies[6 + i]);
-  }
+  for (int i = 0; i < 3; ++i) CHECK(energies[i] == energies[3 + i]);  // bit for bit, with any broad phase
 }
 
 TEST_CASE("ipc: the barrier's pressure acts on a flat cloth above one large triangle") {

@@ -5,6 +5,7 @@
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "tests/support/command.h"
@@ -355,7 +356,7 @@ TEST_CASE("ipc: the reference of tangential displacements is advected by obstacl
   const auto collisions = displaced->build_candidates(x, x)->build_collisions(x);
   Positions push = Positions::Zero(x.rows(), 3), drag = push;
   collisions->add_gradient(x, push);
-  collisions->friction(reference, {})->add_gradient(x, drag);
+  lagged_friction(*collisions, reference, {})->add_gradient(x, drag);
   CHECK(-push.col(2).sum() > 0);
   CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
   // Without friction nothing is advected.

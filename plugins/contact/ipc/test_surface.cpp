@@ -7,8 +7,10 @@
 
 #include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/contact/surface_contacts.h"
 #include "core/kernel/mesh/generate.h"
-#include "plugins/contact/ipc/surface_contacts.h"
+#include "core/kernel/model/friction.h"
+#include "plugins/contact/ipc/obstacle.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;
@@ -277,7 +279,7 @@ TEST_CASE("surface: friction uses the net normal force") {
   for (int i = 0; i < 50; ++i) {
     const Vector p = Vector(flat.obstacles.vertices.row(40 + i % 20)) + Vector(0, 0, 0.4 * dhat);
     const Vector to = p + Vector(1e-3, 2e-3, 0);
-    const auto friction = flat.set(p)->friction(p.transpose(), {});
+    const auto friction = lagged_friction(*flat.set(p), p.transpose(), {});
     REQUIRE(friction);
     const Vector drag = gradient_of(*friction, to.transpose()).transpose();
     const Vector expected = 0.5 * flat.gradient(p).norm() * Vector(1, 2, 0).normalized();

@@ -22,9 +22,8 @@ bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b);
 
 /// Reads a file. Throws std::runtime_error with the fault.
 std::shared_ptr<const ValidatedMesh> load_validated_mesh(const std::filesystem::path& file);
-/// Edge length 1 m, centred at the origin, with outward normals.
-std::shared_ptr<const ValidatedMesh> unit_box();
-/// An icosphere of radius 1 m: a subdivided icosahedron with its vertices on the sphere.
-std::shared_ptr<const ValidatedMesh> unit_sphere(int subdivisions);
+/// unit_box and unit_sphere of core/kernel/mesh/primitives.h.
+std::shared_ptr<const ValidatedMesh> validated_box();
+std::shared_ptr<const ValidatedMesh> validated_sphere(int subdivisions);
 
 }  // namespace drape::ipc

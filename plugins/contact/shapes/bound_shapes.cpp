@@ -5,6 +5,7 @@
 
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/nonlinear_ccd.h"
+#include "core/kernel/contact/vertex_contacts.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/shapes/separation.h"
@@ -33,7 +34,7 @@ class ShapesCandidates final : public CollisionCandidates {
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
     std::vector<std::unique_ptr<Collisions>> parts;
     if (!candidates_.vertices.empty())
-      parts.push_back(make_vertex_contacts(x, scene_->solids, candidates_.vertices, scene_->barrier));
+      parts.push_back(make_vertex_contacts(vertex_contacts(x), scene_->barrier));
     if (!candidates_.pairs.empty())
       parts.push_back(make_pair_contacts(x, scene_->obstacle_points, candidates_.pairs, scene_->barrier));
     if (parts.size() == 1) return std::move(parts.front());
@@ -41,6 +42,29 @@ class ShapesCandidates final : public CollisionCandidates {
   }
 
  private:
+  /// Those of the vertex candidates within d̂ at x.
+  std::vector<VertexContact> vertex_contacts(const Positions& x) const {
+    const std::vector<VertexSolidPair>& pairs = candidates_.vertices;
+    std::vector<char> is_near(pairs.size());
+    parallel_for(static_cast<int>(pairs.size()), 1024, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        is_near[i] = scene_->solids[pairs[i].solid].distance(x.row(pairs[i].vertex)) < scene_->barrier.dhat;
+    });
+    std::vector<VertexContact> contacts;
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      if (is_near[i])
+        contacts.push_back({pairs[i].vertex,
+                            pairs[i].solid,
+                            scene_->vertex_area[pairs[i].vertex],
+                            scene_->solids[pairs[i].solid].friction,
+                            {}});
+    parallel_for(static_cast<int>(contacts.size()), 1024, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i)
+        contacts[i].nearest = scene_->solids[contacts[i].obstacle].nearest(x.row(contacts[i].vertex));
+    });
+    return contacts;
+  }
+
   StepLimit limit_step(const std::vector<TriangleSolidPair>& pairs, const Positions& x0,
                        const Positions& x1) const {
     std::vector<double> fractions(pairs.size());
@@ -104,12 +128,9 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
   StepLimit max_step(const BoundContact& before, const Positions& x) const override {
     const std::vector<SolidTrajectory> trajectories =
         solid_trajectories(solids_before(before), scene_->solids);
-    const double min_gap = min_gap_after_step(scene_->barrier.dhat, smallest_gap(trajectories, x));
-    const StepLimit full =
-        advance(trajectories, x, full_step_min_gap_factor * min_gap, full_step_max_iterations);
-    if (full.fraction == 1) return {};
-    const StepLimit partial = advance(trajectories, x, min_gap, partial_step_max_iterations);
-    return partial.fraction < full.fraction ? partial : full;
+    return max_obstacle_step(
+        scene_->barrier.dhat, smallest_gap(trajectories, x),
+        [&](double min_gap, int iterations) { return advance(trajectories, x, min_gap, iterations); });
   }
 
   void advect(const BoundContact& before, const Positions& x, Positions& reference) const override {
@@ -120,7 +141,7 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
  private:
   double smallest_gap(const std::vector<SolidTrajectory>& trajectories, const Positions& x) const {
     const double dhat = scene_->barrier.dhat;
-    std::vector<double> gaps(scene_->triangles.rows());
+    std::vector<double> gaps(scene_->cloth.triangles.rows());
     double smallest = dhat;
     for (const SolidTrajectory& trajectory : trajectories) {
       if (trajectory.is_static()) continue;
@@ -135,7 +156,7 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
   StepLimit advance(const std::vector<SolidTrajectory>& trajectories, const Positions& x, double min_gap,
                     int max_iterations) const {
     StepLimit limit;
-    std::vector<double> fractions(scene_->triangles.rows());
+    std::vector<double> fractions(scene_->cloth.triangles.rows());
     for (const SolidTrajectory& trajectory : trajectories) {
       if (trajectory.is_static()) continue;
       parallel_for(static_cast<int>(fractions.size()), 256, [&](int begin, int end) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kernel/mesh/primitives.h"
+
 namespace drape::shapes {
 
 namespace {
@@ -84,13 +86,9 @@ TriangleMesh revolve(const Solid& solid, const std::vector<Vector2d>& profile) {
 }
 
 TriangleMesh box_surface(const Solid& solid) {
-  TriangleMesh mesh;
-  const std::vector<Vector3d> corners = core_corners(solid.half);  // bits of i select x, y, z
-  mesh.vertices.resize(8, 3);
-  for (int i = 0; i < 8; ++i) mesh.vertices.row(i) = solid.to_world(corners[i]);
-  mesh.triangles.resize(12, 3);
-  mesh.triangles << 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6,
-      1, 3, 5, 3, 7, 5;
+  TriangleMesh mesh = unit_box();
+  for (auto vertex : mesh.vertices.rowwise())
+    vertex = solid.to_world(2 * solid.half.cwiseProduct(vertex.transpose())).transpose();
   return mesh;
 }
 

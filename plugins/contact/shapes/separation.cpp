@@ -53,7 +53,7 @@ Separation separate(const Solid& solid, const Corners& triangle) {
   Vector3d across[3];  // normals of each edge and the solid's edge or rim next to it
   for (int k = 0; k < 3; ++k) {
     const Vector3d &a = triangle[k], &b = triangle[(k + 1) % 3];
-    const Nearest nearest = solid.nearest(a + solid.nearest_on_edge(a, b) * (b - a));
+    const SignedDistance nearest = solid.nearest(a + solid.nearest_on_edge(a, b) * (b - a));
     take(nearest.normal);
     across[k] = (b - a).cross(nearest.tangent);
   }
@@ -81,7 +81,7 @@ bool intersects(const Solid& solid, const Corners& triangle) {
 
 double advance(const Solid& solid, const Corners& from, const Corners& to, double min_gap_fraction) {
   // Early exit for most pairs: one normal keeps the fraction of an upper bound of the distance.
-  const Nearest at_centroid = solid.nearest(centroid(from));
+  const SignedDistance at_centroid = solid.nearest(centroid(from));
   const double sufficient = min_gap_fraction * at_centroid.distance;
   if (sufficient > 0 && separation_along(solid, from, at_centroid.normal) >= sufficient &&
       separation_along(solid, to, at_centroid.normal) >= sufficient)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/kernel/contact/barrier.h"
 #include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::shapes {
@@ -14,9 +15,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int grain = 2048;
-constexpr double mollifier_threshold = 1e-3;  // ε over the squared edge lengths (Li et al. 2020, eq. 18)
-constexpr double inset = 5e-5;                // of a cylinder's prism, over d̂
-constexpr double half = 0.5;                  // weight factor of edges and of triangles
+constexpr double inset = 5e-5;  // of a cylinder's prism, over d̂
+constexpr double half = 0.5;    // weight factor of edges and of triangles
 
 /// A bounding ball of an element's linear motion.
 struct Ball {
@@ -45,7 +45,7 @@ class Finder {
     std::vector<char> is_close(among.size());
     parallel_for(static_cast<int>(is_close.size()), grain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i)
-        is_close[i] = is_near(ball_of(&scene_.triangles(among[i], 0), 3, x0_, x1_));
+        is_close[i] = is_near(ball_of(&scene_.cloth.triangles(among[i], 0), 3, x0_, x1_));
     });
     std::vector<int> result;
     for (std::size_t i = 0; i < among.size(); ++i)
@@ -54,12 +54,12 @@ class Finder {
   }
 
   std::vector<int> vertices_of(const std::vector<int>& triangles) const {
-    return elements_near(triangles, scene_.triangles, static_cast<int>(x0_.rows()),
+    return elements_near(triangles, scene_.cloth.triangles, static_cast<int>(x0_.rows()),
                          [&](int i) { return is_near(ball_of(&i, 1, x0_, x1_)); });
   }
   std::vector<int> edges_of(const std::vector<int>& triangles) const {
-    return elements_near(triangles, scene_.triangle_edges, static_cast<int>(scene_.edges.rows()),
-                         [&](int i) { return is_near(ball_of(&scene_.edges(i, 0), 2, x0_, x1_)); });
+    return elements_near(triangles, scene_.cloth.triangle_edges, static_cast<int>(scene_.cloth.edges.rows()),
+                         [&](int i) { return is_near(ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_)); });
   }
 
   /// Adds pairs of the solid's points and triangles.
@@ -68,17 +68,18 @@ class Finder {
     const double share = solid_.kind == SolidKind::sphere ? 1 : half;  // a sphere has no other pairs
     std::vector<int> found;
     for (const int i : triangles) {
-      const Ball ball = ball_of(&scene_.triangles(i, 0), 3, x0_, x1_);
+      const Ball ball = ball_of(&scene_.cloth.triangles(i, 0), 3, x0_, x1_);
       found.clear();
       features_.points_near(solid_, ball.centre, ball.radius + reach(), found);
       ContactPair pair;
       pair.kind = PairKind::point_triangle;
       pair.offset = features_.offset;
       pair.friction = solid_.friction;
-      pair.weight = share * scene_.triangle_area[i] * side_fraction(std::sqrt(2 * scene_.triangle_area[i]));
+      pair.weight =
+          share * scene_.cloth.triangle_area[i] * side_fraction(std::sqrt(2 * scene_.cloth.triangle_area[i]));
       for (const int point : found) {
-        pair.vertices = {static_cast<int>(x0_.rows()) + first_point + point, scene_.triangles(i, 0),
-                         scene_.triangles(i, 1), scene_.triangles(i, 2)};
+        pair.vertices = {static_cast<int>(x0_.rows()) + first_point + point, scene_.cloth.triangles(i, 0),
+                         scene_.cloth.triangles(i, 1), scene_.cloth.triangles(i, 2)};
         pairs.push_back(pair);
       }
     }
@@ -88,19 +89,19 @@ class Finder {
   void add_edge_edge(const std::vector<int>& edges, int first_point, std::vector<ContactPair>& pairs) const {
     std::vector<int> found;
     for (const int i : edges) {
-      const Ball ball = ball_of(&scene_.edges(i, 0), 2, x0_, x1_);
+      const Ball ball = ball_of(&scene_.cloth.edges(i, 0), 2, x0_, x1_);
       found.clear();
       features_.edges_near(solid_, ball.centre, ball.radius + reach(), found);
       ContactPair pair;
       pair.kind = PairKind::edge_edge;
       pair.offset = features_.offset;
       pair.friction = solid_.friction;
-      const double length = scene_.edge_length[i];
-      pair.weight = half * scene_.edge_area[i] * side_fraction(length);
+      const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);
+      pair.weight = half * scene_.cloth.edge_area[i] * side_fraction(length);
       const int first = static_cast<int>(x0_.rows()) + first_point;
       for (const int edge : found) {
         const int a = features_.edges(edge, 0), b = features_.edges(edge, 1);
-        pair.vertices = {scene_.edges(i, 0), scene_.edges(i, 1), first + a, first + b};
+        pair.vertices = {scene_.cloth.edges(i, 0), scene_.cloth.edges(i, 1), first + a, first + b};
         pair.mollifier = mollifier_threshold * length * length *
                          (features_.points.row(b) - features_.points.row(a)).squaredNorm();
         pairs.push_back(pair);
@@ -148,22 +149,10 @@ class Finder {
 ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
                           const BarrierParameters& barrier, double min_gap_fraction) {
   ShapeScene s;
-  s.triangles = level.rest.triangles;
-  s.triangle_edges = level.topology.triangle_edges;
-  s.edges = level.topology.edges;
+  s.cloth = Surface::of(level.rest, level.topology);
   s.vertex_area = level.vertex_area;
   const Positions& rest = level.rest.vertices;
   s.diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
-  s.edge_length.resize(s.edges.rows());
-  for (Eigen::Index i = 0; i < s.edges.rows(); ++i)
-    s.edge_length[i] = (rest.row(s.edges(i, 1)) - rest.row(s.edges(i, 0))).norm();
-  s.triangle_area.resize(s.triangles.rows());
-  s.edge_area.setZero(s.edges.rows());
-  for (int i = 0; i < static_cast<int>(s.triangles.rows()); ++i) {
-    const Corners c = s.corners(i, rest);
-    s.triangle_area[i] = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]).norm();
-    for (int k = 0; k < 3; ++k) s.edge_area[s.triangle_edges(i, k)] += s.triangle_area[i] / 3;
-  }
   s.solids = solids;
   s.barrier = barrier;
   s.min_gap_fraction = min_gap_fraction;
@@ -185,7 +174,7 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
 std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
                                               const Positions& x1) {
   std::vector<TriangleSolidPair> found;
-  std::vector<int> all(scene.triangles.rows());
+  std::vector<int> all(scene.cloth.triangles.rows());
   std::iota(all.begin(), all.end(), 0);
   for (int k = 0; k < static_cast<int>(scene.solids.size()); ++k)
     for (const int i : Finder(scene, k, x0, x1).triangles_near(all)) found.push_back({i, k});
@@ -204,7 +193,7 @@ CandidatePairs find_candidates(const ShapeScene& scene, const std::vector<Triang
     triangles = finder.triangles_near(triangles);
     finder.add_point_triangle(triangles, scene.first_point[k], c.pairs);
     if (solid.kind == SolidKind::sphere) continue;
-    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k, scene.vertex_area[i]});
+    for (const int i : finder.vertices_of(triangles)) c.vertices.push_back({i, k});
     if (solid.kind == SolidKind::half_space) continue;
     finder.add_edge_edge(finder.edges_of(triangles), scene.first_point[k], c.pairs);
   }

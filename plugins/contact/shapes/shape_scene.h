@@ -3,19 +3,17 @@
 #include <vector>
 
 #include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/surface.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
-#include "plugins/contact/shapes/vertex_contacts.h"
 
 namespace drape::shapes {
 
 /// The cloth of one level at rest and its solids. Immutable.
 struct ShapeScene {
-  Triangles triangles, triangle_edges;  ///< m×3, column k of triangle_edges opposite vertex k
-  Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges;  ///< e×2
-  Eigen::VectorXd vertex_area, edge_area, triangle_area;         ///< of the rest shape [m²]
-  Eigen::VectorXd edge_length;                                   ///< of the rest shape [m]
-  double diagonal = 0;                                           ///< of the rest shape's bounding box [m]
+  Surface cloth;
+  Eigen::VectorXd vertex_area;  ///< the level's [m²]
+  double diagonal = 0;          ///< of the rest shape's bounding box [m]
 
   std::vector<Solid> solids;
   std::vector<Features> features;  ///< of each solid
@@ -29,7 +27,8 @@ struct ShapeScene {
                        double min_gap_fraction);
 
   Corners corners(int triangle, const Positions& x) const {
-    return {x.row(triangles(triangle, 0)), x.row(triangles(triangle, 1)), x.row(triangles(triangle, 2))};
+    const auto v = cloth.triangles.row(triangle);
+    return {x.row(v[0]), x.row(v[1]), x.row(v[2])};
   }
 };
 
@@ -41,6 +40,12 @@ struct TriangleSolidPair {
 /// Triangles that may come within d̂ of a solid during the linear motion from x0 to x1, grouped by solid.
 std::vector<TriangleSolidPair> find_triangles(const ShapeScene& scene, const Positions& x0,
                                               const Positions& x1);
+
+/// A cloth vertex and a solid that may come within d̂.
+struct VertexSolidPair {
+  int vertex;
+  int solid;
+};
 
 /// The candidate pairs of a linear motion.
 struct CandidatePairs {

@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "core/kernel/contact/stiffness.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/contact/shapes/bound_shapes.h"
@@ -105,41 +104,7 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
       .required()
       .description("the obstacles")
       .source("this project");
-  d.add("friction", &Parameters::friction)
-      .unit("1")
-      .at_least(0)
-      .at_most(bounds::largest_friction)
-      .description("Coulomb's friction coefficient μ")
-      .source("Li et al. 2020, section 5");
-  d.add("dhat", &Parameters::dhat)
-      .unit("m")
-      .at_least(bounds::smallest_length)
-      .at_most(1e3)
-      .description("barrier activation distance d̂: the barrier acts on smaller gaps")
-      .formerly("range")
-      .source("Li et al. 2020, eq. 6");
-  d.add("stiffness", &Parameters::stiffness)
-      .unit("Pa")
-      .at_least(1e-9)
-      .at_most(bounds::largest_modulus)
-      .description(
-          "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
-          "weight per area")
-      .source("this project");
-  d.add("friction_smoothing_distance", &Parameters::friction_smoothing_distance)
-      .unit("m")
-      .at_least(1e-12)
-      .at_most(1e3)
-      .description("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
-      .formerly("slip_distance")
-      .source("Li et al. 2020, eq. 14");
-  d.add("min_gap_fraction", &Parameters::min_gap_fraction)
-      .unit("1")
-      .at_least(1e-6)
-      .at_most(0.99)
-      .description("fraction of every gap that a step must leave: s of additive CCD")
-      .formerly("keep")
-      .source("Li et al. 2021");
+  declare_contact_parameters(d);
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
@@ -153,9 +118,7 @@ Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {
   if (solids_.empty()) return nullptr;
-  const BarrierParameters barrier{p_.dhat, p_.stiffness.value_or(contact_stiffness(material)),
-                                  p_.friction_smoothing_distance};
-  return bind_shapes(level, solids_, barrier, p_.min_gap_fraction);
+  return bind_shapes(level, solids_, p_.barrier(material), p_.min_gap_fraction);
 }
 
 }  // namespace drape::shapes

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/contact/contact_parameters.h"
 #include "core/kernel/model/contact_model.h"
-#include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {
@@ -30,13 +30,8 @@ std::string to_string(SolidKind kind);
 /// Contact with convex obstacles in closed form (see README.md).
 class Shapes final : public ContactModel {
  public:
-  struct Parameters {
+  struct Parameters : ContactParameters {
     std::vector<ShapeParameters> shapes;
-    double friction = 0;                        ///< μ
-    double dhat = 1e-3;                         ///< d̂
-    std::optional<double> stiffness;            ///< κ
-    double friction_smoothing_distance = 1e-4;  ///< ε_v h
-    double min_gap_fraction = 0.1;
     static void declare(Declaration<Parameters>& d);
   };
 

@@ -14,8 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// For a rounded box, in local coordinates.
-Nearest nearest_to_box(const Solid& s, const Vector3d& q) {
-  Nearest n;
+SignedDistance nearest_to_box(const Solid& s, const Vector3d& q) {
+  SignedDistance n;
   const Vector3d v = q - q.cwiseMax(-s.half).cwiseMin(s.half);
   const double length = v.norm();
   if (length == 0) {  // inside the core: the nearest face
@@ -39,8 +39,8 @@ Nearest nearest_to_box(const Solid& s, const Vector3d& q) {
   return n;
 }
 
-Nearest nearest_to_cylinder(const Solid& s, const Vector3d& q) {
-  Nearest n;
+SignedDistance nearest_to_cylinder(const Solid& s, const Vector3d& q) {
+  SignedDistance n;
   const double rho = std::hypot(q.x(), q.y()), out = rho - s.radius, up = std::abs(q.z()) - s.half.z();
   const Vector3d radial = rho > 0 ? Vector3d(q.x() / rho, q.y() / rho, 0) : Vector3d(1, 0, 0);
   const Vector3d axial(0, 0, q.z() < 0 ? -1 : 1);
@@ -101,9 +101,9 @@ void Solid::update_axes() {
              : rotation_matrix(rotate);
 }
 
-Nearest Solid::nearest(const Vector3d& p) const {
+SignedDistance Solid::nearest(const Vector3d& p) const {
   const Vector3d q = to_local(p);
-  Nearest n;
+  SignedDistance n;
   if (kind == SolidKind::half_space)
     n.distance = q.z();
   else

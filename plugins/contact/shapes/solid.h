@@ -3,18 +3,11 @@
 #include <Eigen/Core>
 #include <string>
 
+#include "core/kernel/contact/signed_distance.h"
+
 namespace drape::shapes {
 
 enum class SolidKind { sphere, box, capsule, cylinder, half_space };
-
-/// The signed distance to a solid at a point: value, gradient and principal curvatures of the level set. The
-/// distance's Hessian is curvature[0] a aᵀ + curvature[1] b bᵀ, a = tangent, b = normal × tangent.
-struct Nearest {
-  double distance = 0;                                  ///< [m]; negative inside
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();    ///< gradient, away from the solid
-  Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();   ///< first principal direction, unit
-  Eigen::Vector2d curvature = Eigen::Vector2d::Zero();  ///< [1/m], ≥ 0
-};
 
 /// A convex obstacle. A box, sphere or capsule is a core box, possibly degenerate, rounded by `radius`. The
 /// distance is continuously differentiable outside.
@@ -36,7 +29,7 @@ struct Solid {
   void update_axes();
 
   /// Signed distance, gradient and curvatures at p.
-  Nearest nearest(const Eigen::Vector3d& p) const;
+  SignedDistance nearest(const Eigen::Vector3d& p) const;
   /// The signed distance at p [m].
   double distance(const Eigen::Vector3d& p) const;
   /// The support function max n · y over the solid for a unit vector n [m]; +∞ if unbounded.

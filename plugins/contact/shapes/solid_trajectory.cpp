@@ -117,36 +117,30 @@ std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from,
 
 void advect_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
                         Positions& reference) {
-  AveragedContactDisplacement mean(x.rows());  // weighted by friction force
-  const auto add = [&](int vertex, int solid, const Vector3d& touched, double weight) {
-    const Vector3d local = scene.solids[solid].to_local(touched);
-    mean.add(vertex, to[solid].to_world(local) - touched, weight);
+  AveragedContactDisplacement mean(x.rows());
+  const auto displacement_of = [&](int solid, const Vector3d& touched) -> Vector3d {
+    return to[solid].to_world(scene.solids[solid].to_local(touched)) - touched;
   };
   const CandidatePairs candidates = find_candidates(scene, find_triangles(scene, x, x), x, x);
   const double dhat = scene.barrier.dhat;
   for (const VertexSolidPair& pair : candidates.vertices) {
     const Vector3d p = x.row(pair.vertex);
     const Solid& solid = scene.solids[pair.solid];
-    const Nearest nearest = solid.nearest(p);
+    const SignedDistance nearest = solid.nearest(p);
     if (nearest.distance < dhat && solid.friction > 0)
-      add(pair.vertex, pair.solid, p - nearest.distance * nearest.normal,
-          -pair.weight * solid.friction * barrier(nearest.distance / dhat).first);
+      mean.add(pair.vertex, displacement_of(pair.solid, p - nearest.distance * nearest.normal),
+               -scene.vertex_area[pair.vertex] * solid.friction * barrier(nearest.distance / dhat).first);
   }
   const int n = static_cast<int>(x.rows());
-  for (const ContactPair& pair : candidates.pairs) {
-    const PairPositions at = positions_of(pair, x, scene.obstacle_points);
-    if (pair.friction == 0 || !is_within_dhat(pair, at, dhat)) continue;
-    const Contact contact = contact_at(pair, at, dhat);
-    const bool first_is_cloth = pair.vertices[0] < n;
-    Vector3d touched = (first_is_cloth ? 1 : -1) * pair.offset * contact.normal;
-    for (int k = 0; k < 4; ++k)
-      if (pair.vertices[k] >= n) touched += std::abs(contact.closest.c[k]) * at.col(k);
-    const int solid = scene.solid_of_point[pair.vertices[first_is_cloth ? 3 : 0] - n];
-    for (int k = 0; k < 4; ++k)
-      if (pair.vertices[k] < n)
-        add(pair.vertices[k], solid, touched,
-            std::abs(contact.closest.c[k]) * pair.friction * contact.pressure());
-  }
+  mean.add_pairs(candidates.pairs, x, scene.obstacle_points, dhat,
+                 [&](const Contact& contact, const PairPositions& at) {
+                   const auto& v = contact.pair.vertices;
+                   const bool first_is_cloth = v[0] < n;
+                   Vector3d touched = (first_is_cloth ? 1 : -1) * contact.pair.offset * contact.normal;
+                   for (int k = 0; k < 4; ++k)
+                     if (v[k] >= n) touched += std::abs(contact.closest.c[k]) * at.col(k);
+                   return displacement_of(scene.solid_of_point[v[first_is_cloth ? 3 : 0] - n], touched);
+                 });
   mean.add_to(reference);
 }
 

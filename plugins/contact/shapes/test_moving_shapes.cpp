@@ -2,6 +2,7 @@
 #include <random>
 
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/friction.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
 
@@ -222,11 +223,10 @@ TEST_CASE("shapes: contacts keep their keys while another cylinder grows") {
     ShapeParameters roll = level_with(SolidKind::cylinder, 0.5);
     roll.radius = radius;
     const auto contact = bound({roll, level_with(SolidKind::box, 0)}, level, 0.3);
-    TangentialDisplacements displacements;
-    contact->build_candidates(x, x)->build_collisions(x)->friction(x, {})->append_tangential_displacements(
-        x, displacements);
+    const auto collisions = contact->build_candidates(x, x)->build_collisions(x);
     std::vector<ContactKey> all;
-    for (const TangentialDisplacement& d : displacements) all.push_back(d.contact);
+    for (const TangentialDisplacement& d : lagged_friction(*collisions, x, {})->tangential_displacements(x))
+      all.push_back(d.contact);
     return all;
   };
   REQUIRE(keys(0.1).size() > 10);

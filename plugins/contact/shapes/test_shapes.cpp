@@ -6,6 +6,7 @@
 #include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/stiffness.h"
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/friction.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
@@ -129,7 +130,7 @@ double searched_distance(const Solid& s, const Corners& c) {
 Corners some_triangle(const Solid& s, double size) {
   for (;;) {
     const Vector3d middle = s.centre + random_vector(0.15);
-    const Nearest n = s.nearest(middle);
+    const SignedDistance n = s.nearest(middle);
     if (n.distance < 0 && s.kind != SolidKind::half_space) continue;
     const Vector3d at = middle - (n.distance - std::pow(10.0, uniform(-5, -1.5))) * n.normal;
     Corners c{at, at + random_vector(size), at + random_vector(size)};
@@ -174,7 +175,7 @@ double cloth_distance(const Solid& s, const Level& level, const Positions& x) {
 Positions near_cloth(const Solid& s, const Level& level) {
   for (;;) {
     const Vector3d middle = s.centre + random_vector(0.15);
-    const Nearest n = s.nearest(middle);
+    const SignedDistance n = s.nearest(middle);
     if (n.distance <= 0) continue;
     const Eigen::Quaterniond turn = uniform(0, 1) < 0.5
                                         ? Eigen::Quaterniond::UnitRandom()
@@ -197,7 +198,7 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
     int tested = 0;
     for (int i = 0; i < 3000; ++i) {
       const Vector3d p = s.centre + random_vector(0.2);
-      const Nearest n = s.nearest(p);
+      const SignedDistance n = s.nearest(p);
       INFO(to_string(kind) << " at " << p.transpose());
       CHECK(s.distance(p) == Approx(n.distance).margin(1e-15));
       CHECK((n.distance <= 0) == contains(s, p));
@@ -215,8 +216,8 @@ TEST_CASE("shapes: distance, gradient and curvature of solids") {
       const Eigen::Matrix3d hessian =
           n.curvature[0] * n.tangent * n.tangent.transpose() + n.curvature[1] * b * b.transpose();
       for (int k = 0; k < 3; ++k) {
-        const Nearest plus = s.nearest(p + h * Vector3d::Unit(k)),
-                      minus = s.nearest(p - h * Vector3d::Unit(k));
+        const SignedDistance plus = s.nearest(p + h * Vector3d::Unit(k)),
+                             minus = s.nearest(p - h * Vector3d::Unit(k));
         CHECK((plus.distance - minus.distance) / (2 * h) == Approx(n.normal[k]).margin(1e-6));
         if ((plus.curvature - minus.curvature).norm() < 1e-2 * (1 + n.curvature.norm()))
           CHECK(((plus.normal - minus.normal) / (2 * h) - hessian.col(k)).norm() <
@@ -457,7 +458,7 @@ TEST_CASE("shapes: collisions at a state do not depend on the motion of the cand
     CHECK((gradient_of(*set, x) - gradient_at(*bound, x)).norm() <= 1e-12 * gradient_at(*bound, x).norm());
     if (set->contact_count() > 0) {
       check_threads(*set, x);
-      const auto friction = set->friction(x0, {});
+      const auto friction = lagged_friction(*set, x0, {});
       REQUIRE(friction);
       const Positions y = x0 + (x - x0) * 0.9;
       CHECK(friction->stencils().rows() == set->stencils().rows());
@@ -488,7 +489,7 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     const double all = normal * (kind == SolidKind::sphere ? 1.01 : 1 + 1e-12);
     double last = 0;
     for (const double u : {1e-6, 1e-5, 5e-5, 1e-4, 1e-2}) {
-      const auto friction = set->friction(lifted(level, 0.4 * dhat, -u), {});
+      const auto friction = lagged_friction(*set, lifted(level, 0.4 * dhat, -u), {});
       REQUIRE(friction);
       const Positions g = gradient_of(*friction, x);
       const double force = g.col(0).sum();  // the gradient is against the motion's force
@@ -498,7 +499,7 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
     }
     CHECK(last == Approx(0.3 * normal).epsilon(kind == SolidKind::sphere ? 0.01 : 1e-12));
     const auto smooth = Shapes(with({level_with(kind)})).bind(level, Material());
-    CHECK(smooth->build_candidates(x, x)->build_collisions(x)->friction(x, {}) == nullptr);
+    CHECK(lagged_friction(*smooth->build_candidates(x, x)->build_collisions(x), x, {}) == nullptr);
   }
 }
 

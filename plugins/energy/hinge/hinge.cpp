@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/kernel/elements/bending_stiffness.h"
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
@@ -10,8 +11,7 @@
 namespace drape {
 
 std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& material) const {
-  const double nu = material.poisson_ratio;
-  const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  const double k = bending_stiffness(material);
   const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<HingeKernel::Rest> rest;

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/kernel/elements/bending_stiffness.h"
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
@@ -23,8 +24,7 @@ void require_flat(const Eigen::Vector3d* d, const Level& level, int v0, int v1) 
 }  // namespace
 
 std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Material& material) const {
-  const double nu = material.poisson_ratio;
-  const double k = material.bending_modulus * std::pow(material.thickness, 3) / (24 * (1 - nu * nu));
+  const double k = bending_stiffness(material);
   const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<QuadraticBendingKernel::Rest> rest;

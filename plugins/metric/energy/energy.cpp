@@ -16,12 +16,9 @@ class EnergyByPart : public Metric {
 
   MetricResult evaluate(const MetricInput& input) const override {
     MetricResult result;
-    double sum = 0;
-    for (const auto& [name, joules] : input.model.energy_parts(input.x)) {
+    for (const auto& [name, joules] : input.model.energy_parts(input.x))
       result.values.push_back({"energy_parts." + name, joules, "J", Better::lower});
-      sum += joules;
-    }
-    result.values.push_back({"energy", sum, "J", Better::lower});
+    result.values.push_back({"energy", input.model.energy(input.x), "J", Better::lower});
     return result;
   }
 };

@@ -19,12 +19,9 @@ class EnergyAboveEnd : public Metric {
   MetricResult evaluate(const MetricInput& input) const override {
     if (!input.other)
       throw std::runtime_error("energy_above_end compares two states of one level, but was given one");
-    const auto energy = [&](const Positions& x) {
-      double sum = input.model.value(x);
-      for (const BoundEnergy* limit : input.model.limits()) sum += limit->value(x);
-      return sum;
-    };
-    return {{{"energy_above_end", energy(*input.other) - energy(input.x), "J", Better::lower}}, {}};
+    const double above =
+        input.model.energy_without_contact(*input.other) - input.model.energy_without_contact(input.x);
+    return {{{"energy_above_end", above, "J", Better::lower}}, {}};
   }
 };
 

@@ -52,7 +52,8 @@ class LoopRefiner : public Refiner {
     }
     for (int e = 0; e < edge_count; ++e) add_edge(e, coarse, weights);
 
-    Refinement refinement{split_triangles(coarse), ProlongationMatrix(n + edge_count, n)};
+    Refinement refinement{split_triangles(coarse.rest.triangles, topology),
+                          ProlongationMatrix(n + edge_count, n)};
     refinement.weights.setFromTriplets(weights.begin(), weights.end());
     return refinement;
   }

@@ -24,6 +24,7 @@ class FinestOnly : public drape::Solver {
     drape::PlainObjective objective(problem.model(finest));
     drape::LevelResult result =
         drape::minimise(objective, problem.starts[finest], p_.newton, {clock, observer});
+    result.from_initial_state = true;
     observer.level_finished(result);
     return {result};
   }

@@ -7,7 +7,7 @@ namespace {
 class SmoothMidpoint : public drape::Refiner {
  public:
   struct Parameters {
-    double pull = 0.125;
+    double pull = 0.0625;
 
     static void declare(drape::Declaration<Parameters>& d) {
       d.add("pull", &Parameters::pull)

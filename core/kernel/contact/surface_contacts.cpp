@@ -1,14 +1,14 @@
-#include "plugins/contact/ipc/surface_contacts.h"
+#include "core/kernel/contact/surface_contacts.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "core/kernel/contact/barrier.h"
-#include "core/kernel/contact/friction.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/friction.h"
 
-namespace drape::ipc {
+namespace drape {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
@@ -22,7 +22,7 @@ Matrix3d projected(const Matrix3d& h, Projection projection) {
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-class SurfaceCollisions final : public Collisions {
+class SurfaceCollisions final : public Collisions, public FrictionalCollisions {
  public:
   SurfaceCollisions(SurfaceContacts all, const BarrierParameters& parameters)
       : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {
@@ -71,9 +71,8 @@ class SurfaceCollisions final : public Collisions {
     }
   }
 
-  std::unique_ptr<FrictionEnergy> friction(const Positions& reference,
-                                           const TangentialDisplacements& displacements) const override {
-    std::vector<FrictionContact> frictions;
+  void append_friction_contacts(FrictionContacts& groups) const override {
+    std::vector<FrictionContact>& frictions = groups.emplace_back();
     for (const SurfaceContact& contact : all_.contacts) {
       const std::vector<double> pressures = all_.pressures(contact, p_.dhat);
       for (int i = contact.first; i < contact.last; ++i) {
@@ -87,8 +86,8 @@ class SurfaceCollisions final : public Collisions {
                                force});
       }
     }
-    return make_friction(std::move(frictions), reference, displacements, p_.friction_smoothing_distance);
   }
+  double friction_smoothing_distance() const override { return p_.friction_smoothing_distance; }
 
  private:
   int vertex_count() const { return static_cast<int>(all_.contacts.size()); }
@@ -115,7 +114,7 @@ class SurfaceCollisions final : public Collisions {
 
 }  // namespace
 
-SurfaceContacts SurfaceContacts::of(const Positions& x, const Obstacles& obstacles,
+SurfaceContacts SurfaceContacts::of(const Positions& x, const ObstacleSurface& obstacles,
                                     const OperatorCoefficients& coefficients,
                                     const std::vector<VertexTriangleCandidate>& candidates,
                                     const Eigen::VectorXd& vertex_area, double friction, double dhat) {
@@ -175,4 +174,4 @@ std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
   return std::make_unique<SurfaceCollisions>(std::move(contacts), parameters);
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

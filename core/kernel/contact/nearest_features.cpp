@@ -1,4 +1,4 @@
-#include "plugins/contact/ipc/nearest_features.h"
+#include "core/kernel/contact/nearest_features.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 #include "core/kernel/contact/pair_geometry.h"
 
-namespace drape::ipc {
+namespace drape {
 
 using Eigen::Vector3d;
 
@@ -112,8 +112,8 @@ NearestFeature FeatureSearch::feature(const Vector3d& p, const Term& term) const
     f.distance = r.norm();
     f.normal = r / f.distance;
   }
-  f.friction = obstacles_.bodies[obstacles_.body_of(f.vertices[0])].friction.value_or(friction_);
+  f.friction = obstacles_.friction_at(f.vertices[0], friction_);
   return f;
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

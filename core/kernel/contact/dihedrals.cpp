@@ -1,10 +1,10 @@
-#include "plugins/contact/ipc/dihedrals.h"
+#include "core/kernel/contact/dihedrals.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-namespace drape::ipc {
+namespace drape {
 namespace {
 
 constexpr double flat_angle = 1e-6;  // [rad]
@@ -69,4 +69,4 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
   return c;
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

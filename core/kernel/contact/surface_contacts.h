@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
+#include "core/kernel/contact/nearest_features.h"
 #include "core/kernel/contact/pair_contacts.h"
-#include "plugins/contact/ipc/nearest_features.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// A cloth vertex in contact with the obstacles' surface.
 struct SurfaceContact {
@@ -21,7 +21,7 @@ struct SurfaceContacts {
   std::vector<NearestFeature> features;
 
   /// `candidates` must be contiguous for each vertex and ascending by triangle.
-  static SurfaceContacts of(const Positions& x, const Obstacles& obstacles,
+  static SurfaceContacts of(const Positions& x, const ObstacleSurface& obstacles,
                             const OperatorCoefficients& coefficients,
                             const std::vector<VertexTriangleCandidate>& candidates,
                             const Eigen::VectorXd& vertex_area, double friction, double dhat);
@@ -36,4 +36,4 @@ struct SurfaceContacts {
 std::unique_ptr<Collisions> make_surface_contacts(SurfaceContacts contacts,
                                                   const BarrierParameters& parameters);
 
-}  // namespace drape::ipc
+}  // namespace drape

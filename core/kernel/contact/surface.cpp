@@ -1,10 +1,10 @@
-#include "plugins/contact/ipc/surface.h"
+#include "core/kernel/contact/surface.h"
 
 #include <Eigen/Geometry>
 
 #include "core/kernel/linear_algebra/parallel.h"
 
-namespace drape::ipc {
+namespace drape {
 namespace {
 
 template <class Rows>
@@ -70,4 +70,4 @@ void SweptBoxes::update(const Surface& surface, const Positions& x0, const Posit
   });
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

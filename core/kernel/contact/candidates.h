@@ -2,13 +2,13 @@
 
 #include <vector>
 
+#include "core/kernel/contact/nearest_features.h"
+#include "core/kernel/contact/obstacle_surface.h"
 #include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/surface.h"
 #include "core/kernel/mesh/topology.h"
-#include "plugins/contact/ipc/nearest_features.h"
-#include "plugins/contact/ipc/obstacle.h"
-#include "plugins/contact/ipc/surface.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
 struct LinearMotion {
@@ -31,9 +31,6 @@ struct BroadPhasePairs {
   }
 };
 
-/// ε of the mollifier over |e|²|e'|² of the edges' rest lengths (Li et al. 2020, section 5).
-inline constexpr double mollifier_threshold = 1e-3;
-
 // Both append to `found` the pairs of primitives that may come within d̂ during the motion, from rows of
 // triangles whose swept boxes overlap. The order depends on the rows alone. They return false once `found`
 // has more than `limit` pairs.
@@ -46,8 +43,8 @@ bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const Adjace
 /// The first have weight 0 as pairs: their barrier is that of the nearest features. The weight of the others
 /// is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0 where it is flat:
 /// there the cloth's vertices make contact first.
-bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Obstacles& obstacles,
+bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
                          const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found);
 
-}  // namespace drape::ipc
+}  // namespace drape

@@ -3,10 +3,10 @@
 #include <array>
 #include <vector>
 
-#include "plugins/contact/ipc/dihedrals.h"
-#include "plugins/contact/ipc/obstacle.h"
+#include "core/kernel/contact/dihedrals.h"
+#include "core/kernel/contact/obstacle_surface.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// A cloth vertex and an obstacle triangle that may come within d̂.
 struct VertexTriangleCandidate {
@@ -31,7 +31,7 @@ struct NearestFeature {
 /// with the same nearest feature are added before the barrier is evaluated, and most cancel.
 class FeatureSearch {
  public:
-  FeatureSearch(const Obstacles& obstacles, const OperatorCoefficients& coefficients, double friction,
+  FeatureSearch(const ObstacleSurface& obstacles, const OperatorCoefficients& coefficients, double friction,
                 double dhat)
       : obstacles_(obstacles), coefficients_(coefficients), friction_(friction), dhat_(dhat) {}
 
@@ -53,11 +53,11 @@ class FeatureSearch {
   NearestFeature feature(const Eigen::Vector3d& p, const Term& term) const;
   Eigen::Vector3d position(int v) const { return obstacles_.vertices.row(v); }
 
-  const Obstacles& obstacles_;
+  const ObstacleSurface& obstacles_;
   const OperatorCoefficients& coefficients_;
   double friction_, dhat_;
   std::vector<Term> terms_;
   std::vector<int> near_;  // triangles within d̂
 };
 
-}  // namespace drape::ipc
+}  // namespace drape

@@ -5,7 +5,7 @@
 #include "core/kernel/contact/box.h"
 #include "core/kernel/mesh/topology.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// A triangle surface for contact: rest areas and lengths, and the representative triangle of each vertex and
 /// edge (Curtis et al. 2008), through which pairs of triangles yield every pair of primitives once.
@@ -39,4 +39,4 @@ struct SweptBoxes {
   }
 };
 
-}  // namespace drape::ipc
+}  // namespace drape

@@ -1,13 +1,14 @@
-#include "plugins/contact/ipc/candidates.h"
+#include "core/kernel/contact/candidates.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/linear_algebra/parallel.h"
 
-namespace drape::ipc {
+namespace drape {
 namespace {
 
 constexpr int grain = 256;  // rows per task
@@ -136,7 +137,7 @@ bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const Adjace
   });
 }
 
-bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Obstacles& obstacles,
+bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
                          const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
                          const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found) {
   const Surface& other = obstacles.surface;
@@ -146,7 +147,7 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_within_dhat(pair, motion)) return false;
       pair.weight = weight;
-      pair.friction = obstacles.bodies[obstacles.body_of(other.triangles(t, 0))].friction.value_or(friction);
+      pair.friction = obstacles.friction_at(other.triangles(t, 0), friction);
       list.pairs.push_back(pair);
       return true;
     };
@@ -168,4 +169,4 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
   });
 }
 
-}  // namespace drape::ipc
+}  // namespace drape

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "plugins/contact/ipc/surface.h"
+#include "core/kernel/contact/surface.h"
 
-namespace drape::ipc {
+namespace drape {
 
 /// Dihedral angles and curvatures of a surface at its edges and vertices.
 struct Dihedrals {
@@ -41,4 +41,4 @@ struct OperatorCoefficients {
   static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double dhat);
 };
 
-}  // namespace drape::ipc
+}  // namespace drape

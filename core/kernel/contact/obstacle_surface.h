@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "core/kernel/contact/dihedrals.h"
+#include "core/kernel/contact/surface.h"
+
+namespace drape {
+
+/// The triangle meshes that a cloth collides with, as one surface of several bodies.
+struct ObstacleSurface {
+  Positions vertices;  ///< of all bodies [m]
+  Surface surface;
+  Dihedrals dihedrals;
+  std::vector<int> first_vertex;                       ///< of each body, then the total number
+  std::vector<std::optional<double>> body_friction{};  ///< μ of each body that has its own
+
+  int body_of(int vertex) const {
+    const auto next = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
+    return static_cast<int>(next - first_vertex.begin()) - 1;
+  }
+  /// μ at a vertex: its body's, or the contact model's.
+  double friction_at(int vertex, double of_model) const {
+    return body_friction[body_of(vertex)].value_or(of_model);
+  }
+};
+
+}  // namespace drape

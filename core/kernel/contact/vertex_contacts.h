@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernel/contact/barrier_parameters.h"
+#include "core/kernel/contact/signed_distance.h"
+#include "core/kernel/model/contact_model.h"
+
+namespace drape {
+
+/// A cloth vertex within d̂ of an obstacle whose distance is known in closed form.
+struct VertexContact {
+  int vertex;
+  int obstacle;     ///< identifies the obstacle, for friction
+  double weight;    ///< the vertex's rest area [m²]
+  double friction;  ///< μ
+  SignedDistance nearest;
+};
+
+/// The barrier potential κ d̂ Σ weight b(distance / d̂) of these contacts, and their friction. The eigenvectors
+/// of its Hessian are known: normal, tangent and normal × tangent.
+std::unique_ptr<Collisions> make_vertex_contacts(std::vector<VertexContact> contacts,
+                                                 const BarrierParameters& parameters);
+
+}  // namespace drape

@@ -1,0 +1,163 @@
+#include "core/kernel/model/friction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/contact_model.h"
+
+namespace drape {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int grain = 1024;
+
+/// Σ c_k x_k over the cloth's vertices: their contribution to the relative position of the two sides.
+Vector3d position(const FrictionContact& contact, const Positions& x) {
+  Vector3d sum = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k)
+    if (contact.vertices[k] >= 0) sum += contact.c[k] * x.row(contact.vertices[k]).transpose();
+  return sum;
+}
+
+/// A contact of the cloth with itself has four cloth vertices.
+bool is_with_obstacle(const FrictionContact& contact) {
+  return std::ranges::find(contact.vertices, -1) != contact.vertices.end();
+}
+
+/// The stored displacement of a contact, zero for a new one.
+Vector3d displacement_of(const ContactKey& key, const TangentialDisplacements& displacements) {
+  const auto found = std::ranges::lower_bound(displacements, key, {}, &TangentialDisplacement::contact);
+  return found != displacements.end() && found->contact == key ? found->displacement : Vector3d::Zero();
+}
+
+}  // namespace
+
+LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& reference,
+                               const TangentialDisplacements& displacements,
+                               double friction_smoothing_distance)
+    : epsilon_(friction_smoothing_distance) {
+  for (std::vector<FrictionContact>& group : groups) {
+    if (contacts_.empty())
+      contacts_ = std::move(group);  // mostly there is no other
+    else
+      contacts_.insert(contacts_.end(), group.begin(), group.end());
+    group_ends_.push_back(size());
+  }
+  origin_.resize(contacts_.size());
+  parallel_for(size(), grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i].key, displacements);
+  });
+}
+
+double LaggedFriction::value(const Positions& x) const {
+  double sum = 0;
+  int first = 0;
+  for (const int group_end : group_ends_) {
+    sum += parallel_sum(group_end - first, grain, [&](int begin, int end) {
+      double part = 0;
+      for (int i = first + begin; i < first + end; ++i) part += potential(i, displacement(i, x).norm());
+      return part;
+    });
+    first = group_end;
+  }
+  return sum;
+}
+
+double LaggedFriction::add_gradient(const Positions& x, Positions& g) const {
+  for (int i = 0; i < size(); ++i) {
+    const Vector3d u = displacement(i, x), force = contacts_[i].force * ratio(u.norm()) * u;
+    for (int k = 0; k < 4; ++k)
+      if (contacts_[i].vertices[k] >= 0) g.row(contacts_[i].vertices[k]) += contacts_[i].c[k] * force;
+  }
+  return value(x);
+}
+
+Stencils LaggedFriction::stencils() const {
+  Stencils result(size(), 4);
+  for (int i = 0; i < size(); ++i)
+    for (int k = 0; k < 4; ++k) result(i, k) = contacts_[i].vertices[k];
+  return result;
+}
+
+void LaggedFriction::add_hessian(const Positions& x, Projection, BlockSink& sink) const {
+  for (int i = 0; i < size(); ++i) {
+    const FrictionContact& contact = contacts_[i];
+    const Eigen::Matrix3d h = stiffness(i, displacement(i, x));
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a <= b; ++a) {
+        if (contact.vertices[a] < 0 || contact.vertices[b] < 0) continue;
+        const Eigen::Matrix3d block = contact.c[a] * contact.c[b] * h;
+        sink.add(i, a, b, block.data());
+      }
+  }
+}
+
+template <class DisplacementOf>
+TangentialDisplacements LaggedFriction::collect(const DisplacementOf& displacement_of_contact) const {
+  TangentialDisplacements all;
+  all.reserve(contacts_.size());
+  for (int i = 0; i < size(); ++i) all.push_back({contacts_[i].key, displacement_of_contact(i)});
+  std::ranges::sort(all, {}, &TangentialDisplacement::contact);
+  return all;
+}
+
+TangentialDisplacements LaggedFriction::tangential_displacements(const Positions& x) const {
+  return collect([&](int i) {
+    const Vector3d u = displacement(i, x);
+    return Vector3d(std::min(1.0, epsilon_ / u.norm()) * u);
+  });
+}
+
+TangentialDisplacements LaggedFriction::advected_tangential_displacements(
+    const Positions& x, const Positions& obstacle_motion) const {
+  return collect([&](int i) {
+    const Vector3d u = displacement(i, x);
+    if (!is_with_obstacle(contacts_[i])) return u;
+    return Vector3d(u - tangential(i, position(contacts_[i], obstacle_motion)));
+  });
+}
+
+Vector3d LaggedFriction::tangential(int i, const Vector3d& u) const {
+  const Vector3d& n = contacts_[i].normal;
+  return u - n.dot(u) * n;
+}
+
+Vector3d LaggedFriction::displacement(int i, const Positions& x) const {
+  return tangential(i, position(contacts_[i], x) - origin_[i]);
+}
+
+double LaggedFriction::potential(int i, double y) const {
+  const double q = y / epsilon_;
+  return contacts_[i].force * (q < 1 ? y * q * (1 - q / 3) : y - epsilon_ / 3);
+}
+
+/// f₁(y) / y
+double LaggedFriction::ratio(double y) const { return y < epsilon_ ? (2 - y / epsilon_) / epsilon_ : 1 / y; }
+
+/// f₁/y (I - n nᵀ) + (f₁/y)' / y u uᵀ; symmetric, so row- and column-major agree.
+Eigen::Matrix3d LaggedFriction::stiffness(int i, const Vector3d& u) const {
+  const Vector3d& n = contacts_[i].normal;
+  const double y = u.norm(),
+               along = y < epsilon_ ? (y > 0 ? -1 / (epsilon_ * epsilon_ * y) : 0) : -1 / (y * y * y);
+  return contacts_[i].force *
+         (ratio(y) * (Eigen::Matrix3d::Identity() - n * n.transpose()) + along * u * u.transpose());
+}
+
+std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
+                                                      const Positions& reference,
+                                                      const TangentialDisplacements& displacements) {
+  const auto* frictional = dynamic_cast<const FrictionalCollisions*>(&collisions);
+  if (!frictional) return nullptr;
+  FrictionContacts groups;
+  frictional->append_friction_contacts(groups);
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  if (groups.empty()) return nullptr;
+  return std::make_unique<const LaggedFriction>(std::move(groups), reference, displacements,
+                                                frictional->friction_smoothing_distance());
+}
+
+}  // namespace drape

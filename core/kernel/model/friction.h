@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/kernel/model/energy.h"
+
+namespace drape {
+
+class Collisions;
+
+/// Identifies a contact of one contact model from one state to the next.
+using ContactKey = std::array<int, 5>;
+
+/// Tangential displacement u of a contact's two sides since the contact began to stick (Li et al. 2020).
+struct TangentialDisplacement {
+  ContactKey contact;
+  Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
+};
+
+/// Ascending by contact, without duplicates.
+using TangentialDisplacements = std::vector<TangentialDisplacement>;
+
+/// A collision as friction needs it. Σ c_k x_k is the position of one side relative to the other.
+struct FrictionContact {
+  ContactKey key = {};
+  std::array<int, 4> vertices;  ///< of the cloth; -1 for an obstacle's
+  Eigen::Vector4d c = Eigen::Vector4d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length
+  double force = 0;                                  ///< μ times the normal force [N]
+};
+
+/// Friction contacts in groups whose energies are summed apart: one for each part of the collisions.
+using FrictionContacts = std::vector<std::vector<FrictionContact>>;
+
+/// Optional interface of Collisions (core/kernel/model/contact_model.h) with normal forces that friction acts
+/// on.
+class FrictionalCollisions {
+ public:
+  virtual ~FrictionalCollisions() = default;
+  /// Appends the contacts with friction, in groups.
+  virtual void append_friction_contacts(FrictionContacts& groups) const = 0;
+  /// ε_v h, below which friction is smoothed [m].
+  virtual double friction_smoothing_distance() const = 0;
+};
+
+/// The lagged friction potential D = Σ force f₀(|u|) (Li et al. 2020, eq. 14 and 15), a value. u is the
+/// tangential part of s + Σ c_k (x_k - reference_k), with s the contact's stored displacement, 0 for a new
+/// contact. f₀(0) = 0 and f₀' = f₁, f₁(y) = 2y/ε - (y/ε)² below ε, 1 above. The Hessian is positive
+/// semidefinite without projection.
+///
+/// Departure from the paper: there s = 0, and a cloth at rest creeps by up to ε_v h in each step. With s,
+/// sticking contacts keep their friction force.
+class LaggedFriction final : public BoundEnergy {
+ public:
+  /// Displacements are measured from `reference` (n×3) [m]; `displacements` are added to those of the
+  /// contacts that they name.
+  LaggedFriction(FrictionContacts groups, const Positions& reference,
+                 const TangentialDisplacements& displacements, double friction_smoothing_distance);
+
+  double value(const Positions& x) const override;
+  double add_gradient(const Positions& x, Positions& g) const override;
+  Stencils stencils() const override;
+  void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override;
+
+  /// Each contact's tangential displacement at x. Its length is limited to the friction smoothing distance:
+  /// the next step then starts with the same friction forces.
+  TangentialDisplacements tangential_displacements(const Positions& x) const;
+  /// The same without the limit, relative to obstacles that have moved: contacts with obstacles subtract the
+  /// tangential part of `obstacle_motion` (n×3) [m], the obstacle's motion at each vertex.
+  TangentialDisplacements advected_tangential_displacements(const Positions& x,
+                                                            const Positions& obstacle_motion) const;
+
+ private:
+  int size() const { return static_cast<int>(contacts_.size()); }
+  template <class DisplacementOf>
+  TangentialDisplacements collect(const DisplacementOf& displacement_of_contact) const;
+  Eigen::Vector3d tangential(int i, const Eigen::Vector3d& u) const;
+  Eigen::Vector3d displacement(int i, const Positions& x) const;
+  double potential(int i, double y) const;
+  double ratio(double y) const;
+  Eigen::Matrix3d stiffness(int i, const Eigen::Vector3d& u) const;
+
+  std::vector<FrictionContact> contacts_;
+  std::vector<int> group_ends_;
+  std::vector<Eigen::Vector3d> origin_;
+  double epsilon_;
+};
+
+/// The friction of these collisions with the normal forces and tangents of their state, as LaggedFriction's
+/// constructor describes. Null without friction.
+std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
+                                                      const Positions& reference,
+                                                      const TangentialDisplacements& displacements);
+
+}  // namespace drape

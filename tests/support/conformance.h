@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/folders.h"
+#include "tests/support/registry.h"
+
+inline bool declares(const drape::RegistryEntry& entry, const std::string& parameter) {
+  return std::ranges::any_of(entry.schema.parameters,
+                             [&](const drape::Parameter& p) { return p.name == parameter; });
+}
+
+/// The parameters in plugins/<kind>/<name>/conformance.yaml, with which a plugin asks to be tested. Empty
+/// without the file.
+inline std::string conformance_parameters(const drape::RegistryEntry& entry) {
+  std::ifstream file(std::filesystem::path(folders::source()) / "plugins" / entry.kind / entry.name /
+                     "conformance.yaml");
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The config of a plugin with its own parameters, and those of `common` that it declares.
+inline std::string conformance_config(const drape::RegistryEntry& entry, const std::string& own,
+                                      const std::vector<std::pair<std::string, std::string>>& common = {}) {
+  std::string text = "{type: " + entry.name;
+  for (const auto& [name, value] : common)
+    if (declares(entry, name)) text += ", " + name + ": " + value;
+  if (own.empty()) return text + "}";
+  // Indented, as YAML asks of what belongs to a key.
+  return text + ",\n  " + std::regex_replace(own, std::regex("\n"), "\n  ") + "}";
+}
