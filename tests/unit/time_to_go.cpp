@@ -82,7 +82,7 @@ std::string line_after(Progress& progress, const IterationRow& row) {
 }  // namespace
 
 TEST_CASE("The progress line shows how far a level is from its tolerance") {
-  Progress progress(1e-4, 3, true);
+  Progress progress(1e-4, 3, Verbosity::quiet);
   progress.method_started("pcs");
   progress.level_started(1);
   CHECK(line_after(progress, row_of(0, 1)) ==
@@ -96,7 +96,7 @@ TEST_CASE("The progress line shows how far a level is from its tolerance") {
 
 TEST_CASE("Under a schedule the progress line shows which increment of how many, and of what") {
   Forty increments;
-  Progress progress(1e-4, 3, true, &increments, {"pins.0.translate"});
+  Progress progress(1e-4, 3, Verbosity::quiet, &increments, {"pins.0.translate"});
   progress.method_started("newton");
   progress.level_started(1);
   CHECK(
@@ -110,7 +110,8 @@ TEST_CASE("Under a schedule the progress line shows which increment of how many,
       "newton    level 1/2 increment 20/40 of pins.0.translate ████████░░░░░░░░ step 100  residual 1.00e-02  "
       "energy -0.25 J");
 
-  Progress of_many(1e-4, 3, true, &increments, {"pins.0.translate", "material.density", "contact.friction"});
+  Progress of_many(1e-4, 3, Verbosity::quiet, &increments,
+                   {"pins.0.translate", "material.density", "contact.friction"});
   of_many.level_started(1);
   CHECK_THAT(line_after(of_many, row_of(0, 1, 20)),
              Catch::Contains(" increment 20/40 of pins.0.translate and 2 more "));
