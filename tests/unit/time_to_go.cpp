@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/app/run/progress.h"
 
@@ -92,6 +93,26 @@ TEST_CASE("The progress line shows how far a level is from its tolerance") {
   // What has been reached stays, though the residual rises for a while.
   CHECK(line_after(progress, row_of(8, 10)) ==
         "pcs       level 1/2 ████████░░░░░░░░ step 8    residual 1.00e+01  energy -0.25 J");
+}
+
+TEST_CASE("A line of its own has the whole iteration, contacts and gap where there are any") {
+  Progress progress(1e-4, 3, Verbosity::quiet);
+  progress.method_started("pcs");
+  IterationRow row = row_of(7, 1e-2);
+  row.iteration = 9;
+  row.decrement = 2e-3;
+  row.step_size = 0.5;
+  row.step_length = 1;
+  const std::string plain =
+      "pcs level 1/2 step 7 iteration 9  residual 1.00e-02  decrement 2.00e-03 m/s  energy -0.25 J  "
+      "step size 5.00e-01 s  step length 1.00e+00";
+  CHECK(progress.details(row) == plain);
+  row.contacts = 3;
+  row.smallest_gap = 1e-4;
+  CHECK(progress.details(row) == plain + "  contacts 3  smallest gap 1.00e-04 m");
+  row.contacts = 0;
+  row.smallest_gap = std::numeric_limits<double>::infinity();
+  CHECK(progress.details(row) == plain + "  contacts 0");
 }
 
 TEST_CASE("Under a schedule the progress line shows which increment of how many, and of what") {
