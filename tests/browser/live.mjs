@@ -9,7 +9,7 @@ import {browser, contactConfig, drawnShare, openPage, run, scratch, start, until
 const folder = scratch();
 // Small steps for ever: at larger ones a level stalls before long.
 const endless = ['force_tolerance=1e-300', 'max_steps=1000000', 'step_size=2e-3', 'step_growth=1']
-  .flatMap(set => ['--set', 'newton.' + set]);
+  .flatMap(set => ['--set', 'newton.' + set]).concat('--method', 'all');
 let chrome;
 
 before(async () => { chrome = await browser(); });

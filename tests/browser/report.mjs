@@ -10,7 +10,7 @@ const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.h
 let chrome;
 
 before(async () => {
-  run(folder, 'run', contactConfig, '--out', 'out', '--quiet', '--threads', '1', '--set', 'snapshots=0');
+  run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet', '--threads', '1', '--set', 'snapshots=0');
   chrome = await browser();
 });
 after(() => chrome.close());

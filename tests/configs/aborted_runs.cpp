@@ -48,8 +48,9 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
     const Scratch folder;
     write_experiment(folder, "{type: failing, level: 1, throws: " + throws + "}");
     const bool reported = throws == "error";
-    const Ended ended = drape_with(std::string("run e.yaml --out out") + (reported ? "" : " --no-report"),
-                                   folder.path, with_failing);
+    const Ended ended =
+        drape_with(std::string("run e.yaml --out out --method all") + (reported ? "" : " --no-report"),
+                   folder.path, with_failing);
     CHECK(ended.exit_code == drape::exit_not_converged);
     CHECK_THAT(ended.err, Contains("odd       level 1/1 failed       " + cause + "\n"));
 
@@ -83,7 +84,8 @@ TEST_CASE("An energy that throws fails every method that evaluates it, where it 
   const Scratch folder;
   SECTION("while a level is solved") {
     write_experiment(folder, "", "{type: failing, level: 1, gradients: 5}");
-    const Ended ended = drape_with("run e.yaml --out out --no-report", folder.path, with_failing);
+    const Ended ended =
+        drape_with("run e.yaml --out out --method all --no-report", folder.path, with_failing);
     CHECK(ended.exit_code == drape::exit_not_converged);
     const Json all = results_in(folder);
     CHECK(all["complete"] == true);
@@ -114,7 +116,8 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     INFO(gone);
     const Scratch folder;
     write_experiment(folder, "{type: failing, level: 1, command: rm -r " + std::string(gone) + "}");
-    const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path, with_failing);
+    const Ended ended =
+        drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path, with_failing);
     CHECK(ended.exit_code == drape::exit_aborted);
     CHECK_THAT(ended.err, StartsWith("error: cannot write out/levels/odd_l1.ply: No such file or directory"));
     CHECK_THAT(ended.err, Contains("; the run is aborted. "));
@@ -140,7 +143,7 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string arguments =
-      " run e.yaml --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
+      " run e.yaml --method all --quiet --no-report --threads 1 --set cloth.columns=24 --set cloth.rows=24 "
       "--set newton.max_steps=3 --set snapshots=0 --out ";
   REQUIRE(drape_with(arguments + "whole", folder.path).exit_code == drape::exit_not_converged);
   // A limit on every file's size stands for the disk. It falls between what is written at the beginning and
@@ -210,7 +213,8 @@ TEST_CASE("Names that the file system does not allow are refused before the firs
   folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  \"a\xff\": {type: pcs}\n"));
   refused("run e.yaml --out out", "error: ");
   folder.write("e.yaml", replaced(small_experiment(), "  pcs: {}\n", "  " + longest + ": {type: pcs}\n"));
-  CHECK(drape_with("run e.yaml --quiet --no-report --out out", folder.path).exit_code == drape::exit_done);
+  CHECK(drape_with("run e.yaml --method all --quiet --no-report --out out", folder.path).exit_code ==
+        drape::exit_done);
 }
 
 TEST_CASE("The exit codes are in every help") {

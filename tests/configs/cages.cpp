@@ -33,7 +33,7 @@ double nearest_to_centre(const std::filesystem::path& ply) {
 TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
   const Scratch folder;
   folder.write("e.yaml", experiment);
-  const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);
+  const Ended ended = drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));

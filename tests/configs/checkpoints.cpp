@@ -113,7 +113,7 @@ std::unique_ptr<Scene> scene_of(const Experiment& experiment) {
 RunOptions silent(const fs::path& out) {
   RunOptions options;
   options.out = out;
-  options.quiet = true;
+  options.verbosity = Verbosity::quiet;
   options.report = false;
   return options;
 }
@@ -289,7 +289,8 @@ namespace {
 
 /// A run of the sheets in its folder `out`, with a checkpoint at every step.
 const std::string sheets_run =
-    "run e.yaml --out out --quiet --no-report --threads 1 --checkpoint 0 --set newton.max_steps=8 "
+    "run e.yaml --out out --method all --quiet --no-report --threads 1 --checkpoint 0 --set "
+    "newton.max_steps=8 "
     "--set start.translate=[-0.2,-0.2,0.1015]";
 const std::string go_on = "run --resume out --quiet --no-report --threads 1 --checkpoint 0";
 

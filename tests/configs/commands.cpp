@@ -44,11 +44,72 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
   CHECK_THAT(shown_by("run --help"), Contains("--overwrite"));
   CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
   CHECK(refused_by("simulate") ==
-        "error: there is no command \"simulate\"; the commands are run, check, sweep, list, describe, "
-        "report, compare, table, table1, schema, reference\n");
+        "error: there is no command \"simulate\"; the commands are new, check, run, view, export, "
+        "report, compare, table, sweep, list, describe, schema, help, table1, reference\n");
   CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
   CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));
+}
+
+TEST_CASE("help shows a command's options and an example; developers' commands are listed apart") {
+  CHECK(shown_by("help") == shown_by("--help"));
+  const std::string all = shown_by("help"), heading = "\nFor developers of drape:\n  table1 ";
+  CHECK(all.find("\n  help ") < all.find(heading));
+  CHECK(all.find(heading) < all.find("\n  reference "));
+  CHECK(all.find("\n  reference ") != std::string::npos);
+  for (const std::string command : {"new", "check", "run", "view", "export", "report", "compare", "table",
+                                    "sweep", "list", "describe", "schema", "help", "table1", "reference"}) {
+    INFO(command);
+    const std::string page = shown_by("help " + command);
+    CHECK(page == shown_by(command + " --help"));
+    CHECK_THAT(page, Contains("\nExample:\n  drape " + command + " ") && Contains("\nExit codes:\n"));
+  }
+  CHECK(refused_by("help rnu") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
+  CHECK(refused_by("run e.yaml --methods pcs") ==
+        "error: there is no option --methods; did you mean --method? See `drape run --help`\n");
+  CHECK(refused_by("export out --to a.glb --frame") ==
+        "error: there is no option --frame; did you mean --frames? See `drape export --help`\n");
+}
+
+TEST_CASE("new writes an experiment that passes check and runs, and overwrites nothing") {
+  const Scratch folder;
+  const Ended made = drape_with("new", folder.path);
+  CHECK(made.err == "");
+  CHECK(made.out == "written: first.yaml\nnext: drape run first.yaml\n");
+  const std::string text = text_of(folder / "first.yaml");
+  CHECK_THAT(text, StartsWith("# ") && Contains("drape run first.yaml") && Contains("\nname: \"first\"\n"));
+  const Ended check = drape_with("check first.yaml", folder.path);
+  CHECK(check.err == "");
+  CHECK(check.out.find("first.yaml: valid. Vertices by level: 900, 3481, 13689\n") == 0);
+  const Ended run = drape_with(
+      "run first.yaml --quiet --no-report --levels 1 --set cloth.columns=16 "
+      "--set cloth.rows=16 --set newton.force_tolerance=1e-2",
+      folder.path);
+  CHECK(run.err == "");
+  CHECK(run.exit_code == 0);
+  CHECK(fs::exists(folder / "results/first/levels/pcs_l0.ply"));
+
+  const Ended again = drape_with("new first", folder.path);  // the extension is added
+  CHECK(again.exit_code == 2);
+  CHECK(again.err == "error: first.yaml: exists already; name another file, as in drape new first_2.yaml\n");
+  CHECK(text_of(folder / "first.yaml") == text);
+  CHECK(drape_with("new null.yml", folder.path).exit_code == 0);
+  CHECK(drape_with("check null.yml", folder.path).exit_code == 0);
+  CHECK_THAT(drape_with("new 'a b.yaml'", folder.path).err,
+             Contains("\"a b\" names files: write it with letters"));
+  CHECK_FALSE(fs::exists(folder / "a b.yaml"));
+}
+
+TEST_CASE("an obstacle that is missing from data/ says how to make it") {
+  const Scratch folder;
+  fs::create_directory(folder / "configs");
+  folder.write("configs/e.yaml", replaced(small_experiment(), "levels: 2\n",
+                                          "levels: 2\ncontact: {type: ipc, obstacles: [{name: bunny, file: "
+                                          "../data/bunny.ply}]}\n"));
+  const Ended ended = drape_with("check configs/e.yaml", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK_THAT(ended.err,
+             Contains("bunny.ply: No such file or directory") && EndsWith("; `make data` makes it\n"));
 }
 
 TEST_CASE("list shows every plugin, or one kind's") {

@@ -97,7 +97,8 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
   const Scratch folder;
   folder.write("e.yaml", contact_experiment());
   const Ended ended = drape_with(
-      "run e.yaml --out out --set check_intersections=every_step --set start.translate=[-0.2,-0.2,0.12] "
+      "run e.yaml --out out --method all --set check_intersections=every_step --set "
+      "start.translate=[-0.2,-0.2,0.12] "
       "--set newton.step_size=0.02" +
           quiet,
       folder.path);
@@ -180,8 +181,9 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
   folder.write("e.yaml",
                replaced(small_experiment(), "levels: 2",
                         "levels: 2\ncontact: {type: blind, height: -0.05}\ncheck_intersections: every_step"));
-  const Ended ended = drape_with("run e.yaml --out out --set newton.step_size=0.02" + quiet, folder.path,
-                                 std::string("DRAPE_PLUGIN_PATH=") + folders::test_plugins() + "/blind");
+  const Ended ended =
+      drape_with("run e.yaml --out out --method all --set newton.step_size=0.02" + quiet, folder.path,
+                 std::string("DRAPE_PLUGIN_PATH=") + folders::test_plugins() + "/blind");
   CHECK(ended.exit_code == 1);
   CHECK(ended.err == "");
   const Json all = Json::parse(text_of(folder / "out/results.json"));

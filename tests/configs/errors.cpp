@@ -91,8 +91,8 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const std::string reference = " --set reference.force_tolerance=1e-7";
-  const Ended ended =
-      drape_with("run e.yaml --out out --threads 1 --quiet --no-report" + reference, folder.path);
+  const Ended ended = drape_with(
+      "run e.yaml --out out --method all --threads 1 --quiet --no-report" + reference, folder.path);
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
   const Json all = Json::parse(text_of(folder / "out/results.json"));
@@ -148,7 +148,8 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
   CHECK(std::stod(rows.back().at("reference_rms")) < 1e-2);
 
   SECTION("and another run takes the reference from its folder") {
-    REQUIRE(drape_with("run e.yaml --out next --threads 1 --quiet --no-report --set reference='{file: out}'",
+    REQUIRE(drape_with("run e.yaml --out next --method all --threads 1 --quiet --no-report --set "
+                       "reference='{file: out}'",
                        folder.path)
                 .exit_code == 0);
     CHECK(text_of(folder / "next/reference.ply") == text_of(folder / "out/reference.ply"));
@@ -170,7 +171,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   const Hierarchy& hierarchy = small.scene->hierarchy;
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
-  std::string command = "run e.yaml --out out --threads 1 --quiet --no-report";
+  std::string command = "run e.yaml --out out --method all --threads 1 --quiet --no-report";
   for (const auto& [key, value] : changed) command += " --set '" + key + "=" + value + "'";
   REQUIRE(drape_with(command, folder.path).exit_code == 0);
   const Json all = Json::parse(text_of(folder / "out/results.json"))["methods"];
@@ -218,9 +219,9 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const auto run = [&](const std::string& options) {
-    const Ended ended =
-        drape_with("run e.yaml --overwrite --out out --threads 1 --quiet --set reference=lowest " + options,
-                   folder.path);
+    const Ended ended = drape_with(
+        "run e.yaml --overwrite --out out --method all --threads 1 --quiet --set reference=lowest " + options,
+        folder.path);
     INFO(ended.err);
     REQUIRE(ended.exit_code <= 1);
     return Json::parse(text_of(folder / "out/results.json"));
@@ -264,7 +265,8 @@ TEST_CASE("a method that does not converge has errors against the reference alon
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   REQUIRE(
-      drape_with("run e.yaml --out out --quiet --no-report --set methods.pcs.newton.max_steps=3", folder.path)
+      drape_with("run e.yaml --out out --method all --quiet --no-report --set methods.pcs.newton.max_steps=3",
+                 folder.path)
           .exit_code == 1);
   int pcs = 0;
   for (const Row& row : rows_of(folder / "out/errors.csv")) {

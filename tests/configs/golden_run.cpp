@@ -50,7 +50,8 @@ const Golden golden[] = {
 TEST_CASE("the golden run: energies to 1e-6, measures of consistency to 1 %") {
   const Scratch folder;
   const Ended ended =
-      drape_with("run " + folders::source() + "/tests/configs/data/golden.yaml --out out --quiet --no-report",
+      drape_with("run " + folders::source() +
+                     "/tests/configs/data/golden.yaml --out out --method all --quiet --no-report",
                  folder.path);
   REQUIRE(ended.exit_code == 0);
   const auto methods = nlohmann::json::parse(text_of(folder / "out/results.json")).at("methods");

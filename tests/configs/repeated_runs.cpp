@@ -12,8 +12,8 @@ namespace {
 
 /// The bytes of every level's mesh, by name, after some steps.
 std::map<std::string, std::string> meshes_of(const Scratch& folder, const std::string& options, int threads) {
-  const Ended ended = drape_with("run e.yaml --out out --overwrite --quiet --no-report " + options +
-                                     " --threads " + std::to_string(threads),
+  const Ended ended = drape_with("run e.yaml --out out --method all --overwrite --quiet --no-report " +
+                                     options + " --threads " + std::to_string(threads),
                                  folder.path);
   INFO(ended.err);
   REQUIRE(ended.exit_code == 1);

@@ -20,7 +20,7 @@ const fs::path& finished_run() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", small_experiment());
-    const Ended ended = drape_with("run e.yaml --out out --threads 1 --levels 3", folder.path);
+    const Ended ended = drape_with("run e.yaml --out out --method all --threads 1 --levels 3", folder.path);
     INFO(ended.err);
     REQUIRE(ended.exit_code == 0);
     REQUIRE(ended.out == "report: out/report.html\n");
@@ -212,8 +212,8 @@ TEST_CASE("the report exists, and no incomplete file") {
 TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
   const Scratch folder;
   const std::string config = (finished_run() / "config.yaml").string();
-  REQUIRE(drape_with("run " + config + " --out out --threads 1 --quiet --no-report", folder.path).exit_code ==
-          0);
+  REQUIRE(drape_with("run " + config + " --out out --method all --threads 1 --quiet --no-report", folder.path)
+              .exit_code == 0);
   CHECK(text_of(folder / "out/config.yaml") == text_of(config));
   for (const std::string& method : methods)
     for (int l = 0; l < levels; ++l) {
@@ -233,7 +233,8 @@ TEST_CASE("the saved config has the defaults of omitted parameters") {
 TEST_CASE("a metric that throws leaves a note, and the run continues") {
   const Scratch folder;
   folder.write("e.yaml", replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
-  const Ended ended = drape_with("run e.yaml --out out --threads 1 --quiet --no-report", folder.path);
+  const Ended ended =
+      drape_with("run e.yaml --out out --method all --threads 1 --quiet --no-report", folder.path);
   CHECK(ended.exit_code == 1);
   CHECK(ended.err == "");
   const Json all = Json::parse(text_of(folder / "out/results.json"));

@@ -24,10 +24,10 @@ const fs::path& sweep() {
     for (const std::string matrix : {"galerkin", "coarse"})
       for (int seed = 1; seed <= 3; ++seed) {
         const std::string run = "runs/matrix=" + matrix + "/seed_" + std::to_string(seed);
-        const Ended ended = drape_with("run e.yaml --out sweep/" + run + " --threads 1 --quiet --no-report" +
-                                           " --set methods.pcs.hessian=" + matrix +
-                                           " --set start.seed=" + std::to_string(seed),
-                                       folder.path);
+        const Ended ended = drape_with(
+            "run e.yaml --out sweep/" + run + " --method all --threads 1 --quiet --no-report" +
+                " --set methods.pcs.hessian=" + matrix + " --set start.seed=" + std::to_string(seed),
+            folder.path);
         INFO(ended.err);
         REQUIRE(ended.exit_code == 0);
         runs.push_back(

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "core/app/run/progress.h"
 
@@ -83,7 +84,7 @@ std::string line_after(Progress& progress, const IterationRow& row) {
 }  // namespace
 
 TEST_CASE("The progress line shows how far a level is from its tolerance") {
-  Progress progress(1e-4, 3, true);
+  Progress progress(1e-4, 3, Verbosity::quiet);
   progress.method_started("pcs");
   progress.level_started(1);
   CHECK(line_after(progress, row_of(0, 1)) ==
@@ -95,9 +96,29 @@ TEST_CASE("The progress line shows how far a level is from its tolerance") {
         "pcs       level 1/2 ████████░░░░░░░░ step 8    residual 1.00e+01  energy -0.25 J");
 }
 
+TEST_CASE("A line of its own has the whole iteration, contacts and gap where there are any") {
+  Progress progress(1e-4, 3, Verbosity::quiet);
+  progress.method_started("pcs");
+  IterationRow row = row_of(7, 1e-2);
+  row.iteration = 9;
+  row.decrement = 2e-3;
+  row.step_size = 0.5;
+  row.step_length = 1;
+  const std::string plain =
+      "pcs level 1/2 step 7 iteration 9  residual 1.00e-02  decrement 2.00e-03 m/s  energy -0.25 J  "
+      "step size 5.00e-01 s  step length 1.00e+00";
+  CHECK(progress.details(row) == plain);
+  row.contacts = 3;
+  row.smallest_gap = 1e-4;
+  CHECK(progress.details(row) == plain + "  contacts 3  smallest gap 1.00e-04 m");
+  row.contacts = 0;
+  row.smallest_gap = std::numeric_limits<double>::infinity();
+  CHECK(progress.details(row) == plain + "  contacts 0");
+}
+
 TEST_CASE("Under a schedule the progress line shows which increment of how many, and of what") {
   Forty increments;
-  Progress progress(1e-4, 3, true, &increments, {"pins.0.translate"});
+  Progress progress(1e-4, 3, Verbosity::quiet, &increments, {"pins.0.translate"});
   progress.method_started("newton");
   progress.level_started(1);
   CHECK(
@@ -111,7 +132,8 @@ TEST_CASE("Under a schedule the progress line shows which increment of how many,
       "newton    level 1/2 increment 20/40 of pins.0.translate ████████░░░░░░░░ step 100  residual 1.00e-02  "
       "energy -0.25 J");
 
-  Progress of_many(1e-4, 3, true, &increments, {"pins.0.translate", "material.density", "contact.friction"});
+  Progress of_many(1e-4, 3, Verbosity::quiet, &increments,
+                   {"pins.0.translate", "material.density", "contact.friction"});
   of_many.level_started(1);
   CHECK_THAT(line_after(of_many, row_of(0, 1, 20)),
              Catch::Contains(" increment 20/40 of pins.0.translate and 2 more "));

@@ -14,10 +14,22 @@ std::string positive_integer(const std::string& text) {
   return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
 }
 
+namespace {
+
+/// The remedy for a missing mesh of the folder data/, which the project fetches and does not hold.
+std::string remedy(const std::string& message) {
+  const std::size_t at = message.find("data/");
+  const bool in_data =
+      at != std::string::npos && (at == 0 || message[at - 1] == '/' || message[at - 1] == ' ');
+  return in_data && message.find("No such file") != std::string::npos ? "; `make data` makes it" : "";
+}
+
+}  // namespace
+
 int report_errors(const ConfigErrors& errors) {
   constexpr std::size_t most_listed = 40;
   for (std::size_t k = 0; k < std::min(errors.size(), most_listed); ++k)
-    std::cerr << "error: " << errors[k].text() << "\n";
+    std::cerr << "error: " << errors[k].text() << remedy(errors[k].message) << "\n";
   if (errors.size() > most_listed) std::cerr << "error: and " << errors.size() - most_listed << " more\n";
   return exit_bad_input;
 }

@@ -1,13 +1,18 @@
 // The `drape` command. Its exit codes are in exit_codes.h.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "core/app/cli/config_arguments.h"
+#include "core/app/cli/export_command.h"
+#include "core/app/cli/help.h"
+#include "core/app/cli/new_command.h"
 #include "core/app/cli/run_command.h"
 #include "core/app/cli/sweep_command.h"
+#include "core/app/cli/view_command.h"
 #include "core/app/experiment/describe.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
@@ -133,61 +138,36 @@ nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
   return schema;
 }
 
-void require_command(const CLI::App& app, const std::string& word) {
-  std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands({})) {
-    if (command->get_name() == word) return;
-    if (!command->get_group().empty()) commands.push_back(command->get_name());
-  }
-  const std::string near = nearest_word(word, commands);
-  throw std::runtime_error(
-      "there is no command \"" + excerpt(word) + "\"; " +
-      (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
-}
-
-/// The footer of every help page.
-std::string exit_codes_help() {
-  std::string text = "Exit codes:\n";
-  for (const ExitCode& code : exit_codes) {
-    const std::string number = std::to_string(code.code);
-    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
-  }
-  return text;
-}
-
 int main_checked(int argc, char** argv) {
   CLI::App app("drape: progressive cloth quasistatics", "drape");
   app.footer(exit_codes_help());
   app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
   app.require_subcommand(1);
-  app.failure_message([](const CLI::App* app, const CLI::Error& error) {
-    const std::string command =
-        app->get_subcommands().empty() ? "" : " " + app->get_subcommands()[0]->get_name();
-    return "error: " + printable(error.what()) + "; see `drape" + command + " --help`\n";
-  });
+  app.failure_message([](const CLI::App* app, const CLI::Error& error) { return refusal(*app, error); });
 
-  const RunCommand run(app);
+  const NewCommand new_command(app);
 
   ConfigArguments check_arguments;
   CLI::App* check_command = app.add_subcommand("check", "check an experiment without running it");
+  show_example(*check_command, "drape check configs/sphere.yaml --set newton.step_size=0.1");
   check_arguments.add_to(*check_command);
 
-  const SweepCommand sweep(app);
+  const RunCommand run(app);
+  const ViewCommand view(app);
+  const ExportCommand export_command(app);
 
-  std::string kind, plugin, out, run_folder, schema_kind = "experiment";
-  CLI::App* list_command = app.add_subcommand("list", "list plugins");
-  list_command->add_option("kind", kind, "only this kind");
-  CLI::App* describe_command =
-      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
-  describe_command->add_option("plugin", plugin, "name of the plugin")->required();
+  std::string kind, plugin, help_on, out, run_folder, schema_kind = "experiment";
   std::vector<std::string> report_folders, compared, bounds, columns;
   TableFormat format = TableFormat::markdown;
   CLI::App* report_command =
       app.add_subcommand("report", "write the report of a run, of several runs or of a sweep");
+  show_example(*report_command, "drape report results/sphere results/cube -o results/both.html");
   report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
-  report_command->add_option("--out", out, "page of several runs (default: report.html in a sweep's folder)");
+  report_command->add_option("-o,--out", out,
+                             "page of several runs (default: report.html in a sweep's folder)");
   CLI::App* compare_command = app.add_subcommand(
       "compare", "compare two runs or sweeps: what became faster, slower, better or worse");
+  show_example(*compare_command, "drape compare results/before results/after --bound seconds=1.1");
   compare_command->add_option("runs", compared, "the former and the new one")->required()->expected(2);
   compare_command
       ->add_option("--bound", bounds,
@@ -196,6 +176,7 @@ int main_checked(int argc, char** argv) {
       ->allow_extra_args(false);
   CLI::App* table_command = app.add_subcommand(
       "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass");
+  show_example(*table_command, "drape table results/sphere --columns method,outcome,seconds,energy");
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
   table_command->add_option("--format", format, "md, csv or json")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
@@ -203,30 +184,51 @@ int main_checked(int argc, char** argv) {
   table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
       ->delimiter(',')
       ->allow_extra_args(false);
-  CLI::App* table1_command =
-      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
-  table1_command->add_option("folder", run_folder, "results folder")->required();
+  const SweepCommand sweep(app);
+  CLI::App* list_command = app.add_subcommand("list", "list plugins");
+  show_example(*list_command, "drape list energy");
+  list_command->add_option("kind", kind, "only this kind");
+  CLI::App* describe_command =
+      app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
+  show_example(*describe_command, "drape describe strain_limit");
+  describe_command->add_option("plugin", plugin, "name of the plugin")->required();
   CLI::App* schema_command =
       app.add_subcommand("schema", "print the JSON Schema of experiments (or sweeps), for editors");
+  show_example(*schema_command, "drape schema > experiment.schema.json");
   schema_command->add_option("kind", schema_kind, "experiment or sweep")
       ->check(CLI::IsMember({"experiment", "sweep"}));
+  CLI::App* help_command = app.add_subcommand("help", "show a command's options and an example");
+  show_example(*help_command, "drape help run");
+  help_command->add_option("command", help_on, "the command");
+  CLI::App* table1_command =
+      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
+  for_developers(*table1_command);
+  show_example(*table1_command, "drape table1 results/sphere");
+  table1_command->add_option("folder", run_folder, "results folder")->required();
   CLI::App* reference_command =
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
+  for_developers(*reference_command);
+  show_example(*reference_command, "drape reference --readmes plugins");
   reference_command->add_option("--readmes", run_folder,
                                 "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
 
-  if (argc < 2) {
+  std::vector<std::string> words = command_words(argc, argv);
+  if (words.empty()) {
     std::cerr << app.help();
     return exit_bad_input;
   }
-  if (argv[1][0] != '-') require_command(app, argv[1]);
+  if (!words[0].starts_with("-")) require_command(app, words[0]);
+  std::reverse(words.begin(), words.end());  // as the parser takes them
   try {
-    app.parse(argc, argv);
+    app.parse(words);
     run.check();
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? exit_done : exit_bad_input;
   }
 
+  if (new_command.chosen()) return new_command.run();
+  if (view.chosen()) return view.run();
+  if (export_command.chosen()) return export_command.run();
   if (*report_command) {
     return report({report_folders.begin(), report_folders.end()}, out);
   }

@@ -5,8 +5,10 @@
 #include <sstream>
 #include <thread>
 
+#include "core/app/cli/help.h"
 #include "core/app/cli/stop_signals.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/method_choice.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/view/live_view.h"
@@ -16,17 +18,33 @@
 
 namespace drape {
 
+namespace {
+
+/// Says which methods a run left out because the user named none.
+void show_other_methods(const Experiment& experiment, const std::string& run) {
+  std::vector<std::string> others;
+  for (const auto& [name, solver] : experiment.methods)
+    if (name != run) others.push_back(name);
+  if (!others.empty())
+    std::cerr << "only " << run << " was run; --method all adds " << joined(others) << "\n";
+}
+
+}  // namespace
+
 RunCommand::RunCommand(CLI::App& app) {
   command_ = app.add_subcommand("run", "run an experiment and write its results and report");
+  show_example(*command_, "drape run configs/sphere.yaml --levels 3 --method all -o results/sphere");
   arguments_.add_to(*command_);
   arguments_.config_option->required(false);
   command_->add_option_function<std::string>(
-      "--out", [this](const std::string& folder) { options_.out = folder; },
+      "-o,--out", [this](const std::string& folder) { options_.out = folder; },
       "results folder (default: results/NAME)");
-  command_->add_option("--method", options_.methods, "run only these methods")
+  command_
+      ->add_option("--method", options_.methods,
+                   "methods to run, or all (default: pcs, or the experiment's only method)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command_->add_option("--threads", threads_, "threads (default: one per core)")->check(positive_integer);
+  command_->add_option("-j,--threads", threads_, "threads (default: one per core)")->check(positive_integer);
   command_->add_flag("--overwrite", options_.overwrite,
                      "replace the results of an earlier run in the folder");
   command_->add_option(
@@ -39,7 +57,14 @@ RunCommand::RunCommand(CLI::App& app) {
       ->add_option("--checkpoint", options_.checkpoint,
                    "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
       ->check(CLI::NonNegativeNumber);
-  command_->add_flag("--quiet", options_.quiet, "no progress on standard error");
+  CLI::Option* quiet = command_->add_flag_function(
+      "-q,--quiet", [this](std::int64_t) { options_.verbosity = Verbosity::quiet; },
+      "no progress on standard error");
+  command_
+      ->add_flag_function(
+          "-v,--verbose", [this](std::int64_t) { options_.verbosity = Verbosity::iterations; },
+          "a line on standard error for every iteration")
+      ->excludes(quiet);
   CLI::Option* show =
       command_->add_flag("--view", view_, "serve a live view of the run on 127.0.0.1; prints its address");
   command_->add_option("--port", port_, "port of the live view (default: any free one)")
@@ -94,7 +119,11 @@ int RunCommand::run_config(const Registry& registry) const {
   RunOptions options = options_;
   if (options.out.empty())
     options.out = std::filesystem::path("results") / loaded.experiment->parameters.name;
-  return run(*loaded.experiment, *loaded.scene, std::move(options), std::nullopt);
+  options.methods = chosen_methods(*loaded.experiment, options_.methods);
+  const int exit_code = run(*loaded.experiment, *loaded.scene, options, std::nullopt);
+  if (options_.methods.empty() && options.verbosity != Verbosity::quiet && exit_code < exit_by_signal)
+    show_other_methods(*loaded.experiment, options.methods[0]);
+  return exit_code;
 }
 
 /// For a complete run: checks its files and returns its exit code.

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "core/app/cli/config_arguments.h"
+#include "core/app/cli/help.h"
 #include "core/app/cli/stop_signals.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/files/machine.h"
@@ -55,11 +56,12 @@ SweepCommand::SweepCommand(CLI::App& app)
     : sweep_(
           app.add_subcommand("sweep", "run every variation of an experiment; resumes an interrupted sweep")),
       job_(app.add_subcommand("sweep-job", "executed by a sweep's jobs on a cluster")->group("")) {
+  show_example(*sweep_, "drape sweep configs/sweeps/sphere_ablation.yaml -j 2 --dry-run");
   sweep_->add_option("config", config_, "sweep file (YAML)")->required();
-  sweep_->add_option("--out", out_, "the sweep's folder (default: results/NAME)");
+  sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
       ->check(CLI::IsMember({"local", "slurm"}));
-  sweep_->add_option("--workers", workers_, "concurrent runs (default: number of cores)")
+  sweep_->add_option("-j,--workers", workers_, "concurrent runs (default: number of cores)")
       ->check(positive_integer);
   sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
       ->check(positive_integer);
@@ -72,6 +74,7 @@ SweepCommand::SweepCommand(CLI::App& app)
       ->check(positive_integer);
   sweep_->add_flag("--dry-run", dry_run_, "validate and list the runs without running any");
   sweep_->add_flag("--retry-failed", retry_failed_, "rerun failed runs");
+  sweep_->add_flag("-q,--quiet", quiet_, "no progress on standard error; failed runs are still listed");
   sweep_->add_flag("--report", report_, "write every run's report.html and its pictures");
   sweep_->add_flag("--wait", wait_, "with slurm: wait for the jobs and list the runs");
   sweep_->add_flag("--cancel", cancel_, "with slurm: cancel the sweep's jobs");
@@ -123,6 +126,7 @@ int SweepCommand::run_local(const Sweep& sweep, const SweepFolder& folder) const
   options.workers = workers_ ? workers_ : core_count() / options.threads;
   options.memory_limit = memory_limit_ * 1e9;
   options.report = report_;
+  options.quiet = quiet_;
   options.time_limit = sweep.parameters.time_limit.value_or(0);
   options.stop = [&] { return stop_signal() != 0; };
   folder.prepare(sweep, options.threads);

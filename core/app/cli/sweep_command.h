@@ -32,7 +32,7 @@ class SweepCommand {
   double memory_limit_ = 0;
   std::optional<int> most_levels_;
   bool dry_run_ = false, retry_failed_ = false, report_ = false, wait_ = false, cancel_ = false,
-       allow_memory_ = false;
+       allow_memory_ = false, quiet_ = false;
 };
 
 }  // namespace drape

@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/app/experiment/method_choice.h"
 #include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
@@ -386,6 +387,10 @@ class Maker {
       }
       ConfigNode resolved;
       check_name("method", name, written.where, errors_);
+      if (name == all_methods)
+        errors_.push_back({written.where,
+                           "\"all\" cannot name a method, since --method all runs every one; "
+                           "rename it"});
       if (!names.insert(name).second)
         errors_.push_back(
             {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
@@ -26,33 +27,6 @@ constexpr const char* section_open =
     "JavaScript.</p></noscript>\n"
     "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
     "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
-
-/// The snapshots of a level: float32 positions, one after the other.
-struct Snapshots {
-  std::string bytes;
-  Json iterations, seconds;
-  std::size_t count = 0;
-
-  Positions positions(std::size_t snapshot, Eigen::Index n) const {
-    using Floats = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
-    const auto* first = reinterpret_cast<const float*>(bytes.data()) + snapshot * 3 * n;
-    return Eigen::Map<const Floats>(first, n, 3).cast<double>();
-  }
-};
-
-Snapshots recorded_snapshots(const RunData& run, const Json& level, Eigen::Index n) {
-  if (!level.contains("snapshots") || !level["snapshots"].is_object()) return {};
-  const Json& entry = level["snapshots"];
-  Snapshots snapshots{read_file(run.folder / entry.at("file").get<std::string>()), entry.at("iterations"),
-                      entry.at("seconds")};
-  snapshots.count = snapshots.iterations.size();
-  if (snapshots.seconds.size() != snapshots.count || snapshots.bytes.size() != snapshots.count * n * 12)
-    throw std::runtime_error((run.folder / entry["file"].get<std::string>()).string() + ": holds " +
-                             std::to_string(snapshots.bytes.size()) + " bytes, not " +
-                             std::to_string(snapshots.count) + " snapshots of " + std::to_string(n) +
-                             " vertices");
-  return snapshots;
-}
 
 /// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
 /// state, which is always shown.
@@ -135,7 +109,7 @@ class ReportViewMaker {
   /// The recorded snapshots; empty, with a note, if they cannot be read.
   Snapshots snapshots_of(const Json& level, Eigen::Index n) {
     try {
-      return recorded_snapshots(run_, level, n);
+      return recorded_snapshots(run_.folder, level, n);
     } catch (const std::exception& error) {
       notes_.push_back("3D viewer: " + reason_of(error));
       return {};

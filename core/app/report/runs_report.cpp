@@ -1,8 +1,6 @@
 #include "core/app/report/runs_report.h"
 
 #include <algorithm>
-#include <cctype>
-#include <string_view>
 
 #include "core/app/report/run_rows.h"
 #include "core/app/report/tables.h"
@@ -15,20 +13,6 @@ namespace drape {
 namespace {
 
 using html::escape;
-
-/// A path as a URL, reserved characters as %XX.
-std::string as_link(const std::filesystem::path& path) {
-  static const char digits[] = "0123456789ABCDEF";
-  std::string link;
-  for (const char c : path.generic_string()) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x80 && (std::isalnum(byte) || std::string_view("/._-~=").find(c) != std::string_view::npos))
-      link += c;
-    else
-      link += {'%', digits[byte >> 4], digits[byte & 15]};
-  }
-  return link;
-}
 
 std::string consistency(const RunCollection& collection) {
   std::string text;
@@ -57,14 +41,15 @@ std::string run_list(const RunCollection& collection, const std::filesystem::pat
         if (m.seconds) seconds = seconds.value_or(0) + *m.seconds;
     const auto report = std::filesystem::absolute(run.folder / "report.html");
     const std::string name = escape(run.folder.generic_string());
-    body.push_back({{escape(run.variation), false},
-                    {html::count(run.seed)},
-                    {escape(run.status), false},
-                    {html::number_text(seconds)},
-                    {std::filesystem::is_regular_file(report)
-                         ? "<a href=\"" + as_link(report.lexically_relative(from)) + "\">" + name + "</a>"
-                         : name,
-                     false}});
+    body.push_back(
+        {{escape(run.variation), false},
+         {html::count(run.seed)},
+         {escape(run.status), false},
+         {html::number_text(seconds)},
+         {std::filesystem::is_regular_file(report)
+              ? "<a href=\"" + html::url_path(report.lexically_relative(from)) + "\">" + name + "</a>"
+              : name,
+          false}});
   }
   return html::table({{{"variation", false}, {"seed"}, {"status", false}, {"time [s]"}, {"report", false}}},
                      body);

@@ -20,11 +20,11 @@ std::string first_two(const std::vector<std::string>& names) {
 
 }  // namespace
 
-Progress::Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping,
+Progress::Progress(double tolerance, int levels, Verbosity verbosity, const LoadStepping* load_stepping,
                    std::vector<std::string> changing)
     : tolerance_(tolerance),
       levels_(levels),
-      quiet_(quiet),
+      verbosity_(verbosity),
       terminal_(isatty(STDERR_FILENO)),
       load_stepping_(load_stepping),
       changing_(first_two(changing)) {}
@@ -43,7 +43,8 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
   take_note(row);
   const double now = level_clock_.seconds();
   to_go_.note(now, done_);
-  if (quiet_ || now - last_draw_ < (terminal_ ? 0.1 : 10)) return;
+  if (verbosity_ == Verbosity::iterations) std::fprintf(stderr, "%s\n", details(row).c_str());
+  if (verbosity_ != Verbosity::progress || now - last_draw_ < (terminal_ ? 0.1 : 10)) return;
   last_draw_ = now;
   draw(row);
 }
@@ -83,6 +84,22 @@ std::string Progress::line(const IterationRow& row) const {
          " " + text + to_go;
 }
 
+std::string Progress::details(const IterationRow& row) const {
+  char text[256];
+  std::snprintf(text, sizeof text,
+                "level %d/%d step %d iteration %d  residual %.2e  decrement %.2e m/s  energy %.9g J  "
+                "step size %.2e s  step length %.2e",
+                row.level, levels_ - 1, row.step, row.iteration, row.force_residual, row.decrement,
+                row.energy, row.step_size, row.step_length);
+  std::string line = method_ + " " + text;
+  if (row.contacts) line += "  contacts " + std::to_string(*row.contacts);
+  if (row.smallest_gap && std::isfinite(*row.smallest_gap)) {
+    std::snprintf(text, sizeof text, "  smallest gap %.2e m", *row.smallest_gap);
+    line += text;
+  }
+  return line;
+}
+
 void Progress::draw(const IterationRow& row) {
   clear_line();
   std::fprintf(stderr, "%s%s", line(row).c_str(), terminal_ ? "" : "\n");
@@ -96,7 +113,7 @@ void Progress::clear_line() {
 }
 
 void Progress::level_finished(const LevelResult& r) {
-  if (quiet_) return;
+  if (verbosity_ == Verbosity::quiet) return;
   clear_line();
   std::fprintf(stderr, "%-9s level %d/%d %-12s %5d steps %8.2f s  residual %.2e%s%s\n", method_.c_str(),
                r.level, levels_ - 1, to_string(r.outcome), r.steps, r.seconds, r.force_residual,
@@ -104,7 +121,7 @@ void Progress::level_finished(const LevelResult& r) {
 }
 
 void Progress::method_failed(int level, const std::string& cause) {
-  if (quiet_) return;
+  if (verbosity_ == Verbosity::quiet) return;
   clear_line();
   std::fprintf(stderr, "%-9s level %d/%d %-12s %s\n", method_.c_str(), level, levels_ - 1, "failed",
                printable(cause).c_str());

@@ -9,13 +9,17 @@
 
 namespace drape {
 
+/// How much a run writes to standard error: nothing, its progress, or a line for every iteration.
+enum class Verbosity { quiet, progress, iterations };
+
 /// Shows a run on the terminal: one line that is rewritten while a level is solved (a new line now and then
-/// if standard error is no terminal), and a permanent one for every finished level.
+/// if standard error is no terminal, one for every iteration if the user asks for them), and a permanent one
+/// for every finished level.
 class Progress : public Observer {
  public:
   /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping
   /// (`load_stepping`, which changes the parameters `changing`) it is full after the last increment.
-  Progress(double tolerance, int levels, bool quiet, const LoadStepping* load_stepping = nullptr,
+  Progress(double tolerance, int levels, Verbosity verbosity, const LoadStepping* load_stepping = nullptr,
            std::vector<std::string> changing = {});
 
   void method_started(const std::string& method);
@@ -24,8 +28,10 @@ class Progress : public Observer {
   void level_finished(const LevelResult& result) override;
   void method_failed(int level, const std::string& cause);
 
-  /// The line after an iteration.
+  /// The line with the bar after an iteration.
   std::string line(const IterationRow& row) const;
+  /// The line of an iteration under Verbosity::iterations.
+  std::string details(const IterationRow& row) const;
 
  private:
   void take_note(const IterationRow& row);
@@ -34,7 +40,8 @@ class Progress : public Observer {
 
   double tolerance_;
   int levels_;
-  bool quiet_, terminal_, drawn_ = false;
+  Verbosity verbosity_;
+  bool terminal_, drawn_ = false;
   const LoadStepping* load_stepping_;
   std::string changing_, method_;
   Stopwatch level_clock_;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/app/experiment/method_choice.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/report.h"
 #include "core/app/run/checkpoint_manager.h"
@@ -103,15 +104,6 @@ class UnrecordedObserver : public Observer {
   const std::function<bool()>& stop_;
 };
 
-void require_methods(const Experiment& experiment, const std::vector<std::string>& chosen) {
-  std::string known;
-  for (const auto& [name, solver] : experiment.methods) known += (known.empty() ? "" : ", ") + name;
-  for (const std::string& name : chosen)
-    if (std::none_of(experiment.methods.begin(), experiment.methods.end(),
-                     [&](const auto& method) { return method.first == name; }))
-      throw std::runtime_error("--method " + name + ": the experiment's methods are " + known);
-}
-
 /// The resolved experiment with paths to the copies of mesh files in the results folder.
 ConfigNode saved_config(const Experiment& experiment) {
   ConfigNode config = experiment.resolved;
@@ -121,16 +113,6 @@ ConfigNode saved_config(const Experiment& experiment) {
   if (!experiment.parameters.reference.file.empty())
     set_path(config, "reference.file", "reference.ply", none);
   return config;
-}
-
-/// The methods of the options, in the experiment's order.
-std::vector<std::string> methods_of(const Experiment& experiment, const RunOptions& options) {
-  std::vector<std::string> names;
-  for (const auto& [name, solver] : experiment.methods)
-    if (options.methods.empty() ||
-        std::find(options.methods.begin(), options.methods.end(), name) != options.methods.end())
-      names.push_back(name);
-  return names;
 }
 
 /// The message of the exception in flight. A WriteError concerns the whole run and is rethrown.
@@ -194,8 +176,8 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   const Problem problem = scene.problem();
   std::vector<std::string> changing;
   for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
-  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels, options.quiet,
-                    problem.load_stepping, changing);
+  Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
+                    options.verbosity, problem.load_stepping, changing);
   RunObserver observer(recorder, checkpoints, progress, options.view, options.stop);
 
   bool all_converged = begun.all_converged, cancelled = false;
@@ -250,11 +232,11 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
 }  // namespace
 
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options) {
-  require_methods(experiment, options.methods);
+  const std::vector<std::string> methods = chosen_methods(
+      experiment, options.methods.empty() ? std::vector<std::string>{all_methods} : options.methods);
   const std::string& start_file = experiment.parameters.start.file;
   TriangleMesh start;
   if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
-  const std::vector<std::string> methods = methods_of(experiment, options);
   refuse_long_names(options.out, methods);
   const RunFolder folder(options.out, options.overwrite);
   return with_folder(folder, options, [&] {

@@ -8,22 +8,23 @@
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/run/checkpoint.h"
+#include "core/app/run/progress.h"
 
 namespace drape {
 
 class LiveView;
 
 struct RunOptions {
-  std::filesystem::path out;         ///< results folder
-  std::vector<std::string> methods;  ///< methods to run; empty for all
-  bool overwrite = false;            ///< replace the results of an earlier run in `out`
-  bool quiet = false;                ///< no progress line
-  bool report = true;                ///< write report.html and its pictures at the end
-  double checkpoint = 5;             ///< checkpoint interval [s]; 0 saves at every step
-  int first_level = 0;               ///< first level of every method
-  std::string warm_started_from;     ///< origin of a warm start, in words; empty without one
-  std::function<bool()> stop;        ///< polled after every step; may be empty
-  LiveView* view = nullptr;          ///< shows the run and may stop it; may be null
+  std::filesystem::path out;                  ///< results folder
+  std::vector<std::string> methods;           ///< methods to run; empty for all
+  bool overwrite = false;                     ///< replace the results of an earlier run in `out`
+  Verbosity verbosity = Verbosity::progress;  ///< what standard error shows
+  bool report = true;                         ///< write report.html and its pictures at the end
+  double checkpoint = 5;                      ///< checkpoint interval [s]; 0 saves at every step
+  int first_level = 0;                        ///< first level of every method
+  std::string warm_started_from;              ///< origin of a warm start, in words; empty without one
+  std::function<bool()> stop;                 ///< polled after every step; may be empty
+  LiveView* view = nullptr;                   ///< shows the run and may stop it; may be null
 };
 
 /// A run was aborted after it had begun, as on a full disk. Its folder records the cause if that is possible.

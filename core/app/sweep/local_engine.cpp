@@ -97,6 +97,7 @@ class LocalEngine {
   }
 
   void tell(const SweepRun& run, const RunStatus& status) const {
+    if (options_.quiet && status.state != RunState::failed) return;
     std::string line = "[" + std::to_string(had_ + ended_) + "/" + std::to_string(sweep_.runs.size()) + "] " +
                        run.name + ", seed " + std::to_string(run.seed) + ": " + to_string(status.state) +
                        " after " + duration_text(status.seconds);

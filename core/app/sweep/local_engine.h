@@ -11,6 +11,7 @@ struct LocalOptions {
   int threads = 1;             ///< of each run
   double memory_limit = 0;     ///< of all runs together [bytes]; 0: the available memory
   bool report = false;         ///< write each run's report
+  bool quiet = false;          ///< say nothing of runs that end well
   double time_limit = 0;       ///< of each run [s]; 0: none
   std::function<bool()> stop;  ///< polled
 };

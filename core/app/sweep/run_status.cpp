@@ -6,6 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "core/app/experiment/method_choice.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/message_text.h"
@@ -44,9 +45,10 @@ RunStatus begin(const RunFiles& files, int threads) {
 }
 
 std::vector<std::string> command(const RunFiles& files, int threads, bool report) {
-  std::vector<std::string> all = {own_program(),   "run",     files.config(), "--out",
-                                  files.folder,    "--quiet", "--threads",    std::to_string(threads),
-                                  "--allow-memory"};  // the sweep has checked it
+  std::vector<std::string> all = {own_program(),   "run",       files.config(), "--out",
+                                  files.folder,    "--quiet",   "--threads",    std::to_string(threads),
+                                  "--method",      all_methods,  // the config has the chosen ones only
+                                  "--allow-memory"};             // the sweep has checked it
   if (!report) all.emplace_back("--no-report");
   return all;
 }

@@ -1,5 +1,6 @@
 #include "core/app/view/html.h"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -110,6 +111,19 @@ std::string fill(std::string_view page, const std::map<std::string, std::string>
     text += found->second;
     place = close + 2;
   }
+}
+
+std::string url_path(const std::filesystem::path& path) {
+  static const char digits[] = "0123456789ABCDEF";
+  std::string link;
+  for (const char c : path.generic_string()) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && (std::isalnum(byte) || std::string_view("/._-~=").find(c) != std::string_view::npos))
+      link += c;
+    else
+      link += {'%', digits[byte >> 4], digits[byte & 15]};
+  }
+  return link;
 }
 
 std::string base64(std::string_view bytes) {

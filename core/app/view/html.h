@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -35,6 +36,9 @@ std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<
 
 /// Replaces each {{name}} of the template by its value. Throws std::runtime_error on an unknown name.
 std::string fill(std::string_view page, const std::map<std::string, std::string>& values);
+
+/// A path as a URL, reserved characters as %XX.
+std::string url_path(const std::filesystem::path& path);
 
 std::string base64(std::string_view bytes);
 

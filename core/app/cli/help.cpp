@@ -1,0 +1,80 @@
+#include "core/app/cli/help.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "core/app/experiment/exit_codes.h"
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+/// The first unknown option that the error names, without its dashes and value; empty for other errors.
+std::string unknown_option(const CLI::Error& error) {
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
+  std::istringstream words(error.what());
+  for (std::string word; words >> word;)
+    if (word.starts_with("--") && word.size() > 2) return word.substr(2, word.find('=') - 2);
+  return "";
+}
+
+/// The command's option that is nearest to a name without dashes; empty if none is near.
+std::string nearest_option(const CLI::App& command, const std::string& name) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  return nearest_word(name, names);
+}
+
+}  // namespace
+
+std::string exit_codes_help() {
+  std::string text = "Exit codes:\n";
+  for (const ExitCode& code : exit_codes) {
+    const std::string number = std::to_string(code.code);
+    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
+  }
+  return text;
+}
+
+void show_example(CLI::App& command, const std::string& example) {
+  command.footer("Example:\n  " + example + "\n\n" + exit_codes_help());
+}
+
+void for_developers(CLI::App& command) { command.group("For developers of drape"); }
+
+std::vector<std::string> command_words(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (words.empty() || words[0] != "help") return words;
+  words.erase(words.begin());
+  words.emplace_back("--help");
+  return words;
+}
+
+void require_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == word) return;
+    if (!command->get_group().empty()) commands.push_back(command->get_name());
+  }
+  const std::string near = nearest_word(word, commands);
+  throw std::runtime_error(
+      "there is no command \"" + excerpt(word) + "\"; " +
+      (near.empty() ? "the commands are " + joined(commands) : "did you mean \"" + near + "\"?"));
+}
+
+std::string refusal(const CLI::App& app, const CLI::Error& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::string command = chosen.empty() ? "" : " " + chosen[0]->get_name();
+  const std::string unknown = unknown_option(error);
+  const std::string near = unknown.empty() ? "" : nearest_option(chosen.empty() ? app : *chosen[0], unknown);
+  const std::string what =
+      near.empty() ? printable(error.what())
+                   : "there is no option --" + excerpt(unknown) + "; did you mean --" + near + "?";
+  return "error: " + what + (near.empty() ? "; see" : " See") + " `drape" + command + " --help`\n";
+}
+
+}  // namespace drape

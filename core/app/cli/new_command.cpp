@@ -1,0 +1,118 @@
+#include "core/app/cli/new_command.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+#include <system_error>
+
+#include "core/app/cli/help.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/experiment.h"
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+/// The experiment, less its name.
+constexpr const char* first_experiment = R"yaml(
+# The coarsest mesh: a flat pattern (square, rectangle, disc, polygon), or `shape: file` with `file: mesh.obj`.
+cloth: {shape: square, side: 1, columns: 30, rows: 30}
+
+# Every level has four times the triangles of the one before: 900, 3.5K and 14K vertices here.
+levels: 3
+
+# Cotton. Density and thickness together give the mass of an area; the moduli are Young's for stretching and
+# for bending.
+material:
+  density: 472.6           # [kg/m³]
+  thickness: 3.18e-4       # [m]
+  membrane_modulus: 8e4    # [Pa]
+  bending_modulus: 8e5     # [Pa]
+  poisson_ratio: 0.243
+
+# The cloth begins here: flat, centred above the sphere, with a millimetre of noise so that it may fold.
+start: {translate: [-0.5, -0.5, 0.32], perturbation: 1e-3}
+
+# Corners that stay where they are:
+# pins:
+#   - {region: nearest, point: [0, 0, 0]}
+#   - {region: nearest, point: [1, 0, 0]}
+
+# `drape list energy` names every energy, `drape describe strain_limit` shows one's parameters.
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.06}, gravity]
+
+# Contact of the cloth with itself, then with a sphere at the origin.
+contact:
+  - {type: ipc, friction: 0.1}
+  - type: shapes
+    friction: 0.1
+    shapes: [{name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.3}]
+
+# A level ends once its forces balance to this fraction.
+newton: {force_tolerance: 1e-3}
+
+# Progressive cloth quasistatics. To compare it with coarse to fine and with the finest level alone, take
+# the two comments away and run with --method all.
+methods:
+  pcs: {}
+  # cascadic: {}
+  # newton: {}
+)yaml";
+
+std::string text_of(const std::string& file, const std::string& name) {
+  const std::string results = "results/" + name;
+  return "# A square of cotton falls over a sphere. Lengths are in metres, masses in kilograms, times in "
+         "seconds; z\n"
+         "# points up. `drape describe experiment` lists every key with its unit, range and default.\n"
+         "#\n"
+         "#   drape check " +
+         file +
+         "    checks this file without running it\n"
+         "#   drape run " +
+         file + "      runs it; results and report.html go to " + results +
+         "\n"
+         "#   drape view " +
+         results +
+         "    opens the report, with the cloth in 3D\n"
+         "name: \"" +
+         name + "\"\n" + first_experiment;
+}
+
+}  // namespace
+
+NewCommand::NewCommand(CLI::App& app)
+    : command_(app.add_subcommand("new", "write a commented first experiment")) {
+  show_example(*command_, "drape new scarf.yaml");
+  command_->add_option("file", file_, "file to write, which must not exist (default: first.yaml)");
+}
+
+int NewCommand::run() const {
+  std::filesystem::path file = file_;
+  if (file.extension() != ".yaml" && file.extension() != ".yml") file += ".yaml";
+  const std::string name = file.stem().string();
+  ConfigErrors errors;
+  check_name("the experiment's name", name, {}, errors);
+  if (!errors.empty()) throw std::runtime_error(errors[0].message);
+  // "x": fails if the file exists.
+  std::FILE* out = std::fopen(file.c_str(), "wx");
+  if (!out && errno == EEXIST)
+    throw std::runtime_error(printable(file.string()) +
+                             ": exists already; name another file, as in drape new " + printable(name) +
+                             "_2.yaml");
+  const std::string text = out ? text_of(file.string(), name) : "";
+  const bool written = out && std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  const int error = errno;
+  if (!out || std::fclose(out) != 0 || !written) {
+    if (out) std::remove(file.c_str());
+    throw std::runtime_error("cannot write " + printable(file.string()) + ": " +
+                             std::generic_category().message(error));
+  }
+  std::cout << "written: " << printable(file.string()) << "\nnext: drape run " << printable(file.string())
+            << "\n";
+  return exit_done;
+}
+
+}  // namespace drape

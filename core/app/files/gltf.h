@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/mesh/triangle_mesh.h"
+
+namespace drape {
+
+/// One state of a surface.
+struct GltfState {
+  Positions positions;  ///< n×3 [m], z upwards
+  Positions normals;    ///< n×3, of length 1
+};
+
+enum class GltfMaterial { cloth, obstacle };
+
+/// A surface of a glTF file.
+struct GltfSurface {
+  using TextureCoordinates = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
+
+  std::string name;
+  GltfMaterial material = GltfMaterial::cloth;
+  Triangles triangles;  ///< m×3, m > 0
+  GltfState state;
+  TextureCoordinates uv;           ///< n×2, v upwards; may be empty
+  std::vector<GltfState> earlier;  ///< states before `state`, which an animation shows; may be empty
+};
+
+/// A scene: the surfaces that it shows, by index.
+struct GltfScene {
+  std::string name;
+  std::vector<int> surfaces;
+};
+
+/// Seconds from one state of an animation to the next.
+inline constexpr double gltf_frame_seconds = 0.25;
+
+/// A binary glTF 2.0 file (Khronos Group, "glTF 2.0 Specification", ISO/IEC 12113). The last scene is the one
+/// that viewers show. Axes become glTF's: y upwards, v downwards. Earlier states are morph targets of an
+/// animation that ends with `state`. Throws std::runtime_error beyond 4 GiB, which the format cannot hold.
+std::string glb_bytes(const std::vector<GltfSurface>& surfaces, const std::vector<GltfScene>& scenes);
+
+}  // namespace drape

@@ -1,0 +1,65 @@
+// Which methods `drape run` runs.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command.h"
+
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// The methods in the results of a run, in order; the run is short and need not converge.
+std::string methods_of(const std::string& methods, const std::string& options) {
+  const Scratch folder;
+  folder.write("e.yaml", replaced(small_experiment(),
+                                  "methods:\n  pcs: {}\n  cascadic: {}\n  newton: {}\n"
+                                  "reference: newton\n",
+                                  "methods: " + methods + "\n"));
+  const Ended ended = drape_with(
+      "run e.yaml --out out --levels 1 --set newton.max_steps=1 --no-report " + options, folder.path);
+  if (ended.exit_code == 2) {
+    CHECK_FALSE(std::filesystem::exists(folder / "out"));
+    return ended.err;
+  }
+  CHECK(ended.exit_code == 1);
+  std::string names;
+  const auto results = nlohmann::ordered_json::parse(text_of(folder / "out/results.json"));
+  for (const auto& [name, method] : results.at("methods").items()) names += name + " ";
+  const std::size_t note = ended.err.find("only pcs was run");
+  return names + (note == std::string::npos ? "" : ended.err.substr(note));
+}
+
+const std::string three = "{cascadic: {}, pcs: {}, newton: {}}";
+
+}  // namespace
+
+TEST_CASE("pcs runs unless methods are named, and the user learns of the others") {
+  CHECK(methods_of(three, "") == "pcs only pcs was run; --method all adds cascadic, newton\n");
+  CHECK(methods_of(three, "--quiet") == "pcs ");
+  CHECK(methods_of(three, "--method newton,cascadic") == "cascadic newton ");  // in the experiment's order
+  CHECK(methods_of(three, "--method all") == "cascadic pcs newton ");
+}
+
+TEST_CASE("an experiment's only method runs; of several without pcs some must be named") {
+  CHECK(methods_of("{newton: {}}", "") == "newton ");
+  CHECK(methods_of("{direct: {type: newton}, cascadic: {}}", "") ==
+        "error: the experiment has no method pcs, which runs by default; name some of direct, cascadic with "
+        "--method, or run them all with --method all\n");
+  CHECK(methods_of("{direct: {type: newton}, cascadic: {}}", "--method all") == "direct cascadic ");
+  CHECK_THAT(methods_of("{all: {type: pcs}}", ""),
+             Contains("\"all\" cannot name a method, since --method all runs every one; rename it"));
+}
+
+TEST_CASE("-v shows every iteration, -q nothing, and both exclude each other") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string run =
+      "run e.yaml --levels 1 --set newton.max_steps=2 --no-report --overwrite -j 1 -o out ";
+  const Ended verbose = drape_with(run + "-v", folder.path);
+  CHECK_THAT(verbose.err, Contains("pcs level 0/0 step 0 iteration 0  residual ") && Contains("step size "));
+  CHECK(drape_with(run + "-q", folder.path).err == "");
+  const Ended both = drape_with(run + "-q -v", folder.path);
+  CHECK(both.exit_code == 2);
+  CHECK_THAT(both.err, Contains(" excludes --"));
+}

@@ -1,0 +1,183 @@
+// `drape export` and `drape view`: what they write is read again.
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/kernel/mesh/io.h"
+#include "tests/support/command.h"
+#include "tests/support/folders.h"
+#include "tests/support/glb.h"
+
+using namespace drape;
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A cloth of two levels on a ball, by two methods, run once for all cases.
+const fs::path& finished_run() {
+  static const Scratch folder;
+  static const fs::path path = [] {
+    folder.write("e.yaml", text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"));
+    const Ended ended = drape_with("run e.yaml -o out -j 1 -q --no-report --method pcs,newton", folder.path);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code == 0);
+    return folder / "out";
+  }();
+  return path;
+}
+
+/// What the command writes into a file of that name.
+std::string exported(const std::string& name, const std::string& options = "") {
+  const Scratch folder;
+  const Ended ended =
+      drape_with("export " + finished_run().string() + " --to " + name + " " + options, folder.path);
+  INFO(ended.err);
+  REQUIRE(ended.exit_code == 0);
+  CHECK(ended.out == "written: " + name + "\n");
+  return text_of(folder / name);
+}
+
+std::string refused(const std::string& arguments) {
+  const Scratch folder;
+  const Ended ended = drape_with("export " + arguments, folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  CHECK(fs::is_empty(folder.path));
+  return ended.err;
+}
+
+/// The largest difference of the accessor's vertices, in glTF's axes, and the mesh's [m].
+double difference(const Glb& glb, int accessor, const Positions& x) {
+  const std::vector<float> floats = glb.floats(accessor);
+  REQUIRE(floats.size() == static_cast<std::size_t>(x.size()));
+  double most = 0;
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    most = std::max({most, std::abs(floats[3 * i] - x(i, 0)), std::abs(floats[3 * i + 1] - x(i, 2)),
+                     std::abs(floats[3 * i + 2] + x(i, 1))});
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and opens on the finest") {
+  const Glb glb(exported("out.glb"));
+  REQUIRE(glb.json.at("scenes").size() == 2);
+  CHECK(glb.json.at("scene") == 1);
+  for (int level = 0; level < 2; ++level) {
+    const auto& scene = glb.json["scenes"][level];
+    INFO(scene);
+    CHECK(scene.at("name") == "level " + std::to_string(level));
+    REQUIRE(scene.at("nodes").size() == 2);
+    const auto& stone = glb.json.at("nodes").at(scene["nodes"][0].get<int>());
+    const auto& cloth = glb.json["nodes"].at(scene["nodes"][1].get<int>());
+    CHECK(stone.at("name") == "obstacle 0");
+    CHECK(cloth.at("name") == "pcs level " + std::to_string(level));
+    const auto& primitive = glb.json.at("meshes").at(cloth.at("mesh").get<int>()).at("primitives").at(0);
+    const std::string name = "l" + std::to_string(level) + ".ply";
+    const TriangleMesh state = read_mesh(finished_run() / ("levels/pcs_" + name)),
+                       rest = read_mesh(finished_run() / ("rest/" + name));
+    CHECK(difference(glb, primitive["attributes"]["POSITION"], state.vertices) < 1e-6);
+    CHECK(glb.indices(primitive["indices"]).size() == static_cast<std::size_t>(state.triangles.size()));
+    const std::vector<float> uv = glb.floats(primitive["attributes"]["TEXCOORD_0"]);
+    const std::vector<float> normals = glb.floats(primitive["attributes"]["NORMAL"]);
+    for (Eigen::Index i = 0; i < rest.vertices.rows(); ++i) {
+      CHECK(uv[2 * i] == Approx(rest.vertices(i, 0)).margin(1e-6));
+      CHECK(1 - uv[2 * i + 1] == Approx(rest.vertices(i, 1)).margin(1e-6));
+      CHECK(std::hypot(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]) == Approx(1).epsilon(1e-5));
+    }
+    const auto& ball = glb.json["meshes"].at(stone.at("mesh").get<int>()).at("primitives").at(0);
+    CHECK(difference(glb, ball["attributes"]["POSITION"],
+                     read_mesh(finished_run() / "obstacles/0.ply").vertices) < 1e-6);
+  }
+  const Glb one(exported("one.glb", "--level 0 --method newton"));
+  REQUIRE(one.json["scenes"].size() == 1);
+  CHECK(one.json["nodes"][1]["name"] == "newton level 0");
+}
+
+TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an animation") {
+  const Json results = Json::parse(text_of(finished_run() / "results.json"));
+  for (const std::string options : {"--frames", "--frames --level 0"}) {
+    INFO(options);
+    const int level = options == "--frames" ? 1 : 0;
+    const std::size_t recorded = results["methods"]["pcs"]["levels"][level]["snapshots"]["iterations"].size();
+    REQUIRE(recorded > 2);
+    const Glb glb(exported("out.glb", options));
+    REQUIRE(glb.json["scenes"].size() == 1);
+    const auto& mesh = glb.json["meshes"][1];
+    CHECK(mesh["name"] == "pcs level " + std::to_string(level));
+    CHECK(mesh["primitives"][0]["targets"].size() == recorded - 1);
+    REQUIRE(glb.json.at("animations").size() == 1);
+    CHECK(glb.json["animations"][0]["channels"][0]["target"]["node"] == 1);
+    const auto& sampler = glb.json["animations"][0]["samplers"][0];
+    CHECK(glb.floats(sampler["input"]).size() == recorded);
+    CHECK(glb.floats(sampler["output"]).size() == recorded * (recorded - 1));
+  }
+}
+
+TEST_CASE("the other formats have the cloth of the finest level, or of the one that is named") {
+  const Scratch folder;
+  for (const std::string extension : {".obj", ".ply"})
+    for (const int level : {0, 1}) {
+      INFO(extension << " of level " << level);
+      folder.write("out" + extension, exported("out" + extension, level == 1 ? "" : "--level 0"));
+      const TriangleMesh mesh = read_mesh(folder / ("out" + extension)),
+                         state =
+                             read_mesh(finished_run() / ("levels/pcs_l" + std::to_string(level) + ".ply"));
+      CHECK((mesh.vertices == state.vertices));
+      CHECK((mesh.triangles == state.triangles));
+    }
+  CHECK((exported("out.vtp") == text_of(finished_run() / "levels/pcs_l1.vtp")));
+}
+
+TEST_CASE("an export that cannot be is refused, with what there is") {
+  const std::string run = finished_run().string();
+  CHECK(refused("nowhere --to a.glb") == "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK(refused(run + " --to a.fbx") ==
+        "error: --to a.fbx: the formats are .glb (glTF 2.0), .obj, .ply and .vtp\n");
+  CHECK(refused(run + " --to a.obj --frames") ==
+        "error: --frames makes an animation, which .obj cannot hold; take .glb\n");
+  CHECK(refused(run + " --to a.ply --level 2") == "error: --level 2: the levels of pcs are 0, 1\n");
+  CHECK(refused(run + " --to a.ply --method cascadic") ==
+        "error: --method cascadic: the run's methods are pcs, newton\n");
+  CHECK(refused(run) == "error: --to is required; see `drape export --help`\n");
+}
+
+TEST_CASE("view writes the page if it is missing or old, and opens it, or prints its address") {
+  const Scratch folder;
+  fs::copy(finished_run(), folder / "a run", fs::copy_options::recursive);
+  const fs::path page = folder / "a run/report.html";
+  const auto view = [&](const std::string& environment) {
+    const Ended ended = drape_with("view 'a run'", folder.path, environment);
+    INFO(ended.err);
+    CHECK(ended.exit_code == 0);
+    CHECK_THAT(ended.out, StartsWith("report: a run/report.html\n"));
+    return ended.out;
+  };
+  REQUIRE_FALSE(fs::exists(page));
+  const std::string none = "DISPLAY= WAYLAND_DISPLAY=";
+  const std::string said = view(none);
+  CHECK_THAT(said, Contains("open it in a browser: file:///") && EndsWith("/a%20run/report.html#in-3d\n"));
+  CHECK(text_of(page).ends_with("</html>\n"));
+
+  folder.write("a run/report.html", "mine");  // newer than the results
+  view(none);
+  CHECK(text_of(page) == "mine");
+  fs::last_write_time(folder / "a run/results.json", fs::last_write_time(page) + std::chrono::seconds(5));
+  view(none);
+  CHECK(text_of(page).ends_with("</html>\n"));
+
+  folder.write("xdg-open", "#!/bin/sh\necho \"$1\" > opened.part && mv opened.part opened\n");
+  fs::permissions(folder / "xdg-open", fs::perms::owner_all);
+  CHECK(view("DISPLAY=:7 PATH=" + folder.path.string() + ":$PATH") == "report: a run/report.html\n");
+  for (int k = 0; k < 2000 && !fs::exists(folder / "opened"); ++k)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  CHECK(fs::path(replaced(text_of(folder / "opened"), "\n", "")) ==
+        fs::canonical(folder.path) / "a run/report.html");
+  const Ended nothing = drape_with("view nowhere", folder.path, none);
+  CHECK(nothing.exit_code == 2);
+  CHECK(nothing.err == "error: nowhere: no results.json here; give the folder of a run\n");
+}
