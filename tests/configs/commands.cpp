@@ -45,7 +45,7 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
   CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
   CHECK(refused_by("simulate") ==
         "error: there is no command \"simulate\"; the commands are run, check, sweep, list, describe, "
-        "report, compare, table, table1, schema, reference\n");
+        "report, compare, table, schema, reference\n");
   CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
   CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));

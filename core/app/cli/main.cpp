@@ -18,7 +18,6 @@
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_table.h"
 #include "core/app/report/runs_report.h"
-#include "core/app/report/tables.h"
 #include "core/app/run/runner.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/mesh/file.h"
@@ -174,7 +173,7 @@ int main_checked(int argc, char** argv) {
 
   const SweepCommand sweep(app);
 
-  std::string kind, plugin, out, run_folder, schema_kind = "experiment";
+  std::string kind, plugin, out, readmes_folder, schema_kind = "experiment";
   CLI::App* list_command = app.add_subcommand("list", "list plugins");
   list_command->add_option("kind", kind, "only this kind");
   CLI::App* describe_command =
@@ -203,16 +202,13 @@ int main_checked(int argc, char** argv) {
   table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
       ->delimiter(',')
       ->allow_extra_args(false);
-  CLI::App* table1_command =
-      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
-  table1_command->add_option("folder", run_folder, "results folder")->required();
   CLI::App* schema_command =
       app.add_subcommand("schema", "print the JSON Schema of experiments (or sweeps), for editors");
   schema_command->add_option("kind", schema_kind, "experiment or sweep")
       ->check(CLI::IsMember({"experiment", "sweep"}));
   CLI::App* reference_command =
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
-  reference_command->add_option("--readmes", run_folder,
+  reference_command->add_option("--readmes", readmes_folder,
                                 "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
 
   if (argc < 2) {
@@ -231,19 +227,16 @@ int main_checked(int argc, char** argv) {
     return report({report_folders.begin(), report_folders.end()}, out);
   }
   if (*compare_command) {
-    const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
+    const RunCollection before = read_runs({compared[0]}), after = read_runs({compared[1]});
+    const Comparison comparison(before, after, parse_bounds(bounds, before, after));
     std::cout << printable_lines(comparison.text());
     return comparison.broken() ? exit_bound_broken : exit_done;
   }
   if (*table_command) {
-    const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
-    const std::string table = table_text(rows, columns, format);
-    std::cout << (format == TableFormat::json ? table : printable_lines(table));
-    return all_pass(rows) ? exit_done : exit_not_converged;
-  }
-  if (*table1_command) {
-    std::cout << printable_lines(table1_text(read_run(run_folder)));
-    return exit_done;
+    const RunTable table = table_of(read_runs({report_folders.begin(), report_folders.end()}));
+    const std::string text = table_text(table, columns, format);
+    std::cout << (format == TableFormat::json ? text : printable_lines(text));
+    return table.all_pass() ? exit_done : exit_not_converged;
   }
   if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
@@ -261,7 +254,7 @@ int main_checked(int argc, char** argv) {
     return exit_done;
   }
   if (*reference_command)
-    return run_folder.empty() ? reference(registry) : reference_into(run_folder, registry);
+    return readmes_folder.empty() ? reference(registry) : reference_into(readmes_folder, registry);
   return exit_bad_input;
 }
 

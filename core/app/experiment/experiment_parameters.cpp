@@ -192,8 +192,6 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .required()
       .description("names the results folder and the report");
   d.add("description", &ExperimentParameters::description).description("one sentence for the report");
-  d.add("table1_scene", &ExperimentParameters::table1_scene)
-      .description("block of the supplement's Table 1 that the report compares with");
   d.add_section("cloth", &ExperimentParameters::cloth).description("the coarsest level");
   d.add("levels", &ExperimentParameters::levels)
       .at_least(1)

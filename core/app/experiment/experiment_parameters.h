@@ -112,7 +112,6 @@ enum class IntersectionCheck { every_level, every_step };
 struct ExperimentParameters {
   std::string name;
   std::string description;
-  std::string table1_scene;
   ClothParameters cloth;
   int levels = 4;
   Material material;

@@ -1,17 +1,18 @@
 #include "core/app/report/pictures.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cctype>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
+#include "core/app/report/midpoint_surface.h"
 #include "core/app/report/render.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/message_text.h"
-#include "core/kernel/mesh/topology.h"
 
 namespace drape {
 
@@ -20,10 +21,15 @@ namespace {
 constexpr int picture_width = 900, picture_height = 700, map_size = 700;
 constexpr int most_vertices_with_edges = 4000;  // more lines would merge
 
-/// The fine state of a pair with the curvatures of both; missing fields are empty.
+/// The fine state of a pair with the fields of its metrics.
 struct PairFields {
   TriangleMesh mesh;
-  Eigen::VectorXd H_difference, principal, principal_other;
+  std::map<std::string, Eigen::VectorXd> values;  // one for each vertex
+
+  const Eigen::VectorXd* find(const std::string& name) const {
+    const auto found = values.find(name);
+    return found == values.end() ? nullptr : &found->second;
+  }
 };
 
 std::string file_part(std::string name) {
@@ -64,12 +70,13 @@ class PictureMaker {
 
   PictureSet make() {
     make_folder(run_.folder / "pictures");
+    for (const DeclaredMetric& metric : run_.metrics)
+      for (const MetricPicture& picture : metric.declaration.pictures) set_.fields.push_back({picture});
     try {
       read_states();
       draw_states();
       read_fields();
-      draw_H_differences();
-      draw_folds();
+      for (FieldPictures& pictures : set_.fields) draw_fields(pictures);
     } catch (const PictureLeft&) {
       set_.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
                            run_.folder.string() + " draws them.");
@@ -129,14 +136,11 @@ class PictureMaker {
       for (const ConsistencyRecord& pair : method.consistency) {
         auto mesh = try_mesh(pair.fields);
         if (!mesh) continue;
-        PairFields fields{std::move(*mesh), {}, {}, {}};
+        PairFields fields{std::move(*mesh), {}};
         try {
-          for (const VertexField& field : read_ply_fields(run_.folder / pair.fields)) {
-            if (field.values.size() != fields.mesh.vertices.rows()) continue;
-            if (field.name == "H_difference") fields.H_difference = field.values;
-            if (field.name == "principal_curvature") fields.principal = field.values;
-            if (field.name == "principal_curvature_other") fields.principal_other = field.values;
-          }
+          for (VertexField& field : read_ply_fields(run_.folder / pair.fields))
+            if (field.values.size() == fields.mesh.vertices.rows() && is_drawn(field.name))
+              fields.values.insert_or_assign(field.name, std::move(field.values));
         } catch (const std::exception& error) {
           set_.notes.emplace_back(reason_of(error));
         }
@@ -150,23 +154,41 @@ class PictureMaker {
     return found == fields_.end() ? nullptr : &found->second;
   }
 
-  void draw_H_differences() {
+  bool is_drawn(const std::string& field) const {
+    return std::any_of(set_.fields.begin(), set_.fields.end(), [&](const FieldPictures& f) {
+      return field == f.declared.field || field == f.declared.other_field;
+    });
+  }
+
+  void draw_fields(FieldPictures& pictures) {
+    if (pictures.declared.kind == PictureKind::difference)
+      draw_differences(pictures);
+    else
+      draw_thresholds(pictures);
+  }
+
+  /// The fields of a method's widest pair, if they have this one.
+  const PairFields* widest_fields(const MethodRecord& method, const std::string& field) const {
+    const ConsistencyRecord* pair = widest_pair(method);
+    const PairFields* f = pair ? fields(method, pair->coarse, pair->fine) : nullptr;
+    return f && f->find(field) ? f : nullptr;
+  }
+
+  void draw_differences(FieldPictures& pictures) {
+    const std::string& field = pictures.declared.field;
     std::vector<const Eigen::VectorXd*> all;
+    for (const MethodRecord& method : run_.methods)
+      if (const PairFields* f = widest_fields(method, field)) all.push_back(f->find(field));
+    pictures.scale = magnitude_quantile(all, difference_quantile);
     for (const MethodRecord& method : run_.methods) {
-      const ConsistencyRecord* pair = widest_pair(method);
-      const PairFields* f = pair ? fields(method, pair->coarse, pair->fine) : nullptr;
-      if (f && f->H_difference.size() > 0) all.push_back(&f->H_difference);
-    }
-    set_.H_difference_scale = magnitude_quantile(all, H_difference_quantile);
-    for (const MethodRecord& method : run_.methods) {
-      const ConsistencyRecord* pair = widest_pair(method);
-      const PairFields* f = pair ? fields(method, pair->coarse, pair->fine) : nullptr;
-      if (!f || f->H_difference.size() == 0) continue;
-      const Colours colours = diverging_colours(f->H_difference, set_.H_difference_scale);
-      const auto rest = try_mesh("rest/l" + std::to_string(pair->fine) + ".ply");
-      const std::string name = H_difference_picture(method, *pair);
+      const PairFields* f = widest_fields(method, field);
+      if (!f) continue;
+      const ConsistencyRecord& pair = *widest_pair(method);
+      const Colours colours = diverging_colours(*f->find(field), pictures.scale);
+      const auto rest = try_mesh("rest/l" + std::to_string(pair.fine) + ".ply");
+      const std::string name = difference_picture(pictures.declared, method, pair);
       if (rest && rest->vertices.rows() == f->mesh.vertices.rows()) {
-        set_.maps_on_rest = true;
+        pictures.on_rest = true;
         if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, leave_);
         keep(name, map_renderer_->draw({*rest, nullptr, &colours, false, false}, Camera::facing(*rest, 1)));
       } else {
@@ -175,84 +197,64 @@ class PictureMaker {
     }
   }
 
-  /// The curvature of a method's finest state, and its mesh.
-  const PairFields* finest_fields(const MethodRecord& method) const {
-    const PairFields* best = nullptr;
+  /// A field of a method's finest state that has it.
+  const Eigen::VectorXd* finest_field(const MethodRecord& method, const std::string& field) const {
+    const Eigen::VectorXd* best = nullptr;
     int finest = -1;
     for (const ConsistencyRecord& pair : method.consistency) {
       const PairFields* f = fields(method, pair.coarse, pair.fine);
-      if (f && f->principal.size() > 0 && pair.fine > finest) {
+      if (f && f->find(field) && pair.fine > finest) {
         finest = pair.fine;
-        best = f;
+        best = f->find(field);
       }
     }
     return best;
   }
 
-  void draw_folds() {
-    const PairFields* reference = nullptr;
-    for (const MethodRecord& method : run_.methods) {
-      if (!reference) reference = finest_fields(method);
-    }
+  void draw_thresholds(FieldPictures& pictures) {
+    const Eigen::VectorXd* reference = nullptr;
+    for (const MethodRecord& method : run_.methods)
+      if (!reference) reference = finest_field(method, pictures.declared.field);
     if (!reference) return;
-    set_.fold_threshold = magnitude_quantile({&reference->principal}, fold_quantile);
+    pictures.scale = magnitude_quantile({reference}, threshold_quantile);
     for (const MethodRecord& method : run_.methods) {
       for (const LevelRecord& level : method.levels) {
         try {
-          draw_fold(method, level.level);
+          draw_threshold(pictures, method, level.level);
         } catch (const PictureLeft&) {
           throw;
         } catch (const std::exception& error) {
-          set_.notes.push_back(fold_picture(method, level.level) + ": " + reason_of(error));
+          set_.notes.push_back(threshold_picture(pictures.declared, method, level.level) + ": " +
+                               reason_of(error));
         }
       }
     }
   }
 
-  /// A coarse level's curvature is given on the finer mesh, so its state is prolonged; the finest level has
+  /// A coarse level's field is given on the finer mesh, so its state is split to that; the finest level has
   /// its own.
-  void draw_fold(const MethodRecord& method, int level) {
-    const std::string name = fold_picture(method, level);
+  void draw_threshold(const FieldPictures& pictures, const MethodRecord& method, int level) {
+    const auto& [declared, threshold, on_rest] = pictures;
+    const std::string name = threshold_picture(declared, method, level);
     for (auto pair = method.consistency.rbegin(); pair != method.consistency.rend(); ++pair) {
       const PairFields* f = fields(method, pair->coarse, pair->fine);
       const auto state = states_.find({method.name, level});
-      if (!f || pair->coarse != level || f->principal_other.size() == 0 || state == states_.end()) continue;
+      if (!f || pair->coarse != level || !f->find(declared.other_field) || state == states_.end()) continue;
       TriangleMesh mesh = state->second;
       Positions normals = smooth_normals(mesh);
-      if (!prolong(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
-      const Colours colours = fold_colours(f->principal_other, set_.fold_threshold);
+      const auto triangles = [this](Eigen::Index count) { return triangles_of(count); };
+      if (!split_to(f->mesh.vertices.rows(), f->mesh.triangles, triangles, mesh, normals)) continue;
+      const Colours colours = fold_colours(*f->find(declared.other_field), threshold);
       keep(name, renderer().draw({mesh, &normals, &colours, false, true, obstacle()}, camera_));
       return;
     }
     for (const ConsistencyRecord& pair : method.consistency) {
       const PairFields* f = fields(method, pair.coarse, pair.fine);
-      if (!f || pair.fine != level || f->principal.size() == 0) continue;
-      const Colours colours = fold_colours(f->principal, set_.fold_threshold);
+      if (!f || pair.fine != level || !f->find(declared.field)) continue;
+      const Colours colours = fold_colours(*f->find(declared.field), threshold);
       keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
       return;
     }
-  }
-
-  /// Splits a state 1→4 at edge midpoints, which leaves its surface as it is, until it has `count`
-  /// vertices. Relies on the numbering of Refinement: old vertices first, then one an edge. False if
-  /// the numbers do not fit or an intermediate level's triangles are not known.
-  bool prolong(TriangleMesh& mesh, Positions& normals, const Triangles& finest, Eigen::Index count) const {
-    while (mesh.vertices.rows() < count) {
-      const int n = static_cast<int>(mesh.vertices.rows());
-      const Topology topology = Topology::of(mesh.triangles, n);
-      const Eigen::Index next = n + topology.edges.rows();
-      const Triangles* triangles = next == count ? &finest : triangles_of(next);
-      if (next > count || !triangles) return false;
-      mesh.vertices.conservativeResize(next, 3);
-      normals.conservativeResize(next, 3);
-      for (Eigen::Index e = 0; e < topology.edges.rows(); ++e) {
-        const int a = topology.edges(e, 0), b = topology.edges(e, 1);
-        mesh.vertices.row(n + e) = (mesh.vertices.row(a) + mesh.vertices.row(b)) / 2;
-        normals.row(n + e) = (normals.row(a) + normals.row(b)).normalized();
-      }
-      mesh.triangles = *triangles;
-    }
-    return mesh.vertices.rows() == count;
   }
 
   const Triangles* triangles_of(Eigen::Index vertex_count) const {
@@ -296,13 +298,14 @@ std::string state_picture(const MethodRecord& method, int level) {
   return file_part(method.name) + "_l" + std::to_string(level) + ".png";
 }
 
-std::string fold_picture(const MethodRecord& method, int level) {
-  return file_part(method.name) + "_l" + std::to_string(level) + "_folds.png";
+std::string threshold_picture(const MetricPicture& picture, const MethodRecord& method, int level) {
+  return file_part(method.name) + "_l" + std::to_string(level) + "_" + file_part(picture.name) + ".png";
 }
 
-std::string H_difference_picture(const MethodRecord& method, const ConsistencyRecord& pair) {
+std::string difference_picture(const MetricPicture& picture, const MethodRecord& method,
+                               const ConsistencyRecord& pair) {
   return file_part(method.name) + "_l" + std::to_string(pair.coarse) + "_l" + std::to_string(pair.fine) +
-         "_H_difference.png";
+         "_" + file_part(picture.name) + ".png";
 }
 
 const ConsistencyRecord* widest_pair(const MethodRecord& method) {

@@ -10,7 +10,7 @@
 #include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
-#include "core/app/report/pair_measures.h"
+#include "core/app/report/undeclared_metrics.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/message_text.h"
 
@@ -42,7 +42,16 @@ NamedNumbers named_numbers(const Json& json) {
   return numbers;
 }
 
-LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
+using Metrics = std::vector<DeclaredMetric>;
+
+Values metric_values(const Json& json, const Metrics& metrics, MetricScope scope) {
+  Values values;
+  for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored))
+    values.set(column.name, number(at(json, column.name.c_str())));
+  return values;
+}
+
+LevelRecord level_record(const JsonFile& file, const Metrics& metrics, const Json& json, int position) {
   LevelRecord r;
   r.level = file.find<int>(json, "level").value_or(position);
   r.status = text(at(json, "status"));
@@ -59,28 +68,27 @@ LevelRecord level_record(const JsonFile& file, const Json& json, int position) {
   r.energy_on_finest = number(at(json, "energy_on_finest"));
   r.decrement = number(at(json, "decrement"));
   r.force_residual = number(at(json, "force_residual"));
-  r.largest_stretch = number(at(json, "largest_stretch"));
   r.intersections = number(at(json, "intersections"));
   r.smallest_gap = number(at(json, "smallest_gap"));
   r.seconds_by_phase = named_numbers(at(json, "seconds_by_phase"));
   r.energy_parts = named_numbers(at(json, "energy_parts"));
+  r.metrics = metric_values(json, metrics, MetricScope::state);
   r.mesh = text(at(json, "mesh"));
   return r;
 }
 
-ConsistencyRecord consistency_record(const JsonFile& file, const Json& json) {
+ConsistencyRecord consistency_record(const JsonFile& file, const Metrics& metrics, const Json& json) {
   ConsistencyRecord r;
   r.coarse = file.find<int>(json, "coarse").value_or(-1);
   r.fine = file.find<int>(json, "fine").value_or(-1);
-  for (const PairMeasure& measure : pair_measures) {
-    r.*measure.value = number(at(json, measure.name));
-    r.of_start.*measure.value = number(at(at(json, "of_start"), measure.name));
-  }
+  r.metrics = metric_values(json, metrics, MetricScope::pair);
+  r.of_start = metric_values(at(json, "of_start"), metrics, MetricScope::pair);
   r.fields = text(at(json, "fields"));
   return r;
 }
 
-MethodRecord method_record(const JsonFile& file, const std::string& name, const Json& json) {
+MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const std::string& name,
+                           const Json& json) {
   MethodRecord method;
   method.name = name;
   method.status = text(at(json, "status"));
@@ -90,12 +98,13 @@ MethodRecord method_record(const JsonFile& file, const std::string& name, const 
   const Json& pairs = at(json, "consistency");
   if (levels.is_array()) {
     for (const Json& level : levels) {
-      if (level.is_object()) method.levels.push_back(level_record(file, level, int(method.levels.size())));
+      if (level.is_object())
+        method.levels.push_back(level_record(file, metrics, level, int(method.levels.size())));
     }
   }
   if (pairs.is_array()) {
     for (const Json& pair : pairs) {
-      const ConsistencyRecord record = consistency_record(file, pair);
+      const ConsistencyRecord record = consistency_record(file, metrics, pair);
       if (record.coarse >= 0 && record.fine > record.coarse) method.consistency.push_back(record);
     }
   }
@@ -143,7 +152,8 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
   return all;
 }
 
-std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
+std::vector<ErrorSeries> read_errors(const std::filesystem::path& path,
+                                     const std::vector<ErrorMeasure>& measures) {
   std::vector<ErrorSeries> all;
   const Csv csv(path);
   if (!csv.has("method") || !csv.has("level")) return all;
@@ -151,8 +161,8 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path) {
     ErrorRow row;
     for (std::size_t w = 0; w < error_costs.size(); ++w) row.cost[w] = csv.number(k, error_costs[w]);
     for (std::size_t t = 0; t < error_targets.size(); ++t)
-      for (std::size_t m = 0; m < error_measures.size(); ++m)
-        row.error[t][m] = csv.number(k, std::string(error_targets[t]) + "_" + error_measures[m]);
+      for (const ErrorMeasure& measure : measures)
+        row.error[t].set(measure.name, csv.number(k, std::string(error_targets[t]) + "_" + measure.name));
     series_of(all, csv.text(k, "method"), level_of(csv, k, path)).rows.push_back(row);
   }
   return all;
@@ -260,7 +270,6 @@ RunData read_run(const std::filesystem::path& folder) {
   run.experiment = text(at(json, "experiment"));
   run.description = text(at(json, "description"));
   run.version = text(at(json, "version"));
-  run.table1_scene = text(at(json, "table1_scene"));
   if (const Json& obstacles = at(json, "obstacles"); obstacles.is_array())
     for (const Json& name : obstacles) run.obstacles.push_back(text(name));
   run.complete = at(json, "complete").is_boolean() && at(json, "complete").get<bool>();
@@ -276,9 +285,13 @@ RunData read_run(const std::filesystem::path& folder) {
   run.reference_tolerance = number(at(reference, "force_tolerance"));
   run.force_tolerance = number(at(at(json, "tolerance"), "force_residual"));
   const Json& methods = at(json, "methods");
+  const Json& declared = at(json, "metrics");
+  run.metrics = declared.is_object() ? declared_metrics(declared) : undeclared_metrics(methods);
+  run.error_measures =
+      declared.is_object() ? error_measures(run.metrics) : undeclared_errors(Csv(folder / "errors.csv"));
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
-      run.methods.push_back(method_record(file, name, value));
+      run.methods.push_back(method_record(file, run.metrics, name, value));
       const std::vector<IncrementSeries> increments = increments_of(file, name, at(value, "increments"));
       run.increments.insert(run.increments.end(), increments.begin(), increments.end());
     }
@@ -294,7 +307,7 @@ RunData read_run(const std::filesystem::path& folder) {
   };
   std::stable_sort(run.iterations.begin(), run.iterations.end(),
                    [&](const IterationSeries& a, const IterationSeries& b) { return place(a) < place(b); });
-  run.errors = read_errors(folder / "errors.csv");
+  run.errors = read_errors(folder / "errors.csv", run.error_measures);
   std::stable_sort(run.errors.begin(), run.errors.end(),
                    [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
   std::stable_sort(run.increments.begin(), run.increments.end(),
