@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "core/app/files/json_file.h"
+
 namespace drape {
 
 namespace {
@@ -30,22 +32,17 @@ const char* word_of(const Words<Enum>& words, Enum value) {
   return std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.second == value; })->first;
 }
 
-std::string text(const Json& json, const char* key) {
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 template <class Enum>
 Enum value_of(const Words<Enum>& words, const Json& json, const char* key) {
-  const std::string word = text(json, key);
+  const std::string word = text_member(json, key);
   const auto found = std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.first == word; });
   return found == words.end() ? words.front().second : found->second;
 }
 
 const Json& list(const Json& json, const char* key) {
   static const Json none = Json::array();
-  const auto found = json.is_object() ? json.find(key) : json.end();
-  return json.is_object() && found != json.end() && found->is_array() ? *found : none;
+  const Json& member = member_of(json, key);
+  return member.is_array() ? member : none;
 }
 
 Json column_json(const MetricColumn& c) {
@@ -64,15 +61,15 @@ Json column_json(const MetricColumn& c) {
 
 MetricColumn column_of(const Json& json) {
   MetricColumn c;
-  c.name = text(json, "name");
-  c.label = text(json, "label");
-  c.unit = text(json, "unit");
+  c.name = text_member(json, "name");
+  c.label = text_member(json, "label");
+  c.unit = text_member(json, "unit");
   c.better = value_of(directions, json, "better");
   c.shown = value_of(shown_words, json, "shown");
-  if (const auto decimals = json.find("decimals"); decimals != json.end() && decimals->is_number())
-    c.decimals = static_cast<int>(std::clamp(decimals->get<double>(), -1.0, 17.0));
-  c.best = text(json, "best");
-  c.error = text(json, "error");
+  if (const Json& decimals = member_of(json, "decimals"); decimals.is_number())
+    c.decimals = static_cast<int>(std::clamp(decimals.get<double>(), -1.0, 17.0));
+  c.best = text_member(json, "best");
+  c.error = text_member(json, "error");
   c.error_use = value_of(error_uses, json, "error_use");
   return c;
 }
@@ -99,7 +96,7 @@ Json picture_json(const MetricPicture& p) {
 MetricPicture picture_of(const Json& json) {
   MetricPicture p;
   p.kind = value_of(picture_kinds, json, "kind");
-  for (const auto& [key, member] : picture_members) p.*member = text(json, key);
+  for (const auto& [key, member] : picture_members) p.*member = text_member(json, key);
   return p;
 }
 
@@ -136,11 +133,11 @@ std::vector<DeclaredMetric> declared_metrics(const Json& json) {
   if (!json.is_object()) return metrics;
   for (const auto& [name, entry] : json.items()) {
     DeclaredMetric metric{name, value_of(scopes, entry, "scope"), {}};
-    metric.declaration.text = text(entry, "text");
+    metric.declaration.text = text_member(entry, "text");
     for (const Json& column : list(entry, "columns"))
-      if (!text(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
+      if (!text_member(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
     for (const Json& picture : list(entry, "pictures"))
-      if (!text(picture, "field").empty()) metric.declaration.pictures.push_back(picture_of(picture));
+      if (!text_member(picture, "field").empty()) metric.declaration.pictures.push_back(picture_of(picture));
     metrics.push_back(std::move(metric));
   }
   return metrics;

@@ -11,10 +11,9 @@ namespace {
 
 using html::Cell;
 using html::escape;
+using html::words;
 
 using Row = std::vector<Cell>;
-
-Cell words(const std::string& content) { return {content, false}; }
 
 /// Methods with compared levels.
 std::vector<const MethodRecord*> compared_methods(const RunData& run) {

@@ -14,13 +14,12 @@ namespace {
 using html::Cell;
 using html::escape;
 using html::number_text;
+using html::words;
 using Row = std::vector<Cell>;
 using Json = nlohmann::ordered_json;
 
 constexpr int curve_points = 40;
 constexpr double noticeable = 0.05;  // smaller relative differences of medians are not mentioned
-
-Cell words(const std::string& content) { return {content, false}; }
 
 /// Rounded for display; in full precision for exported tables.
 std::string shown(const std::optional<Spread>& spread) {

@@ -16,13 +16,6 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
 
-Json sum_of(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
-  OptionalNumber sum;
-  for (const LevelRecord& level : method.levels)
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
-  return json_of(sum);
-}
-
 /// What the iterations of a method tell beyond its levels.
 struct IterationSummary {
   int shortened_steps = 0;
@@ -77,10 +70,10 @@ Json row_of(const RunData& run, const MethodRecord& method) {
   }
   Json row = {{"method", method.name}, {"pass", false}, {"outcome", outcomes(method)}};
   row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
-  row["steps"] = sum_of(method, &LevelRecord::steps);
-  row["iterations"] = sum_of(method, &LevelRecord::newton_iterations);
+  row["steps"] = json_of(method.sum(&LevelRecord::steps));
+  row["iterations"] = json_of(method.sum(&LevelRecord::newton_iterations));
   row["shortened_steps"] = iterations.shortened_steps;
-  row["seconds"] = sum_of(method, &LevelRecord::seconds);
+  row["seconds"] = json_of(method.sum(&LevelRecord::seconds));
   row["energy"] = json_of(final_energy(run, method));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["intersections"] = json_of(iterations.intersections);

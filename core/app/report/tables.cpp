@@ -12,10 +12,9 @@ namespace {
 using html::Cell;
 using html::escape;
 using html::number_text;
+using html::words;
 
 using Row = std::vector<Cell>;
-
-Cell words(const std::string& content) { return {content, false}; }
 
 std::string status_badge(const std::string& status) {
   const std::string kind = succeeded(status) ? "good" : status.empty() ? "none" : "poor";
@@ -42,15 +41,6 @@ void add_metric_head(Row& head, const std::vector<MetricColumn>& columns) {
 
 void add_metric_cells(Row& row, const std::vector<MetricColumn>& columns, const LevelRecord& r) {
   for (const MetricColumn& column : columns) row.push_back({value_text(column, r.metrics.of(column.name))});
-}
-
-/// The sum of the known values over levels.
-OptionalNumber sum_of_levels(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
-  OptionalNumber sum;
-  for (const LevelRecord& level : method.levels) {
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
-  }
-  return sum;
 }
 
 /// Names of all energy parts, in order of first appearance.
@@ -85,15 +75,14 @@ std::string summary_table(const RunData& run) {
   for (const MethodRecord& method : run.methods) {
     const OptionalNumber energy = final_energy(run, method);
     const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
-    const OptionalNumber seconds =
-        method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
+    const OptionalNumber seconds = method.seconds ? method.seconds : method.sum(&LevelRecord::seconds);
     Row row = {words(escape(method.name)),
                words(status_badge(method.status)),
                words("<span class=\"verdict\">" + method_verdict(run, method) + "</span>"),
                {std::to_string(method.levels.size())},
                {number_text(seconds)},
-               {html::count(sum_of_levels(method, &LevelRecord::steps))},
-               {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
+               {html::count(method.sum(&LevelRecord::steps))},
+               {html::count(method.sum(&LevelRecord::newton_iterations))},
                {number_text(energy)},
                {number_text(energy ? OptionalNumber(*energy - *lowest) : energy)},
                {number_text(last.force_residual)},

@@ -28,6 +28,8 @@ std::string row(const std::vector<Cell>& cells, bool head) {
 
 }  // namespace
 
+Cell words(const std::string& content) { return {content, false}; }
+
 std::string escape(std::string_view text) {
   std::string safe;
   for (const char c : text) {

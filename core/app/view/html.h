@@ -33,6 +33,9 @@ struct Cell {
   int columns = 1;  ///< colspan
 };
 
+/// A cell of words, aligned to the left.
+Cell words(const std::string& content);
+
 /// A table in a frame that scrolls sideways when the screen is narrow.
 std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<std::vector<Cell>>& body);
 
