@@ -1,6 +1,6 @@
 # make          install what is needed, configure, build: build/bin/drape
 # make setup    install what third_party/apt-packages.txt lists (Debian 12, asks apt-get)
-# make demo     run configs/sphere.yaml to 25K vertices by three methods; its figures beside the supplement's
+# make demo     run configs/sphere.yaml to 25K vertices by three methods; its values beside the supplement's
 # make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
 # make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
@@ -41,7 +41,7 @@ build: configure
 
 demo: build
 	@$(BUILD)/bin/drape run configs/sphere.yaml --levels 3 --method pcs --method cascadic --method newton --out results/sphere --overwrite; ended=$$?; \
-	  $(BUILD)/bin/drape table1 results/sphere; \
+	  benchmarks/table1 --show results/sphere; \
 	  echo "Open results/sphere/report.html in a browser."; exit $$ended
 
 table1: build

@@ -48,7 +48,7 @@ std::string said_of_edit(const std::string& from, const std::string& to) {
 std::string said_of_set(const std::string& set) { return said_of(small_experiment(), "--set '" + set + "'"); }
 
 const std::string top_keys =
-    "name, description, table1_scene, cloth, levels, material, start, pins, handles, schedule, energies, "
+    "name, description, cloth, levels, material, start, pins, handles, schedule, energies, "
     "refiner, contact, "
     "newton, "
     "methods, metrics, reference, snapshots, check_intersections";

@@ -45,7 +45,7 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
   CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
   CHECK(refused_by("simulate") ==
         "error: there is no command \"simulate\"; the commands are new, check, run, view, export, "
-        "report, compare, table, sweep, list, describe, schema, help, table1, reference\n");
+        "report, compare, table, sweep, list, describe, schema, help, reference\n");
   CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
   CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));

@@ -48,9 +48,15 @@ struct Loaded {
     if (errors.empty()) scene = build_scene(*experiment, errors);
     throw_errors(errors);
   }
-  StateError error(const Positions& x, const Positions& target) const {
-    return state_error(*experiment, *scene, x, energy(x), {target, energy(target)},
-                       [](const std::string& f) { FAIL(f); });
+  /// By measure.
+  std::map<std::string, std::optional<double>> error(const Positions& x, const Positions& target) const {
+    const std::vector<ErrorMeasure> measures = error_measures(declared_metrics(experiment->metrics));
+    const StateError values = state_error(measures, *experiment, *scene, x, energy(x),
+                                          {target, energy(target)}, [](const std::string& f) { FAIL(f); });
+    REQUIRE(values.size() == measures.size());
+    std::map<std::string, std::optional<double>> error;
+    for (std::size_t k = 0; k < values.size(); ++k) error[measures[k].name] = values[k];
+    return error;
   }
   double energy(const Positions& x) const {
     return energy_on_finest(*scene, scene->hierarchy.prolongations, 1, x);
@@ -63,28 +69,27 @@ TEST_CASE("a state has no error against itself; a moved one has the shift over t
   const Loaded small;
   Positions x = small.scene->starts.back();
   x.col(2) = 0.1 * (3 * x.col(0).array()).sin();
-  for (const auto& value : small.error(x, x)) CHECK(value.value() == 0);
+  CHECK(small.error(x, x).size() == 5);
+  for (const auto& [name, value] : small.error(x, x)) CHECK(value.value() == 0);
   Positions moved = x;
   moved.col(2).array() += 0.01;
-  const StateError error = small.error(moved, x);
-  CHECK(error[0].value() == Approx(0.01 / std::sqrt(2.0)).epsilon(1e-9));
-  CHECK(error[1].value() <= 0.01 / std::sqrt(2.0) * (1 + 1e-9));
-  CHECK(error[1].value() > 0.5 * 0.01 / std::sqrt(2.0));
-  CHECK(error[2].value() < 1e-12);
+  auto error = small.error(moved, x);
+  CHECK(error["rms"].value() == Approx(0.01 / std::sqrt(2.0)).epsilon(1e-9));
+  CHECK(error["hausdorff"].value() <= 0.01 / std::sqrt(2.0) * (1 + 1e-9));
+  CHECK(error["hausdorff"].value() > 0.5 * 0.01 / std::sqrt(2.0));
+  CHECK(error["d_H_fit"].value() < 1e-12);
   const double lifted = 472.6 * 3.18e-4 * 9.81 * 0.01;  // weight of a square metre, 1 cm up [J]
-  CHECK(error[3].value() > 0.001);
-  CHECK(error[3].value() < 0.5);
-  CHECK(error[4].value() == Approx(lifted / std::abs(small.energy(x))).epsilon(1e-6));
+  CHECK(error["silhouette_mismatch"].value() > 0.001);
+  CHECK(error["silhouette_mismatch"].value() < 0.5);
+  CHECK(error["energy_gap"].value() == Approx(lifted / std::abs(small.energy(x))).epsilon(1e-6));
 }
 
-TEST_CASE("measures without a metric in the experiment stay empty") {
+TEST_CASE("only the experiment's metrics and the energy measure errors") {
   const Loaded small(Overrides{{"metrics", "[distance]"}});
   const Positions& x = small.scene->starts.back();
-  const StateError error = small.error(x, x);
-  CHECK(error[0].has_value());
-  CHECK(!error[2].has_value());
-  CHECK(!error[3].has_value());
-  CHECK(error[4].has_value());
+  const auto error = small.error(x, x);
+  CHECK(error.size() == 3);
+  for (const char* measure : {"rms", "hausdorff", "energy_gap"}) CHECK(error.at(measure).has_value());
 }
 
 TEST_CASE("a run writes snapshots and errors, against its own end and a tighter reference") {

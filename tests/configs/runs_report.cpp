@@ -94,8 +94,8 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
     iterations.push_back(sum);
   }
   std::sort(iterations.begin(), iterations.end());
-  for (const RowQuantity& f : row_quantities()) {
-    if (std::string(f.name) != "iterations") continue;
+  for (const RowQuantity& f : row_quantities(collection.error_measures())) {
+    if (f.name != "iterations") continue;
     const auto spread = spread_of(rows[0], f);
     REQUIRE(spread);
     CHECK(spread->low == iterations[0]);
@@ -104,7 +104,7 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
   }
   const RunData medians = median_consistency(collection, "matrix=coarse");
   REQUIRE(medians.methods.size() == 3);
-  CHECK(medians.methods[0].pair(0, 1)->d_H_fit.value() > 0);
+  CHECK(medians.methods[0].pair(0, 1)->metrics.of("d_H_fit").value() > 0);
 }
 
 TEST_CASE("a direct method's cost is that of the level it ends with") {
@@ -112,7 +112,7 @@ TEST_CASE("a direct method's cost is that of the level it ends with") {
   for (const MethodRecord& m : collection.runs[0].data->methods) {
     const double all = *m.levels[0].flops + *m.levels[1].flops;
     CHECK(m.cost(&LevelRecord::flops).value() == (m.name == "newton" ? *m.levels[1].flops : all));
-    for (const CostPoint& p : error_curve(*collection.runs[0].data, m.name, 2, 1, 0))
+    for (const CostPoint& p : error_curve(*collection.runs[0].data, m.name, 2, 1, "rms"))
       CHECK(p.cost <= all * 1.0001);
   }
 }

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -43,13 +44,44 @@ std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics(MetricScope
   return chosen;
 }
 
-void check_form(const MetricResult& result, int vertices) {
+/// The declaration of a value; of a dotted name, that of the part before the dot.
+const MetricColumn& column_of(const std::vector<MetricColumn>& columns, const std::string& value) {
+  const std::string name = value.substr(0, value.find('.'));
+  const auto found =
+      std::find_if(columns.begin(), columns.end(), [&](const MetricColumn& c) { return c.name == name; });
+  INFO(value);
+  REQUIRE(found != columns.end());
+  return *found;
+}
+
+void check_form(const Metric& metric, const MetricResult& result, int vertices) {
   REQUIRE_FALSE(result.values.empty());
-  std::set<std::string> names;
+  std::set<std::string> names, labels;
+  const MetricDeclaration declared = metric.declaration();
+  for (const MetricColumn& c : declared.columns) {
+    INFO(c.name);
+    CHECK_FALSE(c.unit.empty());
+    CHECK_FALSE(c.label.empty());
+    CHECK(labels.insert(c.label).second);
+    CHECK((c.error.empty() || metric.scope() == MetricScope::pair));
+    CHECK(std::any_of(result.values.begin(), result.values.end(),
+                      [&](const MetricValue& v) { return &column_of(declared.columns, v.name) == &c; }));
+  }
+  for (const MetricPicture& p : declared.pictures) {
+    INFO(p.name);
+    for (const std::string& field : {p.field, p.other_field})
+      CHECK((field.empty() || std::any_of(result.fields.begin(), result.fields.end(),
+                                          [&](const MetricField& f) { return f.name == field; })));
+    CHECK_FALSE(p.field.empty());
+    CHECK(p.other_field.empty() == (p.kind == PictureKind::difference));
+    CHECK(p.name.size() <= longest_picture_name);
+    for (const std::string& text : {p.unit, p.label, p.title, p.text}) CHECK_FALSE(text.empty());
+    if (!p.column.empty()) CHECK(column_of(declared.columns, p.column).name == p.column);
+  }
   for (const MetricValue& v : result.values) {
     INFO(v.name);
     CHECK(std::isfinite(v.value));
-    CHECK_FALSE(v.unit.empty());
+    column_of(declared.columns, v.name);
     CHECK(names.insert(v.name).second);
   }
   for (const MetricField& f : result.fields) {
@@ -66,11 +98,11 @@ TEST_CASE("Metrics give finite, named values with units", "[conformance]") {
   const Fixture f;
   for (const auto& [name, metric] : metrics(MetricScope::state)) {
     INFO(name);
-    check_form(metric->evaluate(f.state(f.a)), f.s.level().vertex_count());
+    check_form(*metric, metric->evaluate(f.state(f.a)), f.s.level().vertex_count());
   }
   for (const auto& [name, metric] : metrics(MetricScope::pair)) {
     INFO(name);
-    check_form(metric->evaluate(f.pair(f.a, f.b)), f.s.level().vertex_count());
+    check_form(*metric, metric->evaluate(f.pair(f.a, f.b)), f.s.level().vertex_count());
   }
 }
 
@@ -81,7 +113,9 @@ TEST_CASE("A state does not differ from itself", "[conformance]") {
     REQUIRE(same.values.size() == other.values.size());
     for (std::size_t i = 0; i < same.values.size(); ++i) {
       INFO(name << ": " << same.values[i].name);
-      const double nothing = same.values[i].better == Better::higher ? 1 : 0;  // an overlap, or a difference
+      const std::vector<MetricColumn> columns = metric->declaration().columns;
+      const Better better = column_of(columns, same.values[i].name).better;
+      const double nothing = better == Better::higher ? 1 : 0;  // an overlap, or a difference
       CHECK(std::abs(same.values[i].value - nothing) <= 1e-14);
       CHECK(std::abs(other.values[i].value - nothing) > 1e-6);
     }

@@ -95,11 +95,11 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
     run.variation = "case";
     run.status = "converged";
     run.data = data;
-    return table_rows({"set", true, {run}});
+    return table_of({"set", true, {run}});
   };
-  CHECK(all_pass(rows(1.0, 0.0)));
-  CHECK(!all_pass(rows(1.0, 1.0)));
-  CHECK(!all_pass(rows({}, 0.0)));
+  CHECK(rows(1.0, 0.0).all_pass());
+  CHECK(!rows(1.0, 1.0).all_pass());
+  CHECK(!rows({}, 0.0).all_pass());
 }
 
 TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
@@ -115,7 +115,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
     run.status = "converged";
     run.expected = expected;
     run.data = data;
-    return all_pass(table_rows({"set", true, {run}}));
+    return table_of({"set", true, {run}}).all_pass();
   };
   CHECK(passes("converged_to_rounding", "converged"));
   CHECK(passes("converged_to_rounding", "converged_to_rounding"));

@@ -18,6 +18,7 @@
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/topology.h"
+#include "tests/support/declared_metrics.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -84,7 +85,7 @@ struct SampleRun {
                {"machine", {{"cpu", "test processor"}, {"cores", 2}, {"threads", 1}}},
                {"version", "drape 0.0.0"},
                {"tolerance", {{"force_residual", 1e-3}}},
-               {"table1_scene", "Drape over Sphere in Figure 6"}};
+               {"metrics", json_of(sample_metrics())}};
     std::string steps =
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,step_"
         "size\n";
@@ -196,9 +197,10 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(contains(page, "<td>123 MB</td>"));                             // peak memory
   CHECK(contains(page, "<td><strong>13.6</strong></td><td>136</td>"));  // pcs leads, the lower is bold
   CHECK(contains(page, "<td><strong>2.72e4</strong></td><td>2.72e5</td>"));
-  CHECK(contains(page, "<td>0.432</td>"));                                   // an energy part
-  CHECK(contains(page, "<td><strong>105</strong></td><td>1400</td>"));       // Table 1, 0 → 1, d_H_fit
-  CHECK(contains(page, "<td><strong>2.54e4</strong></td><td>9.14e5</td>"));  // … d_K_fit, the last column
+  CHECK(contains(page, "<td>0.432</td>"));  // an energy part
+  CHECK(contains(page, "<th>largest stretch</th>"));
+  CHECK(contains(page, "<td>1.0432</td>"));
+  CHECK(contains(page, "d<sub>H</sub> is of mean curvature."));
   CHECK(contains(page, "cloth: {size: 1 m}"));
   CHECK(contains(page, "169 vertices"));
   const std::string words = words_of(page);
@@ -228,8 +230,13 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
   const std::string page = run.page();
   const PictureSet set = draw_pictures(read_run(run.folder));
   CHECK(set.notes.empty());
-  CHECK(set.maps_on_rest);
-  CHECK(set.H_difference_scale > 10);
+  REQUIRE(set.fields.size() == 2);
+  CHECK(set.fields[0].on_rest);
+  CHECK(set.fields[0].scale > 10);
+  CHECK(contains(page,
+                 "<h2>Where the curvature changes</h2>\n<p>Difference in mean curvature. Drawn on the flat "
+                 "rest shape."));
+  CHECK(contains(page, "<b>pcs</b>, level 0 to 1: d<sub>H</sub><sup>fit</sup> = 13.6"));
   REQUIRE(set.pictures.size() == 2 * (2 + 1 + 2));
   for (const auto& [name, picture] : set.pictures) {
     INFO(name);
@@ -279,8 +286,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     for (const char* name : {"fields", "rest", "levels", "steps.csv", "config.yaml"})
       fs::remove_all(run.folder / name);
     const std::string page = run.page();
-    CHECK(contains(page, "No curvature differences were stored"));
-    CHECK(contains(page, "No principal curvatures were stored"));
+    CHECK(occurrences(page, "No field was stored for these pictures in this run.") == 2);
     CHECK(contains(page, "config.yaml was not stored."));
     CHECK_FALSE(contains(page, "<img width"));
   }
@@ -375,28 +381,6 @@ TEST_CASE("a report has plots of load increments if there is a schedule") {
   CHECK(data[1]["time"] == Json({0.5, 1}));
   CHECK(data[1]["steps"] == Json({5, 10}));
   CHECK(data[1]["energy"] == Json({-0.5, -1}));
-}
-
-TEST_CASE("Table 1 says what the supplement says: PCS lower in every measure") {
-  int rows = 0;
-  for (const Table1Block& block : table1()) {
-    REQUIRE(block.rows.size() % 2 == 0);
-    for (std::size_t k = 0; k < block.rows.size(); k += 2) {
-      const Table1Row &pcs = block.rows[k], &other = block.rows[k + 1];
-      INFO(block.scene << " " << pcs.coarse << " to " << pcs.fine);
-      CHECK(pcs.method == "PCS");
-      CHECK(std::pair(pcs.coarse, pcs.fine) == std::pair(other.coarse, other.fine));
-      CHECK(pcs.d_H_fit < other.d_H_fit);
-      CHECK(pcs.d_H_ddg < other.d_H_ddg);
-      CHECK(pcs.d_K_fit < other.d_K_fit);
-      CHECK(pcs.d_K_ddg < other.d_K_ddg);
-      rows += 2;
-    }
-  }
-  CHECK(rows == 20);
-  REQUIRE(table1_block("Bunny in Figure 12"));
-  CHECK(table1_block("Bunny in Figure 12")->rows[1].d_K_ddg == 1.10e8);
-  CHECK_FALSE(table1_block(""));
 }
 
 TEST_CASE("figures in a report have three digits") {
@@ -495,9 +479,11 @@ TEST_CASE("errors are read, drawn and described; a run without them says so") {
   REQUIRE(data.errors.size() == 2);
   CHECK(data.errors[0].method == "pcs");
   CHECK(data.errors[0].rows[0].cost[2].value() == 1e6);
-  CHECK_FALSE(data.errors[0].rows[0].error[1][3]);  // a run of before there was that measure
-  CHECK(data.errors[0].rows[0].error[1][4].value() == -0.01);
-  CHECK(!data.errors[1].rows[0].error[1][0]);
+  CHECK_FALSE(data.errors[0].rows[0].error[1].of("silhouette_mismatch"));  // the file has no such column
+  CHECK(data.errors[0].rows[0].error[1].of("energy_gap").value() == -0.01);
+  CHECK(!data.errors[1].rows[0].error[1].of("rms"));
+  CHECK(Json::parse(chart_data(data))["measures"][0] ==
+        Json{{"name", "rms"}, {"label", "distance, RMS [diagonal]"}});
   const Json drawn = Json::parse(chart_data(data))["errors"];
   REQUIRE(drawn.size() == 2);
   CHECK(drawn[0]["own"]["rms"] == Json{0.25});

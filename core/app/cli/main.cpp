@@ -23,7 +23,6 @@
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_table.h"
 #include "core/app/report/runs_report.h"
-#include "core/app/report/tables.h"
 #include "core/app/run/runner.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/mesh/file.h"
@@ -156,7 +155,7 @@ int main_checked(int argc, char** argv) {
   const ViewCommand view(app);
   const ExportCommand export_command(app);
 
-  std::string kind, plugin, help_on, out, run_folder, schema_kind = "experiment";
+  std::string kind, plugin, help_on, out, readmes_folder, schema_kind = "experiment";
   std::vector<std::string> report_folders, compared, bounds, columns;
   TableFormat format = TableFormat::markdown;
   CLI::App* report_command =
@@ -200,16 +199,11 @@ int main_checked(int argc, char** argv) {
   CLI::App* help_command = app.add_subcommand("help", "show a command's options and an example");
   show_example(*help_command, "drape help run");
   help_command->add_option("command", help_on, "the command");
-  CLI::App* table1_command =
-      app.add_subcommand("table1", "print a run's consistency beside the supplement's Table 1");
-  for_developers(*table1_command);
-  show_example(*table1_command, "drape table1 results/sphere");
-  table1_command->add_option("folder", run_folder, "results folder")->required();
   CLI::App* reference_command =
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
   for_developers(*reference_command);
   show_example(*reference_command, "drape reference --readmes plugins");
-  reference_command->add_option("--readmes", run_folder,
+  reference_command->add_option("--readmes", readmes_folder,
                                 "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
 
   std::vector<std::string> words = command_words(argc, argv);
@@ -233,19 +227,16 @@ int main_checked(int argc, char** argv) {
     return report({report_folders.begin(), report_folders.end()}, out);
   }
   if (*compare_command) {
-    const Comparison comparison(read_runs({compared[0]}), read_runs({compared[1]}), parse_bounds(bounds));
+    const RunCollection before = read_runs({compared[0]}), after = read_runs({compared[1]});
+    const Comparison comparison(before, after, parse_bounds(bounds, before, after));
     std::cout << printable_lines(comparison.text());
     return comparison.broken() ? exit_bound_broken : exit_done;
   }
   if (*table_command) {
-    const std::vector<TableRow> rows = table_rows(read_runs({report_folders.begin(), report_folders.end()}));
-    const std::string table = table_text(rows, columns, format);
-    std::cout << (format == TableFormat::json ? table : printable_lines(table));
-    return all_pass(rows) ? exit_done : exit_not_converged;
-  }
-  if (*table1_command) {
-    std::cout << printable_lines(table1_text(read_run(run_folder)));
-    return exit_done;
+    const RunTable table = table_of(read_runs({report_folders.begin(), report_folders.end()}));
+    const std::string text = table_text(table, columns, format);
+    std::cout << (format == TableFormat::json ? text : printable_lines(text));
+    return table.all_pass() ? exit_done : exit_not_converged;
   }
   if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
@@ -263,7 +254,7 @@ int main_checked(int argc, char** argv) {
     return exit_done;
   }
   if (*reference_command)
-    return run_folder.empty() ? reference(registry) : reference_into(run_folder, registry);
+    return readmes_folder.empty() ? reference(registry) : reference_into(readmes_folder, registry);
   return exit_bad_input;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 /// Whether every run ended as expected.
 int exit_code_of(const SweepFolder& folder) {
-  return all_pass(table_rows(read_runs({folder.path()}))) ? exit_done : exit_not_converged;
+  return table_of(read_runs({folder.path()})).all_pass() ? exit_done : exit_not_converged;
 }
 
 /// Lists the runs without writing anything.

@@ -18,6 +18,7 @@ Csv::Csv(const std::filesystem::path& path) {
     if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
     if (columns_.empty()) {
       for (std::size_t k = 0; k < cells.size(); ++k) columns_[cells[k]] = k;
+      names_ = std::move(cells);
     } else if (cells.size() >= columns_.size()) {
       rows_.push_back(std::move(cells));
     }

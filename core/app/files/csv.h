@@ -16,12 +16,15 @@ class Csv {
   explicit Csv(const std::filesystem::path& path);
 
   std::size_t size() const { return rows_.size(); }
+  /// In the file's order.
+  const std::vector<std::string>& names() const { return names_; }
   bool has(const std::string& column) const { return columns_.count(column) > 0; }
   /// Empty or absent without such a column.
   std::string text(std::size_t row, const std::string& column) const;
   OptionalNumber number(std::size_t row, const std::string& column) const;
 
  private:
+  std::vector<std::string> names_;
   std::map<std::string, std::size_t> columns_;
   std::vector<std::vector<std::string>> rows_;
 };

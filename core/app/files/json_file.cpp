@@ -7,19 +7,20 @@
 #include "core/kernel/mesh/message_text.h"
 
 namespace drape {
-namespace {
 
 using Json = JsonFile::Json;
 
-/// Null where the key is absent.
-const Json& value_of(const Json& object, const std::string& key) {
+const Json& member_of(const Json& object, const std::string& key) {
   static const Json absent;
   if (!object.is_object()) return absent;
   const auto found = object.find(key);
   return found != object.end() ? *found : absent;
 }
 
-}  // namespace
+std::string text_member(const Json& object, const std::string& key) {
+  const Json& text = member_of(object, key);
+  return text.is_string() ? text.get<std::string>() : std::string();
+}
 
 void JsonFile::refuse(const std::string& fault) const {
   throw std::runtime_error(path_.string() + ": " + fault + "; " + remedy_);
@@ -32,7 +33,7 @@ void JsonFile::refuse(const std::string& key, const std::string& kind, const Jso
 
 template <>
 std::optional<bool> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = value_of(object, key);
+  const Json& value = member_of(object, key);
   if (value.is_null()) return {};
   if (!value.is_boolean()) refuse(key, "true or false", value);
   return value.get<bool>();
@@ -40,7 +41,7 @@ std::optional<bool> JsonFile::find(const Json& object, const std::string& key) c
 
 template <>
 std::optional<double> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = value_of(object, key);
+  const Json& value = member_of(object, key);
   if (value.is_null()) return {};
   if (!value.is_number() || !std::isfinite(value.get<double>())) refuse(key, "a number", value);
   return value.get<double>();
@@ -48,7 +49,7 @@ std::optional<double> JsonFile::find(const Json& object, const std::string& key)
 
 template <>
 std::optional<int> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = value_of(object, key);
+  const Json& value = member_of(object, key);
   if (value.is_null()) return {};
   const std::optional<int> whole = value.is_number() ? whole_number(value.get<double>()) : std::nullopt;
   if (!whole) refuse(key, "a whole number", value);
@@ -57,7 +58,7 @@ std::optional<int> JsonFile::find(const Json& object, const std::string& key) co
 
 template <>
 std::optional<std::string> JsonFile::find(const Json& object, const std::string& key) const {
-  const Json& value = value_of(object, key);
+  const Json& value = member_of(object, key);
   if (value.is_null()) return {};
   if (!value.is_string()) refuse(key, "a text", value);
   return value.get<std::string>();

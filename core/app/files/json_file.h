@@ -34,6 +34,11 @@ class JsonFile {
   std::string remedy_;
 };
 
+/// A member of an object; null if the key is absent or it is no object.
+const nlohmann::ordered_json& member_of(const nlohmann::ordered_json& object, const std::string& key);
+/// A member's text; empty if it is none.
+std::string text_member(const nlohmann::ordered_json& object, const std::string& key);
+
 /// A whole, non-negative number as an int; empty otherwise.
 std::optional<int> whole_number(double value);
 

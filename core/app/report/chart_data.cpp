@@ -105,9 +105,9 @@ Json errors_json(const RunData& run) {
     for (std::size_t w = 0; w < error_costs.size(); ++w)
       for (const ErrorRow& row : series.rows) entry[error_costs[w]].push_back(rounded(row.cost[w]));
     for (std::size_t t = 0; t < error_targets.size(); ++t)
-      for (std::size_t m = 0; m < error_measures.size(); ++m)
+      for (const ErrorMeasure& m : run.error_measures)
         for (const ErrorRow& row : series.rows)
-          entry[error_targets[t]][error_measures[m]].push_back(rounded(row.error[t][m]));
+          entry[error_targets[t]][m.name].push_back(rounded(row.error[t].of(m.name)));
     all.push_back(entry);
   }
   return all;
@@ -140,6 +140,12 @@ Json rounded(const OptionalNumber& value) {
   return std::strtod(text, nullptr);
 }
 
+Json measures_json(const std::vector<ErrorMeasure>& measures) {
+  Json all = Json::array();
+  for (const ErrorMeasure& m : measures) all.push_back({{"name", m.name}, {"label", m.label}});
+  return all;
+}
+
 std::string script_json(const Json& data) {
   const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string safe;
@@ -161,6 +167,7 @@ std::string chart_data(const RunData& run) {
                      {"finest", run.finest_level()},
                      {"tolerance", rounded(run.force_tolerance)},
                      {"series", series_json(run)},
+                     {"measures", measures_json(run.error_measures)},
                      {"errors", errors_json(run)},
                      {"increments", increments_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},

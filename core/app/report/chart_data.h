@@ -12,6 +12,9 @@ namespace drape {
 /// part.
 std::string chart_data(const RunData& run);
 
+/// Names and labels of measures of errors.
+nlohmann::ordered_json measures_json(const std::vector<ErrorMeasure>& measures);
+
 /// Six digits, enough for drawing; null if absent.
 nlohmann::ordered_json rounded(const OptionalNumber& value);
 

@@ -5,7 +5,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "core/app/report/pair_measures.h"
 #include "core/app/report/run_rows.h"
 #include "core/app/report/text_table.h"
 #include "core/app/view/html.h"
@@ -29,28 +28,47 @@ constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
                               {"iterations", &LevelRecord::newton_iterations},
                               {"flops", &LevelRecord::flops},
                               {"energy", &LevelRecord::energy_on_finest},
-                              {"largest_stretch", &LevelRecord::largest_stretch},
                               {"intersections", &LevelRecord::intersections},
                               {"smallest_gap", &LevelRecord::smallest_gap}};
 
-std::vector<std::string> known_keys() {
-  std::vector<std::string> keys;
-  const auto add = [&](const char* name) {
-    if (std::find(keys.begin(), keys.end(), name) == keys.end()) keys.emplace_back(name);
-  };
-  for (const Key& key : level_keys) add(key.name);
-  for (const PairMeasure& measure : pair_measures) add(measure.name);
-  for (const RowQuantity& f : row_quantities()) add(f.name);
-  return keys;
-}
+/// The quantities that one or both sides have, beside level_keys.
+struct Quantities {
+  std::vector<RowQuantity> rows;
+  std::vector<MetricColumn> states, pairs;
+
+  Quantities(const RunCollection& before, const RunCollection& after) {
+    std::vector<DeclaredMetric> metrics = before.metrics();
+    merge(metrics, after.metrics());
+    states = columns_of(metrics, MetricScope::state, Shown::summary);
+    pairs = columns_of(metrics, MetricScope::pair, Shown::tables);
+    rows = row_quantities(before.error_measures());
+    for (RowQuantity& f : row_quantities(after.error_measures()))
+      if (std::none_of(rows.begin(), rows.end(), [&](const RowQuantity& own) { return own.name == f.name; }))
+        rows.push_back(std::move(f));
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    for (const Key& key : level_keys) add(key.name);
+    for (const auto* columns : {&states, &pairs})
+      for (const MetricColumn& column : *columns) add(column.name);
+    for (const RowQuantity& f : rows) add(f.name);
+    return names;
+  }
+
+  Better better(const std::string& name) const {
+    for (const auto* columns : {&states, &pairs})
+      for (const MetricColumn& column : *columns)
+        if (column.name == name) return column.better;
+    return name == "smallest_gap" ? Better::higher : Better::lower;
+  }
+};
 
 bool is_time(const std::string& key) { return key == "seconds" || key == "preview_seconds"; }
 bool is_work(const std::string& key) { return key == "iterations" || key == "flops"; }
-bool higher_is_better(const std::string& key) {
-  for (const PairMeasure& measure : pair_measures)
-    if (key == measure.name) return measure.better == Better::higher;
-  return key == "smallest_gap";
-}
 
 /// Values by level and key, in file order, and whether each method converged.
 struct Sheet {
@@ -67,31 +85,36 @@ struct Sheet {
   }
 };
 
-void add_method(Sheet& sheet, const std::string& prefix, const RunData& run, const MethodRecord& method) {
+void add_method(Sheet& sheet, const Quantities& quantities, const std::string& prefix, const RunData& run,
+                const MethodRecord& method) {
   const std::string name = prefix + method.name;
   sheet.converged.emplace_back(name, has_converged(method.status));
-  for (const RowQuantity& f : row_quantities()) sheet.add(name, f.name, f.of(run, method));
+  for (const RowQuantity& f : quantities.rows) sheet.add(name, f.name, f.of(run, method));
   if (method.levels.size() > 1)
-    for (const LevelRecord& level : method.levels)
-      for (const Key& key : level_keys)
-        sheet.add(name + ", level " + std::to_string(level.level), key.name, level.*key.of);
+    for (const LevelRecord& level : method.levels) {
+      const std::string where = name + ", level " + std::to_string(level.level);
+      for (const Key& key : level_keys) sheet.add(where, key.name, level.*key.of);
+      for (const MetricColumn& column : quantities.states)
+        sheet.add(where, column.name, level.metrics.of(column.name));
+    }
   else if (!method.levels.empty())
     for (const char* key : {"intersections", "smallest_gap"})
       for (const Key& k : level_keys)
         if (std::string(k.name) == key) sheet.add(name, key, method.levels.front().*k.of);
   for (const ConsistencyRecord& pair : method.consistency)
-    for (const PairMeasure& measure : pair_measures)
+    for (const MetricColumn& column : quantities.pairs)
       sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine),
-                measure.name, pair.*measure.value);
+                column.name, pair.metrics.of(column.name));
 }
 
-Sheet sheet_of(const RunCollection& collection, bool named) {
+Sheet sheet_of(const RunCollection& collection, const Quantities& quantities, bool named) {
   Sheet sheet;
   for (const RunRecord& run : collection.runs) {
     std::string prefix;
     if (named) prefix = run.variation + (run.seed ? ", seed " + html::count(run.seed) : "") + ": ";
     if (!run.data) continue;
-    for (const MethodRecord& method : run.data->methods) add_method(sheet, prefix, *run.data, method);
+    for (const MethodRecord& method : run.data->methods)
+      add_method(sheet, quantities, prefix, *run.data, method);
   }
   return sheet;
 }
@@ -101,7 +124,8 @@ std::string verdict(const Change& c) {
   const double noise = is_time(c.key) ? time_noise : relative_noise;
   if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
   if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
-  const bool good = (difference < 0) != higher_is_better(c.key);
+  if (c.better == Better::neither) return "other";
+  const bool good = (difference < 0) != (c.better == Better::higher);
   if (is_time(c.key)) return good ? "faster" : "slower";
   if (is_work(c.key)) return good ? "less work" : "more work";
   return good ? "better" : "worse";
@@ -110,7 +134,7 @@ std::string verdict(const Change& c) {
 /// Energies may be negative and counts zero: a ratio is relative to the absolute value.
 bool holds(const Change& c, double ratio) {
   if (is_time(c.key) && c.after - c.before < least_seconds) return true;
-  if (higher_is_better(c.key)) return c.after * ratio >= c.before;
+  if (c.better == Better::higher) return c.after * ratio >= c.before;
   return c.after <= c.before + (ratio - 1) * std::abs(c.before);
 }
 
@@ -121,9 +145,10 @@ std::string change_of(const Change& c) {
 
 }  // namespace
 
-std::vector<Bound> parse_bounds(const std::vector<std::string>& texts) {
+std::vector<Bound> parse_bounds(const std::vector<std::string>& texts, const RunCollection& before,
+                                const RunCollection& after) {
   std::vector<Bound> bounds;
-  const std::vector<std::string> known = known_keys();
+  const std::vector<std::string> known = Quantities(before, after).names();
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
@@ -148,10 +173,11 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
                        const std::vector<Bound>& bounds)
     : bounds_(bounds.size()) {
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;
-  const Sheet a = sheet_of(before, named), b = sheet_of(after, named);
+  const Quantities quantities(before, after);
+  const Sheet a = sheet_of(before, quantities, named), b = sheet_of(after, quantities, named);
   for (const auto& [where, key, value] : a.entries)
     if (const double* now = b.find(where, key)) {
-      Change& change = changes_.emplace_back(Change{where, key, value, *now, "", false});
+      Change& change = changes_.emplace_back(Change{where, key, value, *now, quantities.better(key)});
       change.verdict = verdict(change);
     }
   if (changes_.empty())
@@ -176,7 +202,7 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
       broken_.push_back(change.where + ": " + bound.key + " went from " + html::number_text(change.before) +
                         " to " + html::number_text(change.after) + ", more than the bound of " +
                         ConfigNode::of(bound.ratio).scalar +
-                        (higher_is_better(bound.key) ? " lets it fall" : " allows"));
+                        (change.better == Better::higher ? " lets it fall" : " allows"));
     }
     if (met == 0)
       throw std::runtime_error("--bound " + bound.key + ": no match has this quantity on both sides");
@@ -200,7 +226,7 @@ std::string Comparison::text() const {
                       c.verdict + (c.broken ? " (bound broken)" : "")});
   }
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";
-  for (const char* word : {"faster", "slower", "less work", "more work", "better", "worse", ""})
+  for (const char* word : {"faster", "slower", "less work", "more work", "better", "worse", "other", ""})
     if (counts.count(word))
       text += (text.empty() || text.back() == '\n' ? "" : ", ") + std::to_string(counts[word]) + " " +
               (*word ? word : "the same");

@@ -13,16 +13,19 @@ struct Bound {
   double ratio = 1;
 };
 
-/// Reads "seconds=1.1" and the like. Throws std::runtime_error with one line that says what is wrong.
-std::vector<Bound> parse_bounds(const std::vector<std::string>& texts);
+/// Reads "seconds=1.1" and the like; the keys are quantities of either side. Throws std::runtime_error with
+/// one line that says what is wrong.
+std::vector<Bound> parse_bounds(const std::vector<std::string>& texts, const RunCollection& before,
+                                const RunCollection& after);
 
 /// One quantity before and after.
 struct Change {
   std::string where;  ///< "pcs, level 2", with variation and seed if there are several
   std::string key;
   double before = 0, after = 0;
-  std::string
-      verdict;  ///< "faster", "slower", "less work", "more work", "better", "worse", or "" for the same
+  Better better = Better::lower;
+  /// "faster", "slower", "less work", "more work", "better", "worse", "other", or "" for the same
+  std::string verdict = {};
   bool broken = false;  ///< violates a bound
 };
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/app/report/pair_measures.h"
+#include "core/app/report/metric_columns.h"
 #include "core/app/report/tables.h"
 #include "core/app/view/html.h"
 
@@ -20,24 +20,24 @@ std::string shortest(double value) {
   return text.str();
 }
 
-/// The method whose coarsest and finest levels differ least, if several have them and the flat initial state
-/// would not score as well.
-std::string most_consistent(const RunData& run) {
+/// The method whose coarsest and finest levels agree best by a column, if several have them and the flat
+/// initial state would not score as well.
+std::string most_consistent(const RunData& run, const MetricColumn& column) {
   const auto pairs = run.pairs();
   if (pairs.empty()) return "";
   const int coarse = pairs.front().first, fine = pairs.back().second;
   std::vector<const ConsistencyRecord*> records;
   for (const MethodRecord& method : run.methods)
     if (const ConsistencyRecord* pair = method.pair(coarse, fine)) records.push_back(pair);
-  const OptionalNumber lowest = best_of(pair_measures[0], records);
-  if (!lowest) return "";
+  const OptionalNumber best_value = best_of(column, records);
+  if (!best_value) return "";
   const auto best = std::find_if(run.methods.begin(), run.methods.end(), [&](const MethodRecord& method) {
     const ConsistencyRecord* pair = method.pair(coarse, fine);
-    return pair && pair->d_H_fit == lowest;
+    return pair && pair->metrics.of(column.name) == best_value;
   });
   return "; from level " + std::to_string(coarse) + " to " + std::to_string(fine) + ", <b>" +
-         escape(best->name) +
-         "</b> changes its mean curvature least (d<sub>H</sub><sup>fit</sup> = " + number_text(lowest) + ")";
+         escape(best->name) + "</b> " + html::formula(column.best) + " (" + label_html(column) + " = " +
+         value_text(column, best_value) + ")";
 }
 
 /// "1 pair" or "3 pairs".
@@ -204,7 +204,8 @@ std::string outcome_sentence(const RunData& run) {
     }
     text += ")";
   }
-  text += most_consistent(run);
+  for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::tables))
+    if (!column.best.empty()) text += most_consistent(run, column);
   return text + ".";
 }
 

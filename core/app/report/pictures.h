@@ -16,28 +16,34 @@ struct Picture {
   std::string png;
 };
 
+/// What the pictures of one field that a metric declares have in common.
+struct FieldPictures {
+  MetricPicture declared;
+  double scale = 0;      ///< end of the colour map, or the threshold, in the field's unit; 0 without a field
+  bool on_rest = false;  ///< whether differences are drawn on the flat rest shape
+};
+
 /// All pictures of a run, and the scales they share.
 struct PictureSet {
   /// By file name in DIR/pictures, as the *_picture functions below give it.
   std::map<std::string, Picture> pictures;
-  double H_difference_scale = 0;   ///< [1/m], end of the colour map, equal for all methods
-  bool maps_on_rest = false;       ///< whether differences are drawn on the flat rest shape
-  double fold_threshold = 0;       ///< [1/m], of |principal curvature|
-  std::vector<std::string> notes;  ///< pictures that could not be drawn, one line each
+  std::vector<FieldPictures> fields;  ///< in the order of declaration
+  std::vector<std::string> notes;     ///< pictures that could not be drawn, one line each
 
   const Picture* find(const std::string& name) const;
 };
 
-/// Share of |H_c − H_f| within the colour map's range, and of |principal curvature| below the threshold
-/// on the finest state of the first method.
-inline constexpr double H_difference_quantile = 0.98;
-inline constexpr double fold_quantile = 0.88;
+/// Share of a difference's magnitudes within the colour map's range, and of a field's below the threshold on
+/// the finest state of the first method.
+inline constexpr double difference_quantile = 0.98;
+inline constexpr double threshold_quantile = 0.88;
 
 std::string state_picture(const MethodRecord& method, int level);
-std::string fold_picture(const MethodRecord& method, int level);
-std::string H_difference_picture(const MethodRecord& method, const ConsistencyRecord& pair);
+std::string threshold_picture(const MetricPicture& picture, const MethodRecord& method, int level);
+std::string difference_picture(const MetricPicture& picture, const MethodRecord& method,
+                               const ConsistencyRecord& pair);
 
-/// The pair whose curvature difference is shown: the coarsest against the finest level.
+/// The pair whose difference is shown: the coarsest against the finest level.
 const ConsistencyRecord* widest_pair(const MethodRecord& method);
 
 /// Draws all pictures of a run and writes them to DIR/pictures. A missing or unreadable mesh becomes a note.

@@ -1,6 +1,7 @@
 #include "core/app/report/report.h"
 
 #include "core/app/report/chart_data.h"
+#include "core/app/report/metric_columns.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report_view.h"
 #include "core/app/report/tables.h"
@@ -74,41 +75,69 @@ std::string state_grid(const RunData& run, const Gallery& gallery) {
   return text + "</div>\n";
 }
 
-std::string H_difference_grid(const RunData& run, const Gallery& gallery, const PictureSet& set) {
-  if (!(set.H_difference_scale > 0)) {
-    return "<p class=\"absent\">No curvature differences were stored in this run.</p>";
-  }
-  const std::string end = number_text(set.H_difference_scale);
+std::string difference_grid(const RunData& run, const Gallery& gallery, const FieldPictures& pictures) {
+  const MetricPicture& declared = pictures.declared;
+  const std::string end = number_text(pictures.scale);
   std::string text = "<p class=\"legend\"><span>−" + end + "</span><i class=\"diverging\"></i><span>+" + end +
-                     " 1/m</span></p>\n" + grid_open(run.methods.size());
+                     " " + escape(declared.unit) + "</span></p>\n" + grid_open(run.methods.size());
   for (const MethodRecord& method : run.methods) {
     const ConsistencyRecord* pair = widest_pair(method);
     const std::string levels =
         pair ? "level " + std::to_string(pair->coarse) + " to " + std::to_string(pair->fine) : "no pair";
-    const std::string name = pair ? H_difference_picture(method, *pair) : "";
-    text += gallery.shown(
-        name, method.name + ": difference in mean curvature, " + levels,
-        "<b>" + escape(method.name) + "</b>, " + levels +
-            ": d<sub>H</sub><sup>fit</sup> = " + number_text(pair ? pair->d_H_fit : OptionalNumber()));
+    std::string caption = "<b>" + escape(method.name) + "</b>, " + levels;
+    for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::stored))
+      if (column.name == declared.column)
+        caption += ": " + label_html(column) + " = " +
+                   value_text(column, pair ? pair->metrics.of(column.name) : OptionalNumber());
+    text += gallery.shown(pair ? difference_picture(declared, method, *pair) : "",
+                          method.name + ": " + declared.label + ", " + levels, caption);
   }
   return text + "</div>\n";
 }
 
-std::string fold_grid(const RunData& run, const Gallery& gallery, const PictureSet& set) {
-  if (!(set.fold_threshold > 0)) {
-    return "<p class=\"absent\">No principal curvatures were stored in this run.</p>";
-  }
-  const std::string threshold = number_text(set.fold_threshold);
+std::string threshold_grid(const RunData& run, const Gallery& gallery, const FieldPictures& pictures) {
+  const MetricPicture& declared = pictures.declared;
+  const std::string threshold = number_text(pictures.scale);
   std::string text = "<p class=\"legend\"><i class=\"below\"></i><span>below −" + threshold +
                      "</span><i class=\"flat\"></i><span>between</span><i class=\"above\"></i><span>above +" +
-                     threshold + " 1/m</span></p>\n" + grid_open(run.methods.size()) + grid_head(run);
+                     threshold + " " + escape(declared.unit) + "</span></p>\n" +
+                     grid_open(run.methods.size()) + grid_head(run);
   for (const int level : run.level_indices()) {
     for (const MethodRecord& method : run.methods) {
-      text += gallery.shown(fold_picture(method, level),
-                            method.name + ": folds at level " + std::to_string(level), label(method, level));
+      text += gallery.shown(threshold_picture(declared, method, level),
+                            method.name + ": " + declared.label + " at level " + std::to_string(level),
+                            label(method, level));
     }
   }
   return text + "</div>\n";
+}
+
+/// What the pictures of a field have in common, after the metric's own text.
+std::string scale_text(const FieldPictures& pictures) {
+  if (pictures.declared.kind == PictureKind::difference)
+    return std::string("Drawn on ") + (pictures.on_rest ? "the flat rest shape" : "the finer state") +
+           ". The scale is equal for all methods and covers " + html::count(100 * difference_quantile) +
+           "&nbsp;% of all values; the others have its end colours.";
+  return "The threshold is equal everywhere: " + html::count(100 * threshold_quantile) +
+         "&nbsp;% of the first method's finest state lie below it. Coarse levels have the values of their "
+         "prolonged surface.";
+}
+
+/// A section for each field that metrics declare a picture of.
+std::string metric_pictures(const RunData& run, const Gallery& gallery, const PictureSet& set) {
+  std::string text;
+  for (const FieldPictures& pictures : set.fields) {
+    const MetricPicture& declared = pictures.declared;
+    text += "<section id=\"" + escape(declared.name) + "\">\n<h2>" + escape(declared.title) + "</h2>\n<p>" +
+            html::formula(declared.text) + " " + scale_text(pictures) + "</p>\n";
+    if (!(pictures.scale > 0))
+      text += "<p class=\"absent\">No field was stored for these pictures in this run.</p>\n";
+    else
+      text += declared.kind == PictureKind::difference ? difference_grid(run, gallery, pictures)
+                                                       : threshold_grid(run, gallery, pictures);
+    text += "</section>\n\n";
+  }
+  return text;
 }
 
 std::string verdict_line(const RunData& run) {
@@ -129,26 +158,6 @@ std::string machine_line(const RunData& run) {
   if (run.cores) text += " · " + html::count(run.cores) + " cores";
   if (run.threads) text += " · " + html::count(run.threads) + (*run.threads == 1 ? " thread" : " threads");
   return text;
-}
-
-/// Caveats beside the paper's columns.
-constexpr const char* of_libigl =
-    "Its d<sub>K</sub><sup>fit</sup> may be of libigl's Gaussian curvature, which is not quite the fitted "
-    "quadric's.";
-
-std::string published_section(const RunData& run) {
-  if (table1_block(run.table1_scene)) {
-    return "<p>The paper's columns are “" + escape(run.table1_scene) +
-           "” of its Table 1. It states neither " +
-           "units (lengths are taken as metres) nor the scene's geometry: compare ratios between methods, "
-           "not " +
-           "figures. " + of_libigl + "</p>\n";
-  }
-  const Table1Block& reference = *table1_block("Drape over Sphere in Figure 6");
-  return "<h3>For orientation: the paper's “" + reference.scene +
-         "”</h3>\n<p>From Table 1 of the supplement, " +
-         "another scene than this one. It states no units (lengths are taken as metres): compare ratios " +
-         "between methods, not figures. " + of_libigl + "</p>\n" + published_table(reference);
 }
 
 std::string reference_sentence(const RunData& run) {
@@ -191,13 +200,10 @@ void write_report(const std::filesystem::path& run_directory, const std::functio
                   {"notes", notes(set)},
                   {"view", view.section},
                   {"view_scripts", view.scripts},
-                  {"consistency", consistency_table(run, table1_block(run.table1_scene))},
-                  {"published", published_section(run)},
-                  {"H_surface", set.maps_on_rest ? "the flat rest shape" : "the finer state"},
-                  {"H_quantile", html::count(100 * H_difference_quantile)},
-                  {"H_differences", H_difference_grid(run, gallery, set)},
-                  {"fold_quantile", html::count(100 * fold_quantile)},
-                  {"folds", fold_grid(run, gallery, set)},
+                  {"state_metrics", metric_texts(run, MetricScope::state)},
+                  {"pair_metrics", metric_texts(run, MetricScope::pair)},
+                  {"consistency", consistency_table(run)},
+                  {"metric_pictures", metric_pictures(run, gallery, set)},
                   {"load_stepping", load_stepping_section(run)},
                   {"energies", energy_table(run)},
                   {"configuration",

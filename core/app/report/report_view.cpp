@@ -38,17 +38,33 @@ std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
   return chosen;
 }
 
+/// The differences from the finest level that metrics declare pictures of.
+std::vector<FieldKind> differences(const RunData& run) {
+  std::vector<FieldKind> kinds;
+  for (const DeclaredMetric& metric : run.metrics)
+    for (const MetricPicture& picture : metric.declaration.pictures)
+      if (picture.kind == PictureKind::difference)
+        kinds.push_back(
+            {picture.field, picture.label + " from the finest level", picture.unit, "diverging",
+             picture.label +
+                 " from the finest level, at the vertices both have; known for last states only"});
+  return kinds;
+}
+
 class ReportViewMaker {
  public:
   explicit ReportViewMaker(const RunData& run)
-      : run_(run), results_(Json::parse(read_file(run.folder / "results.json"))) {}
+      : run_(run),
+        results_(Json::parse(read_file(run.folder / "results.json"))),
+        differences_(differences(run)) {}
 
   ReportView make() {
     for (int l = 0; l <= run_.finest_level(); ++l)
       levels_.push_back(Level::of(l, read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"))));
     for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
-    document_.emplace(levels_, obstacles_, run_.has_contact(),
-                      [this](const std::string& name, const std::string& bytes) { embed(name, bytes); });
+    document_.emplace(
+        levels_, obstacles_, run_.has_contact(),
+        [this](const std::string& name, const std::string& bytes) { embed(name, bytes); }, differences_);
     read_states();
     if (states_.empty()) return {};
     Json methods = Json::array();
@@ -69,7 +85,7 @@ class ReportViewMaker {
   };
 
   void embed(const std::string& name, const std::string& bytes) {
-    blocks_ += "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" +
+    blocks_ += "<script type=\"application/octet-stream\" id=\"viewer-" + html::escape(name) + "\">" +
                html::base64(deflated(bytes)) + "</script>\n";
   }
 
@@ -83,7 +99,7 @@ class ReportViewMaker {
           state.x = read_mesh(run_.folder / level.mesh).vertices;
           if (state.x.rows() != levels_[level.level].vertex_count()) continue;
           state.fields = document_->fields(level.level, state.x);
-          add_H_difference(run_.methods[m], level.level, state);
+          add_differences(run_.methods[m], level.level, state);
         } catch (const std::exception&) {
           continue;  // the pictures name it
         }
@@ -94,16 +110,22 @@ class ReportViewMaker {
 
   /// As it was recorded on the finest mesh, at the vertices that it shares with the coarse level: those come
   /// first. The finest level does not differ from itself.
-  void add_H_difference(const MethodRecord& method, int level, State& state) const {
+  void add_differences(const MethodRecord& method, int level, State& state) const {
     const int finest = run_.finest_level();
     const ConsistencyRecord* pair = method.pair(level, finest);
     if (level == finest && !method.consistency.empty())
-      state.fields.emplace_back("H_difference", Eigen::VectorXd::Zero(state.x.rows()));
+      for (const FieldKind& difference : differences_)
+        state.fields.emplace_back(difference.name, Eigen::VectorXd::Zero(state.x.rows()));
     if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run_.folder / pair->fields))
       return;
     for (const VertexField& field : read_ply_fields(run_.folder / pair->fields))
-      if (field.name == "H_difference" && field.values.size() >= state.x.rows())
+      if (is_difference(field.name) && field.values.size() >= state.x.rows())
         state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
+  }
+
+  bool is_difference(const std::string& name) const {
+    return std::any_of(differences_.begin(), differences_.end(),
+                       [&](const FieldKind& kind) { return kind.name == name; });
   }
 
   /// The recorded snapshots; empty, with a note, if they cannot be read.
@@ -150,6 +172,7 @@ class ReportViewMaker {
 
   const RunData& run_;
   const Json results_;
+  const std::vector<FieldKind> differences_;
   std::vector<Level> levels_;
   std::vector<TriangleMesh> obstacles_;
   std::optional<ViewDocument> document_;

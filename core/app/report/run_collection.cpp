@@ -19,11 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string text_at(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found != json.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
 void read_sweep(const fs::path& folder, RunCollection& collection) {
   const fs::path path = folder / "sweep.json";
   const Json json = Json::parse(read_file(path), nullptr, false);
@@ -33,22 +28,22 @@ void read_sweep(const fs::path& folder, RunCollection& collection) {
   const auto complete = json.find("complete");
   collection.complete =
       collection.complete && complete != json.end() && complete->is_boolean() && complete->get<bool>();
-  collection.name += (collection.name.empty() ? "" : ", ") + text_at(json, "sweep");
+  collection.name += (collection.name.empty() ? "" : ", ") + text_member(json, "sweep");
   for (const Json& entry : json["runs"]) {
     if (!entry.is_object()) continue;
     RunRecord run;
-    run.sweep = text_at(json, "sweep");
-    run.variation = text_at(entry, "name");
-    run.status = text_at(entry, "status");
+    run.sweep = text_member(json, "sweep");
+    run.variation = text_member(entry, "name");
+    run.status = text_member(entry, "status");
     if (run.status == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
     if (run.status == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
-    run.error = text_at(entry, "error");
+    run.error = text_member(entry, "error");
     run.exit_code = file.find<int>(entry, "exit_code").value_or(0);
     if (const auto expect = entry.find("expect"); expect != entry.end() && expect->is_object()) {
-      run.expected = text_at(*expect, "outcome");
-      run.expected_message = text_at(*expect, "message");
+      run.expected = text_member(*expect, "outcome");
+      run.expected_message = text_member(*expect, "message");
     }
-    run.folder = folder / text_at(entry, "folder");
+    run.folder = folder / text_member(entry, "folder");
     if (const auto seed = entry.find("seed"); seed != entry.end() && seed->is_number())
       run.seed = seed->get<double>();
     // Running and failed runs may have written files; only complete ones have results.
@@ -130,6 +125,24 @@ std::vector<const RunRecord*> RunCollection::of(const std::string& variation) co
   for (const RunRecord& run : runs)
     if (run.variation == variation) found.push_back(&run);
   return found;
+}
+
+std::vector<DeclaredMetric> RunCollection::metrics() const {
+  std::vector<DeclaredMetric> all;
+  for (const RunRecord& run : runs)
+    if (run.data) merge(all, run.data->metrics);
+  return all;
+}
+
+std::vector<ErrorMeasure> RunCollection::error_measures() const {
+  std::vector<ErrorMeasure> all;
+  for (const RunRecord& run : runs) {
+    if (!run.data) continue;
+    for (const ErrorMeasure& m : run.data->error_measures)
+      if (std::none_of(all.begin(), all.end(), [&](const ErrorMeasure& own) { return own.name == m.name; }))
+        all.push_back(m);
+  }
+  return all.empty() ? drape::error_measures({}) : all;
 }
 
 bool RunRecord::refused() const {

@@ -33,6 +33,10 @@ struct RunCollection {
   std::vector<std::string> variations() const;  ///< in order of appearance
   std::vector<std::string> methods() const;     ///< likewise
   std::vector<const RunRecord*> of(const std::string& variation) const;
+  /// What the metrics of all runs declare, in order of appearance.
+  std::vector<DeclaredMetric> metrics() const;
+  /// The measures of errors of all runs, likewise; without any results, the energy gap.
+  std::vector<ErrorMeasure> error_measures() const;
 };
 
 /// Whether it is a sweep's folder.

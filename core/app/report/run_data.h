@@ -17,6 +17,17 @@ namespace drape {
 /// Numbers by name, in file order.
 using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
 
+/// The known values of metrics or errors, by name.
+struct Values : std::map<std::string, double> {
+  OptionalNumber of(const std::string& name) const {
+    const auto found = find(name);
+    return found == end() ? OptionalNumber() : found->second;
+  }
+  void set(const std::string& name, const OptionalNumber& value) {
+    if (value) insert_or_assign(name, *value);
+  }
+};
+
 /// One level of one method, as results.json has it (SI units).
 struct LevelRecord {
   int level = 0;
@@ -25,25 +36,19 @@ struct LevelRecord {
   bool from_initial_state = false;           ///< earlier levels do not contribute
   OptionalNumber energy, energy_on_finest;   ///< [J]
   OptionalNumber decrement, force_residual;  ///< [m/s], [1]
-  OptionalNumber largest_stretch, intersections, smallest_gap;
+  OptionalNumber intersections, smallest_gap;
   OptionalNumber contacts;  ///< in the last iteration
   NamedNumbers seconds_by_phase, energy_parts;
+  Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
 
-/// Measures of a state against a finer level's.
-struct PairValues {
-  OptionalNumber d_H_fit, d_H_ddg, d_K_fit, d_K_ddg;  ///< [1], [1], [1/m²], [1/m²]
-  OptionalNumber distance_rms;                        ///< in diagonals of the rest shape
-  OptionalNumber silhouette_overlap;                  ///< [1]; higher is better
-  OptionalNumber energy_above_end;                    ///< [J]
-};
-
-/// Measures of a coarse state, prolonged, against a finer one.
-struct ConsistencyRecord : PairValues {
+/// Pair metrics of a coarse state, prolonged, against a finer one.
+struct ConsistencyRecord {
   int coarse = 0, fine = 0;
-  PairValues of_start;  ///< the same for the scene's initial state in place of the coarse one
-  std::string fields;   ///< relative to the run's folder; may be empty
+  Values metrics;      ///< by column
+  Values of_start;     ///< the same for the scene's initial state in place of the coarse one
+  std::string fields;  ///< relative to the run's folder; may be empty
 };
 
 struct MethodRecord {
@@ -55,6 +60,8 @@ struct MethodRecord {
 
   /// Cost of the last state: the sum of the known values over the levels that it builds on.
   OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
+  /// The sum of the known values over all levels.
+  OptionalNumber sum(OptionalNumber LevelRecord::*member) const;
   const LevelRecord* level(int index) const;
   const ConsistencyRecord* pair(int coarse, int fine) const;
 };
@@ -87,7 +94,7 @@ struct IncrementSeries {
 /// One row of errors.csv: a state's cost, and its error against each target in each measure.
 struct ErrorRow {
   std::array<OptionalNumber, error_costs.size()> cost;
-  std::array<std::array<OptionalNumber, error_measures.size()>, error_targets.size()> error;
+  std::array<Values, error_targets.size()> error;  ///< by measure
 };
 
 struct ErrorSeries {
@@ -99,11 +106,13 @@ struct ErrorSeries {
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
-  std::string experiment, description, version, cpu, table1_scene, configuration;
+  std::string experiment, description, version, cpu, configuration;
   bool complete = false;
   std::string aborted;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
-  std::vector<std::string> obstacles;  ///< meshes, relative to the folder
+  std::vector<std::string> obstacles;        ///< meshes, relative to the folder
+  std::vector<DeclaredMetric> metrics;       ///< as declared; plain names if results.json has no declarations
+  std::vector<ErrorMeasure> error_measures;  ///< likewise
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
@@ -114,6 +123,10 @@ struct RunData {
 
   /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;
+  /// Declared columns that are at least so widely shown, in order.
+  std::vector<MetricColumn> columns(MetricScope scope, Shown least) const {
+    return columns_of(metrics, scope, least);
+  }
   int coarsest_level() const;              ///< over all methods; -1 without levels
   int finest_level() const;                ///< over all methods; -1 without levels
   std::vector<int> level_indices() const;  ///< of all methods, ascending
@@ -121,7 +134,7 @@ struct RunData {
   std::vector<std::pair<int, int>> pairs() const;
 };
 
-/// Reads results.json (required), steps.csv and config.yaml (optional). Null values are absent.
+/// Reads results.json (required), steps.csv, errors.csv and config.yaml (optional). Null values are absent.
 /// Throws std::runtime_error with one line if results.json is missing or is not JSON.
 RunData read_run(const std::filesystem::path& folder);
 

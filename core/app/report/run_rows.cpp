@@ -1,17 +1,16 @@
 #include "core/app/report/run_rows.h"
 
 #include <algorithm>
-#include <functional>
+#include <map>
 
-#include "core/app/report/pair_measures.h"
 #include "core/app/report/tables.h"
+#include "core/app/view/html.h"
 
 namespace drape {
 
 namespace {
 
-constexpr std::size_t own = 0, reference = 1;                // targets
-constexpr std::size_t rms = 0, d_H_fit = 2, energy_gap = 4;  // measures
+constexpr std::size_t own = 0, reference = 1;  // targets
 
 const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool preview) {
   if (method.levels.empty() || (preview && method.levels.size() < 2)) return nullptr;
@@ -22,10 +21,12 @@ const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool 
   return nullptr;
 }
 
-template <bool preview, std::size_t target, std::size_t measure>
-OptionalNumber error_of(const RunData& run, const MethodRecord& method) {
-  const ErrorRow* row = last_error(run, method, preview);
-  return row ? row->error[target][measure] : OptionalNumber();
+RowQuantity error_quantity(const std::string& name, const std::string& title, bool preview,
+                           std::size_t target, const std::string& measure) {
+  return {name, title, [=](const RunData& run, const MethodRecord& method) {
+            const ErrorRow* row = last_error(run, method, preview);
+            return row ? row->error[target].of(measure) : OptionalNumber();
+          }};
 }
 
 OptionalNumber seconds(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::seconds); }
@@ -39,23 +40,31 @@ OptionalNumber preview_seconds(const RunData&, const MethodRecord& m) {
 
 }  // namespace
 
+std::string error_name(const ErrorMeasure& measure) {
+  return measure.name == energy_gap ? measure.name : "error_" + measure.name;
+}
+
+std::string preview_name(const ErrorMeasure& measure) { return "preview_" + measure.name; }
+
 std::string RunRow::title(bool several_variations) const {
   return several_variations ? variation + ", " + method : method;
 }
 
-const std::vector<RowQuantity>& row_quantities() {
-  static const std::vector<RowQuantity> all = {
-      {"seconds", "time [s]", seconds},
-      {"iterations", "iterations", iterations},
-      {"flops", "flops", flops},
-      {"energy", "final energy [J]", final_energy},
-      {"energy_gap", "energy gap", error_of<false, reference, energy_gap>},
-      {"error_rms", "error, RMS", error_of<false, reference, rms>},
-      {"error_d_H_fit", "error, d<sub>H</sub><sup>fit</sup>", error_of<false, reference, d_H_fit>},
-      {"preview_seconds", "preview after [s]", preview_seconds},
-      {"preview_rms", "preview's own error, RMS", error_of<true, own, rms>},
-      {"preview_d_H_fit", "preview's own d<sub>H</sub><sup>fit</sup>", error_of<true, own, d_H_fit>},
-      {"preview_energy_gap", "preview's own energy gap", error_of<true, own, energy_gap>}};
+std::vector<RowQuantity> row_quantities(const std::vector<ErrorMeasure>& measures) {
+  std::vector<RowQuantity> all = {{"seconds", "time [s]", seconds},
+                                  {"iterations", "iterations", iterations},
+                                  {"flops", "flops", flops},
+                                  {"energy", "final energy [J]", final_energy}};
+  std::vector<ErrorMeasure> shown;
+  for (const ErrorMeasure& m : measures)
+    if (m.use >= ErrorUse::summary) shown.push_back(m);
+  for (const ErrorMeasure& m : shown)
+    all.push_back(
+        error_quantity(error_name(m), "error: " + html::formula(m.label), false, reference, m.name));
+  all.push_back({"preview_seconds", "preview after [s]", preview_seconds});
+  for (const ErrorMeasure& m : shown)
+    all.push_back(
+        error_quantity(preview_name(m), "preview's own error: " + html::formula(m.label), true, own, m.name));
   return all;
 }
 
@@ -87,7 +96,7 @@ std::optional<Spread> spread_of(const RunRow& row, const RowQuantity& quantity) 
 }
 
 std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t cost,
-                                   std::size_t target, std::size_t measure) {
+                                   std::size_t target, const std::string& measure) {
   int begin = 0;
   for (const MethodRecord& m : run.methods)
     if (m.name == method)
@@ -97,14 +106,16 @@ std::vector<CostPoint> error_curve(const RunData& run, const std::string& method
   for (const ErrorSeries& series : run.errors) {
     if (series.method != method || series.level < begin) continue;
     for (const ErrorRow& row : series.rows)
-      if (row.cost[cost] && row.error[target][measure])
-        curve.push_back({*row.cost[cost], *row.error[target][measure]});
+      if (const OptionalNumber error = row.error[target].of(measure); error && row.cost[cost])
+        curve.push_back({*row.cost[cost], *error});
   }
   return curve;
 }
 
 RunData median_consistency(const RunCollection& collection, const std::string& variation) {
   RunData medians;
+  for (const RunRecord* run : collection.of(variation))
+    if (run->data) merge(medians.metrics, run->data->metrics);
   for (const RunRow& row : rows_of(collection)) {
     if (row.variation != variation) continue;
     MethodRecord& method = medians.methods.emplace_back();
@@ -116,15 +127,13 @@ RunData median_consistency(const RunCollection& collection, const std::string& v
     for (const auto& [levels, records] : repeats) {
       ConsistencyRecord& pair = method.consistency.emplace_back();
       pair.coarse = levels.first, pair.fine = levels.second;
-      for (const PairMeasure& measure : pair_measures) {
-        std::vector<double> values, of_start;
-        for (const ConsistencyRecord* r : records) {
-          if (const OptionalNumber& value = r->*measure.value) values.push_back(*value);
-          if (const OptionalNumber& value = r->of_start.*measure.value) of_start.push_back(*value);
-        }
-        if (const auto spread = spread_of(values)) pair.*measure.value = spread->median;
-        if (const auto spread = spread_of(of_start)) pair.of_start.*measure.value = spread->median;
+      std::map<std::string, std::vector<double>> values, of_start;
+      for (const ConsistencyRecord* r : records) {
+        for (const auto& [name, value] : r->metrics) values[name].push_back(value);
+        for (const auto& [name, value] : r->of_start) of_start[name].push_back(value);
       }
+      for (const auto& [name, all] : values) pair.metrics.set(name, spread_of(all)->median);
+      for (const auto& [name, all] : of_start) pair.of_start.set(name, spread_of(all)->median);
     }
   }
   return medians;

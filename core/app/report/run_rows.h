@@ -1,6 +1,6 @@
 #pragma once
 
-#include <map>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,22 +29,28 @@ std::vector<RunRow> rows_of(const RunCollection& collection);
 
 /// A quantity of a row, by the name that tables and comparisons use.
 struct RowQuantity {
-  const char* name;   ///< "seconds"
-  const char* title;  ///< HTML
-  OptionalNumber (*of)(const RunData& run, const MethodRecord& method);
+  std::string name;   ///< "seconds"
+  std::string title;  ///< HTML
+  std::function<OptionalNumber(const RunData& run, const MethodRecord& method)> of;
 };
 
-/// Cost and quality of a method's final state and of its preview, the last state of its coarsest level.
-const std::vector<RowQuantity>& row_quantities();
+/// Cost and quality of a method's final state and of its preview, the last state of its coarsest level: those
+/// that every run has, then the errors that are measured.
+std::vector<RowQuantity> row_quantities(const std::vector<ErrorMeasure>& measures);
+
+/// The quantity that is a measure's error of the final state against the reference.
+std::string error_name(const ErrorMeasure& measure);
+/// The quantity that is a measure's error of the preview against the method's own final state.
+std::string preview_name(const ErrorMeasure& measure);
 
 /// Median and range over the repeats that converged.
 std::optional<Spread> spread_of(const RunRow& row, const RowQuantity& quantity);
 
 /// Error over cost in one measure, for the states of the levels that a method's last state builds on.
 std::vector<CostPoint> error_curve(const RunData& run, const std::string& method, std::size_t cost,
-                                   std::size_t target, std::size_t measure);
+                                   std::size_t target, const std::string& measure);
 
-/// A run with the median consistency measures of a variation's runs.
+/// A run with the medians of a variation's pair metrics.
 RunData median_consistency(const RunCollection& collection, const std::string& variation);
 
 /// HTML: medians and ranges per row, with a verdict relative to the first variation or row.

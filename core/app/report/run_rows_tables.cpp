@@ -14,13 +14,12 @@ namespace {
 using html::Cell;
 using html::escape;
 using html::number_text;
+using html::words;
 using Row = std::vector<Cell>;
 using Json = nlohmann::ordered_json;
 
 constexpr int curve_points = 40;
 constexpr double noticeable = 0.05;  // smaller relative differences of medians are not mentioned
-
-Cell words(const std::string& content) { return {content, false}; }
 
 /// Rounded for display; in full precision for exported tables.
 std::string shown(const std::optional<Spread>& spread) {
@@ -33,31 +32,56 @@ std::string shown(const std::optional<Spread>& spread) {
          (low == high ? "" : "<span class=\"range\">" + low + " … " + high + "</span>");
 }
 
-const RowQuantity& quantity_named(const std::string& name) {
-  return *std::find_if(row_quantities().begin(), row_quantities().end(),
-                       [&](const RowQuantity& f) { return f.name == name; });
+using Quantities = std::vector<RowQuantity>;
+
+std::optional<Spread> spread_of(const RunRow& row, const Quantities& quantities, const std::string& name) {
+  for (const RowQuantity& quantity : quantities)
+    if (quantity.name == name) return spread_of(row, quantity);
+  return std::nullopt;
+}
+
+/// The measures by which summaries rank methods.
+std::vector<ErrorMeasure> ranking(const RunCollection& collection) {
+  std::vector<ErrorMeasure> measures = collection.error_measures();
+  std::erase_if(measures, [](const ErrorMeasure& m) { return m.use != ErrorUse::ranking; });
+  return measures;
+}
+
+/// What summaries compare: a quantity, and words for less and for more of it.
+struct Criterion {
+  std::string quantity;
+  const char *less, *more;
+};
+
+std::vector<Criterion> criteria_of(const RunCollection& collection) {
+  std::vector<Criterion> criteria = {{"seconds", "faster", "slower"}};
+  for (const ErrorMeasure& m : ranking(collection)) {
+    criteria.push_back({preview_name(m), "better preview", "worse preview"});
+    criteria.push_back({error_name(m), "nearer to the reference", "further from the reference"});
+  }
+  return criteria;
 }
 
 /// "1.4× faster" and the like; empty if both are about equal or one is unknown.
-std::string ratio_words(const RunRow& row, const RunRow& base, const char* name, const char* less,
-                        const char* more) {
-  const auto mine = spread_of(row, quantity_named(name)), other = spread_of(base, quantity_named(name));
+std::string ratio_words(const RunRow& row, const RunRow& base, const Quantities& quantities,
+                        const Criterion& criterion) {
+  const auto mine = spread_of(row, quantities, criterion.quantity),
+             other = spread_of(base, quantities, criterion.quantity);
   if (!mine || !other || !(mine->median > 0) || !(other->median > 0)) return "";
   const double ratio = mine->median / other->median;
-  if (ratio < 1 - noticeable) return number_text(1 / ratio) + "× " + less;
-  if (ratio > 1 + noticeable) return number_text(ratio) + "× " + more;
+  if (ratio < 1 - noticeable) return number_text(1 / ratio) + "× " + criterion.less;
+  if (ratio > 1 + noticeable) return number_text(ratio) + "× " + criterion.more;
   return "";
 }
 
-std::string verdict(const RunRow& row, const RunRow& base) {
+std::string verdict(const RunRow& row, const RunRow& base, const Quantities& quantities,
+                    const std::vector<Criterion>& criteria) {
   const int missed = static_cast<int>(row.repeats.size()) - row.converged;
   std::string text = missed > 0 ? std::to_string(missed) + " did not converge" : "";
   if (&row == &base) return text.empty() ? "what the others are compared with" : text;
-  for (const std::string& part :
-       {ratio_words(row, base, "seconds", "faster", "slower"),
-        ratio_words(row, base, "preview_rms", "better preview", "worse preview"),
-        ratio_words(row, base, "error_rms", "nearer to the reference", "further from the reference")})
-    if (!part.empty()) text += (text.empty() ? "" : "; ") + part;
+  for (const Criterion& criterion : criteria)
+    if (const std::string part = ratio_words(row, base, quantities, criterion); !part.empty())
+      text += (text.empty() ? "" : "; ") + part;
   return text.empty() ? "about the same" : text;
 }
 
@@ -67,11 +91,12 @@ const RunRow& base_of(const RunRow& row, const std::vector<RunRow>& rows) {
   return *std::find_if(rows.begin(), rows.end(), [&](const RunRow& r) { return r.method == row.method; });
 }
 
-std::string lowest(const std::vector<RunRow>& rows, bool several, const char* name) {
+std::string lowest(const std::vector<RunRow>& rows, bool several, const Quantities& all,
+                   const std::string& name) {
   const RunRow* best = nullptr;
   std::optional<Spread> least;
   for (const RunRow& row : rows) {
-    const auto spread = spread_of(row, quantity_named(name));
+    const auto spread = spread_of(row, all, name);
     if (spread && (!least || spread->median < least->median)) best = &row, least = spread;
   }
   return best ? "<b>" + escape(best->title(several)) + "</b> (" + number_text(least->median) + ")" : "";
@@ -82,8 +107,10 @@ std::string lowest(const std::vector<RunRow>& rows, bool several, const char* na
 std::string rows_table(const RunCollection& collection) {
   const std::vector<RunRow> rows = rows_of(collection);
   if (rows.empty()) return "<p class=\"absent\">No run has written results yet.</p>";
+  const Quantities all = row_quantities(collection.error_measures());
+  const std::vector<Criterion> criteria = criteria_of(collection);
   std::vector<const RowQuantity*> quantities;
-  for (const RowQuantity& f : row_quantities())
+  for (const RowQuantity& f : all)
     if (std::any_of(rows.begin(), rows.end(), [&](const RunRow& r) { return spread_of(r, f).has_value(); }))
       quantities.push_back(&f);
   Row head = {words("variation"), words("method"), words("verdict"), {"converged"}};
@@ -97,7 +124,8 @@ std::string rows_table(const RunCollection& collection) {
       cells.back().rows = static_cast<int>(std::count_if(rows.begin(), rows.end(), same));
     }
     cells.push_back(words(escape(row.method)));
-    cells.push_back(words("<span class=\"verdict\">" + verdict(row, base_of(row, rows)) + "</span>"));
+    cells.push_back(
+        words("<span class=\"verdict\">" + verdict(row, base_of(row, rows), all, criteria) + "</span>"));
     cells.push_back({std::to_string(row.converged) + " of " + std::to_string(row.repeats.size())});
     for (const RowQuantity* f : quantities) cells.push_back({shown(spread_of(row, *f))});
     body.push_back(cells);
@@ -136,33 +164,42 @@ std::string collection_summary(const RunCollection& collection) {
                                                       : " " + std::string(status));
   text += ".";
   const bool several = variations > 1;
-  for (const auto& [name, what] : std::initializer_list<std::pair<const char*, const char*>>{
-           {"seconds", "Fastest to its final state, in seconds: "},
-           {"preview_rms", "Best preview, by the RMS distance to its own end: "},
-           {"error_rms", "Nearest to the reference, RMS: "}})
-    if (const std::string best = lowest(rows, several, name); rows.size() > 1 && !best.empty())
-      text += " " + std::string(what) + best + ".";
+  std::vector<std::pair<std::string, std::string>> titles = {
+      {"seconds", "Fastest to its final state, in seconds: "}};
+  for (const ErrorMeasure& m : ranking(collection)) {
+    const std::string label = html::formula(m.label);
+    titles.emplace_back(preview_name(m), "Best preview, by its own error (" + label + "): ");
+    titles.emplace_back(error_name(m), "Nearest to the reference (" + label + "): ");
+  }
+  const Quantities quantities = row_quantities(collection.error_measures());
+  for (const auto& [name, title] : titles)
+    if (const std::string best = lowest(rows, several, quantities, name); rows.size() > 1 && !best.empty())
+      text += " " + title + best + ".";
   return text;
 }
 
 std::string rows_chart_data(const RunCollection& collection) {
   const std::vector<RunRow> rows = rows_of(collection);
   const bool several = collection.variations().size() > 1;
-  Json data = {
-      {"variations", collection.variations()}, {"methods", collection.methods()}, {"rows", Json::array()}};
+  const std::vector<ErrorMeasure> measures = collection.error_measures();
+  const Quantities quantities = row_quantities(measures);
+  Json data = {{"variations", collection.variations()},
+               {"methods", collection.methods()},
+               {"measures", measures_json(measures)},
+               {"rows", Json::array()}};
   for (const RunRow& row : rows)
     data["rows"].push_back(
         {{"title", row.title(several)}, {"variation", row.variation}, {"method", row.method}});
   for (std::size_t w = 0; w < error_costs.size(); ++w)
     for (std::size_t t = 0; t < error_targets.size(); ++t)
-      for (std::size_t m = 0; m < error_measures.size(); ++m) {
+      for (const ErrorMeasure& m : measures) {
         Json plot = {{"curves", Json::array()}, {"front", Json::array()}};
         std::vector<CostPoint> all;
         std::vector<std::size_t> row_of;
         for (std::size_t r = 0; r < rows.size(); ++r) {
           std::vector<std::vector<CostPoint>> repeats;
           for (const Repeat& repeat : rows[r].repeats)
-            repeats.push_back(error_curve(*repeat.run->data, rows[r].method, w, t, m));
+            repeats.push_back(error_curve(*repeat.run->data, rows[r].method, w, t, m.name));
           Json curve = Json::array();
           for (const CurvePoint& p : median_curve(repeats, curve_points)) {
             curve.push_back({rounded(p.cost), rounded(p.error.median), rounded(p.error.low),
@@ -174,11 +211,11 @@ std::string rows_chart_data(const RunCollection& collection) {
         }
         for (const std::size_t k : pareto_front(all))
           plot["front"].push_back({rounded(all[k].cost), rounded(all[k].error), row_of[k]});
-        data["errors"][error_costs[w]][error_targets[t]][error_measures[m]] = plot;
+        data["errors"][error_costs[w]][error_targets[t]][m.name] = plot;
       }
   for (const char* name : {"seconds", "iterations", "flops"})
     for (const RunRow& row : rows) {
-      const auto s = spread_of(row, quantity_named(name));
+      const auto s = spread_of(row, quantities, name);
       data["costs"][name].push_back(s ? Json{rounded(s->median), rounded(s->low), rounded(s->high)} : Json());
     }
   return script_json(data);

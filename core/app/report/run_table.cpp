@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/report/metric_columns.h"
 #include "core/app/report/tables.h"
 #include "core/app/view/html.h"
 #include "core/kernel/plugin/string_utils.h"
@@ -14,13 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
-
-Json sum_of(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
-  OptionalNumber sum;
-  for (const LevelRecord& level : method.levels)
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
-  return json_of(sum);
-}
 
 /// What the iterations of a method tell beyond its levels.
 struct IterationSummary {
@@ -51,9 +45,17 @@ std::string outcomes(const MethodRecord& method) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+/// A metric's value of one method: of a state metric, the worst of its levels'; of a pair metric, that of the
+/// coarsest level against the finest.
+OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
+  if (scope == MetricScope::state) return worst_over_levels(column, method);
+  if (method.levels.size() < 2) return {};
+  const ConsistencyRecord* pair = method.pair(method.levels.front().level, method.levels.back().level);
+  return pair ? pair->metrics.of(column.name) : OptionalNumber();
+}
+
 Json row_of(const RunData& run, const MethodRecord& method) {
   IterationSummary iterations(run, method.name);
-  OptionalNumber stretch;
   std::string fault, remark;
   for (const LevelRecord& level : method.levels) {
     if (level.smallest_gap)
@@ -61,26 +63,23 @@ Json row_of(const RunData& run, const MethodRecord& method) {
           std::min(iterations.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
     if (level.intersections)
       iterations.intersections = iterations.intersections.value_or(0) + *level.intersections;
-    if (level.largest_stretch) stretch = std::max(stretch.value_or(0), *level.largest_stretch);
     if (level.message.empty()) continue;
     (succeeded(level.status) ? remark : fault) +=
         (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
         "\n";
   }
-  const ConsistencyRecord* pair = method.levels.size() > 1
-                                      ? method.pair(method.levels.front().level, method.levels.back().level)
-                                      : nullptr;
   Json row = {{"method", method.name}, {"pass", false}, {"outcome", outcomes(method)}};
   row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
-  row["steps"] = sum_of(method, &LevelRecord::steps);
-  row["iterations"] = sum_of(method, &LevelRecord::newton_iterations);
+  row["steps"] = json_of(method.sum(&LevelRecord::steps));
+  row["iterations"] = json_of(method.sum(&LevelRecord::newton_iterations));
   row["shortened_steps"] = iterations.shortened_steps;
-  row["seconds"] = sum_of(method, &LevelRecord::seconds);
+  row["seconds"] = json_of(method.sum(&LevelRecord::seconds));
   row["energy"] = json_of(final_energy(run, method));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
-  row["largest_stretch"] = json_of(stretch);
   row["intersections"] = json_of(iterations.intersections);
-  row["d_H_fit"] = pair ? json_of(pair->d_H_fit) : Json();
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& column : run.columns(scope, Shown::summary))
+      row[column.name] = json_of(metric_value(column, scope, method));
   row["message"] = first_line(fault + remark);
   return row;
 }
@@ -102,8 +101,16 @@ bool passes(const RunRecord& run, const std::string& outcome, const TableRow& ro
 
 }  // namespace
 
-std::vector<TableRow> table_rows(const RunCollection& collection) {
-  std::vector<TableRow> rows;
+RunTable table_of(const RunCollection& collection) {
+  RunTable table;
+  table.columns = {"sweep",        "run",        "method",          "pass",    "outcome", "vertices",
+                   "steps",        "iterations", "shortened_steps", "seconds", "energy",  "smallest_gap",
+                   "intersections"};
+  const std::vector<DeclaredMetric> metrics = collection.metrics();
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
+      table.columns.push_back(column.name);
+  table.columns.push_back("message");
   for (const RunRecord& run : collection.runs) {
     const bool repeated = collection.of(run.variation).size() > 1 && run.seed;
     const Json name = {{"sweep", run.sweep},
@@ -112,8 +119,9 @@ std::vector<TableRow> table_rows(const RunCollection& collection) {
       TableRow row = name;
       row.update(cells);
       row["pass"] = passes(run, outcome, row);
-      rows.push_back(row);
+      table.rows.push_back(row);
     };
+    table.has_results = table.has_results || run.data;
     if (run.data)
       for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
     else
@@ -122,10 +130,10 @@ std::vector<TableRow> table_rows(const RunCollection& collection) {
                                          {"outcome", outcome_without_results(run)},
                                          {"message", run.error}});
   }
-  return rows;
+  return table;
 }
 
-bool all_pass(const std::vector<TableRow>& rows) {
+bool RunTable::all_pass() const {
   return std::all_of(rows.begin(), rows.end(), [](const TableRow& row) { return row["pass"] == true; });
 }
 

@@ -10,21 +10,25 @@ namespace drape {
 /// known. A run without results is one row.
 using TableRow = nlohmann::ordered_json;
 
+/// Rows and all their columns, in order: those that every run has, with the summary columns of the runs'
+/// metrics before the message.
+struct RunTable {
+  std::vector<std::string> columns;
+  std::vector<TableRow> rows;
+  bool has_results = false;  ///< of any run: else it is not known which metrics there would be
+
+  bool all_pass() const;
+};
+
 /// One row per method and run. The outcome of a run without results is `refused` before any computation,
 /// `timeout` at the time limit, `crash` by a signal, otherwise `failed` or its status. A row passes with the
 /// expected outcome and message, finite energies and no intersection.
-std::vector<TableRow> table_rows(const RunCollection& collection);
-
-bool all_pass(const std::vector<TableRow>& rows);
-
-/// All columns, in order.
-std::vector<std::string> table_columns();
+RunTable table_of(const RunCollection& collection);
 
 enum class TableFormat { markdown, csv, json };
 
 /// A table of the chosen columns, by default of all non-empty ones. Throws std::runtime_error for an unknown
 /// column, with its new or the nearest name.
-std::string table_text(const std::vector<TableRow>& rows, std::vector<std::string> columns,
-                       TableFormat format);
+std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format);
 
 }  // namespace drape

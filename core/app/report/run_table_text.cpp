@@ -43,12 +43,12 @@ bool is_text(const std::string& column) {
          column == "pass" || column == "message";
 }
 
-std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
-                                    const std::vector<std::string>& chosen) {
-  const std::vector<std::string> known = table_columns();
+std::vector<std::string> chosen_columns(const RunTable& table, const std::vector<std::string>& chosen) {
+  const std::vector<std::string>& known = table.columns;
   for (const std::string& column : chosen) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
     if (column == "cuts") throw std::runtime_error("column \"cuts\" is now called \"shortened_steps\"");
+    if (!table.has_results) continue;  // a metric might declare it
     const std::string near = nearest_word(column, known);
     throw std::runtime_error(
         "there is no column \"" + excerpt(column) + "\"; " +
@@ -57,7 +57,7 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
   if (!chosen.empty()) return chosen;
   std::vector<std::string> columns;
   for (const std::string& column : known)
-    if (std::any_of(rows.begin(), rows.end(), [&](const TableRow& row) {
+    if (std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
           const auto cell = row.find(column);
           return cell != row.end() && !cell->is_null() && !cell_text(*cell, true).empty();
         }))
@@ -67,18 +67,11 @@ std::vector<std::string> columns_of(const std::vector<TableRow>& rows,
 
 }  // namespace
 
-std::vector<std::string> table_columns() {
-  return {"sweep",           "run",           "method",          "pass",    "outcome", "vertices",
-          "steps",           "iterations",    "shortened_steps", "seconds", "energy",  "smallest_gap",
-          "largest_stretch", "intersections", "d_H_fit",         "message"};
-}
-
-std::string table_text(const std::vector<TableRow>& rows, std::vector<std::string> columns,
-                       TableFormat format) {
-  columns = columns_of(rows, columns);
+std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format) {
+  columns = chosen_columns(table, columns);
   if (format == TableFormat::json) {
     Json chosen = Json::array();
-    for (const TableRow& row : rows) {
+    for (const TableRow& row : table.rows) {
       Json& one = chosen.emplace_back(Json::object());
       for (const std::string& column : columns) one[column] = row.value(column, Json());
     }
@@ -94,7 +87,7 @@ std::string table_text(const std::vector<TableRow>& rows, std::vector<std::strin
   std::string text = line([](const std::string& column) { return column; });
   if (!csv)
     text += line([](const std::string& column) { return std::string(is_text(column) ? "---" : "---:"); });
-  for (const TableRow& row : rows)
+  for (const TableRow& row : table.rows)
     text += line([&](const std::string& column) {
       const Json value = row.value(column, Json());
       return csv ? csv_cell(value) : markdown_cell(value);

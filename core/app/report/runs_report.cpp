@@ -19,10 +19,7 @@ std::string consistency(const RunCollection& collection) {
   const std::vector<std::string> variations = collection.variations();
   for (const std::string& variation : variations) {
     const RunData medians = median_consistency(collection, variation);
-    const Table1Block* published = nullptr;
-    for (const RunRecord* run : collection.of(variation))
-      if (run->data) published = table1_block(run->data->table1_scene);
-    const std::string table = consistency_table(medians, published);
+    const std::string table = consistency_table(medians);
     text += variations.size() == 1 ? table
                                    : "<details" + std::string(text.empty() ? " open" : "") + "><summary>" +
                                          escape(variation) + "</summary>\n" + table + "</details>\n";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/app/report/metric_columns.h"
 #include "core/app/view/html.h"
 
 namespace drape {
@@ -11,10 +12,9 @@ namespace {
 using html::Cell;
 using html::escape;
 using html::number_text;
+using html::words;
 
 using Row = std::vector<Cell>;
-
-Cell words(const std::string& content) { return {content, false}; }
 
 std::string status_badge(const std::string& status) {
   const std::string kind = succeeded(status) ? "good" : status.empty() ? "none" : "poor";
@@ -34,13 +34,13 @@ void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
   row.push_back({html::count(r.intersections), true, r.intersections.value_or(0) > 0});
 }
 
-/// The sum of the known values over levels.
-OptionalNumber sum_of_levels(const MethodRecord& method, OptionalNumber LevelRecord::*member) {
-  OptionalNumber sum;
-  for (const LevelRecord& level : method.levels) {
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
-  }
-  return sum;
+/// Values of state metrics.
+void add_metric_head(Row& head, const std::vector<MetricColumn>& columns) {
+  for (const MetricColumn& column : columns) head.push_back({title_html(column)});
+}
+
+void add_metric_cells(Row& row, const std::vector<MetricColumn>& columns, const LevelRecord& r) {
+  for (const MetricColumn& column : columns) row.push_back({value_text(column, r.metrics.of(column.name))});
 }
 
 /// Names of all energy parts, in order of first appearance.
@@ -61,7 +61,9 @@ std::vector<std::string> part_names(const RunData& run) {
 std::string summary_table(const RunData& run) {
   Row head = {words("method"),      words("status"),    words("verdict"),      {"levels"},
               {"time [s]"},         {"steps"},          {"Newton iterations"}, {"final energy [J]"},
-              {"above lowest [J]"}, {"force residual"}, {"decrement [m/s]"},   {"largest stretch"}};
+              {"above lowest [J]"}, {"force residual"}, {"decrement [m/s]"}};
+  const std::vector<MetricColumn> columns = run.columns(MetricScope::state, Shown::summary);
+  add_metric_head(head, columns);
   add_contact_head(head, run);
   head.push_back({"peak memory"});
   OptionalNumber lowest;
@@ -73,20 +75,19 @@ std::string summary_table(const RunData& run) {
   for (const MethodRecord& method : run.methods) {
     const OptionalNumber energy = final_energy(run, method);
     const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
-    const OptionalNumber seconds =
-        method.seconds ? method.seconds : sum_of_levels(method, &LevelRecord::seconds);
+    const OptionalNumber seconds = method.seconds ? method.seconds : method.sum(&LevelRecord::seconds);
     Row row = {words(escape(method.name)),
                words(status_badge(method.status)),
                words("<span class=\"verdict\">" + method_verdict(run, method) + "</span>"),
                {std::to_string(method.levels.size())},
                {number_text(seconds)},
-               {html::count(sum_of_levels(method, &LevelRecord::steps))},
-               {html::count(sum_of_levels(method, &LevelRecord::newton_iterations))},
+               {html::count(method.sum(&LevelRecord::steps))},
+               {html::count(method.sum(&LevelRecord::newton_iterations))},
                {number_text(energy)},
                {number_text(energy ? OptionalNumber(*energy - *lowest) : energy)},
                {number_text(last.force_residual)},
-               {number_text(last.decrement)},
-               {html::fixed(last.largest_stretch, 4)}};
+               {number_text(last.decrement)}};
+    add_metric_cells(row, columns, last);
     add_contact_cells(row, run, last);
     row.push_back({html::bytes(method.peak_memory_bytes)});
     body.push_back(row);
@@ -95,10 +96,11 @@ std::string summary_table(const RunData& run) {
 }
 
 std::string level_table(const RunData& run) {
-  Row head = {words("method"),    {"level"},         {"vertices"},          {"triangles"},
-              words("status"),    {"steps"},         {"Newton iterations"}, {"time [s]"},
-              {"energy [J]"},     {"on finest [J]"}, {"force residual"},    {"decrement [m/s]"},
-              {"largest stretch"}};
+  Row head = {words("method"), {"level"},         {"vertices"},          {"triangles"},
+              words("status"), {"steps"},         {"Newton iterations"}, {"time [s]"},
+              {"energy [J]"},  {"on finest [J]"}, {"force residual"},    {"decrement [m/s]"}};
+  const std::vector<MetricColumn> columns = run.columns(MetricScope::state, Shown::tables);
+  add_metric_head(head, columns);
   add_contact_head(head, run);
   std::vector<Row> body;
   for (const MethodRecord& method : run.methods) {
@@ -109,11 +111,12 @@ std::string level_table(const RunData& run) {
         row.back().rows = static_cast<int>(method.levels.size());
       }
       const Row rest = {
-          {std::to_string(r.level)},       {html::count(r.vertices)},  {html::count(r.triangles)},
-          words(status_badge(r.status)),   {html::count(r.steps)},     {html::count(r.newton_iterations)},
-          {number_text(r.seconds)},        {number_text(r.energy)},    {number_text(r.energy_on_finest)},
-          {number_text(r.force_residual)}, {number_text(r.decrement)}, {html::fixed(r.largest_stretch, 4)}};
+          {std::to_string(r.level)},       {html::count(r.vertices)}, {html::count(r.triangles)},
+          words(status_badge(r.status)),   {html::count(r.steps)},    {html::count(r.newton_iterations)},
+          {number_text(r.seconds)},        {number_text(r.energy)},   {number_text(r.energy_on_finest)},
+          {number_text(r.force_residual)}, {number_text(r.decrement)}};
       row.insert(row.end(), rest.begin(), rest.end());
+      add_metric_cells(row, columns, r);
       add_contact_cells(row, run, r);
       body.push_back(row);
     }

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/app/report/run_data.h"
-#include "core/app/report/table1.h"
 
 namespace drape {
 
@@ -35,16 +34,12 @@ std::string summary_table(const RunData& run);
 /// One row per level and method.
 std::string level_table(const RunData& run);
 
-/// One row per pair of levels and measure, one column per method and one for the scene's initial state in
-/// place of the coarse one. The best of a row is bold, unless the initial state scores as well. Has the
-/// published columns if `published` is not null.
-std::string consistency_table(const RunData& run, const Table1Block* published);
+/// One row per pair of levels and pair metric's value, one column per method and one for the scene's initial
+/// state in place of the coarse one. The best of a row is bold, unless the initial state scores as well.
+std::string consistency_table(const RunData& run);
 
-/// The same as plain text for a terminal, with the verdict on intersections below.
-std::string table1_text(const RunData& run);
-
-/// The published block alone, in the same layout.
-std::string published_table(const Table1Block& block);
+/// What metrics of a scope say of their shown columns, as HTML.
+std::string metric_texts(const RunData& run, MetricScope scope);
 
 /// Parts of the energy, one row per level and method [J].
 std::string energy_table(const RunData& run);

@@ -10,10 +10,6 @@ namespace drape {
 
 namespace {
 
-/// The metric value behind each measure; an overlap counts as 1 − overlap. The energy gap needs no metric.
-constexpr std::array metric_values = {"distance_rms", "distance_hausdorff", "d_H_fit", "silhouette_overlap"};
-static_assert(metric_values.size() + 1 == error_measures.size());
-
 std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -34,17 +30,19 @@ double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix
       scene.hierarchy.prolong(x, level, scene.hierarchy.level_count() - 1, weights));
 }
 
-StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
-                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault) {
-  StateError error;
+StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
+                       const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
+                       const std::function<void(const std::string&)>& fault) {
+  StateError error(measures.size());
   for (const auto& [name, metric] : experiment.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     try {
       const MetricResult result =
           metric->evaluate({scene.hierarchy.levels.back(), scene.finest_model(), target.x, &x});
       for (const MetricValue& v : result.values)
-        for (std::size_t k = 0; k < metric_values.size(); ++k)
-          if (v.name == metric_values[k]) error[k] = v.better == Better::higher ? 1 - v.value : v.value;
+        for (std::size_t k = 0; k < measures.size(); ++k)
+          if (v.name == measures[k].value)
+            error[k] = measures[k].better == Better::higher ? 1 - v.value : v.value;
     } catch (const std::exception& problem) {
       fault(name + ": " + reason_of(problem));
     }
@@ -83,7 +81,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
   const int finest = scene_.hierarchy.level_count() - 1;
   std::string text = "method,level,iteration,seconds,iterations,flops,vertices";
   for (const char* target : error_targets)
-    for (const char* measure : error_measures) text += "," + std::string(target) + "_" + measure;
+    for (const ErrorMeasure& measure : measures_) text += "," + std::string(target) + "_" + measure.name;
   text += "\n";
   std::optional<ErrorTarget> standard;
   if (reference) standard = {*reference, scene_.finest_model().value(*reference)};
@@ -107,7 +105,8 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
       const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
       const auto against = [&](const std::optional<ErrorTarget>& target) {
-        return target ? state_error(experiment_, scene_, x, level.energies[k], *target, fault) : StateError();
+        return target ? state_error(measures_, experiment_, scene_, x, level.energies[k], *target, fault)
+                      : StateError(measures_.size());
       };
       const StateError to_own = against(own), to_standard = same ? to_own : against(standard);
       const Cost& cost = level.cost[k];

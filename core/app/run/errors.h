@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -15,8 +14,8 @@
 
 namespace drape {
 
-/// One value per measure; absent if the experiment has no metric for it.
-using StateError = std::array<std::optional<double>, error_measures.size()>;
+/// One value per measure; absent if it could not be measured.
+using StateError = std::vector<std::optional<double>>;
 
 /// A state on the finest level that others are measured against.
 struct ErrorTarget {
@@ -26,8 +25,9 @@ struct ErrorTarget {
 
 /// The error of a state x of the finest level, whose energy is given [J]. A metric that throws is reported to
 /// `fault`; its values stay absent.
-StateError state_error(const Experiment& experiment, const Scene& scene, const Positions& x, double energy,
-                       const ErrorTarget& target, const std::function<void(const std::string&)>& fault);
+StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
+                       const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,
+                       const std::function<void(const std::string&)>& fault);
 
 /// The finest level's energy [J] of a state that these prolongation matrices, [l]: n_{l+1} × n_l, refine to
 /// it.
@@ -51,7 +51,10 @@ struct LevelSnapshots {
 class ErrorTable {
  public:
   ErrorTable(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
-      : folder_(folder), experiment_(experiment), scene_(scene) {}
+      : folder_(folder),
+        experiment_(experiment),
+        scene_(scene),
+        measures_(error_measures(declared_metrics(experiment.metrics))) {}
 
   /// Adds a level's snapshots: writes their file, evaluates their energies and returns their entry for
   /// results.json. `before` is the cost that the level builds on; `spent` all that the method
@@ -74,6 +77,7 @@ class ErrorTable {
   const RunFolder& folder_;
   const Experiment& experiment_;
   const Scene& scene_;
+  const std::vector<ErrorMeasure> measures_;
   std::vector<LevelSnapshots> levels_;
 };
 

@@ -1,40 +1,18 @@
 #include "core/app/run/recorder.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <limits>
 
+#include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
-#include "core/app/run/reference.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/io_formats.h"
 #include "core/kernel/version.h"
 
 namespace drape {
-
-namespace {
-
-/// Status of a method that threw, and of its current level; no solver returns it.
-constexpr const char* failed = "failed";
-
-nlohmann::ordered_json finite_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
-
-/// The member of an object with a dotted name: "a.b" is member b of member a.
-nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
-  const std::size_t dot = name.find('.');
-  return dot == std::string::npos ? object[name]
-                                  : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
-}
-
-}  // namespace
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    std::ios::openmode mode)
@@ -60,7 +38,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["commit"] = commit();
   results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
-  results_["table1_scene"] = p.table1_scene;
+  results_["metrics"] = json_of(declared_metrics(experiment.metrics));
   results_["methods"] = Json::object();
   save();
   write_scene();
@@ -73,6 +51,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
     : Recorder(folder, experiment, scene, std::ios::app) {
   cut_files(folder, state);
   results_ = Json::parse(state.results);
+  results_["metrics"] =
+      json_of(declared_metrics(experiment.metrics));  // not in checkpoints of earlier versions
   method_ = state.method;
   intersection_free_ = state.intersection_free;
   method_intersection_free_ = state.method_intersection_free;
@@ -124,13 +104,6 @@ void Recorder::log(Json entry) {
 }
 
 void Recorder::save() const { folder_.write_text("results.json", json_text(results_, 1) + "\n"); }
-
-std::vector<const RecordedState*> Recorder::finest_states() const {
-  std::vector<const RecordedState*> finest;
-  for (const RecordedState& state : states_)
-    if (state.level == static_cast<int>(scene_.models.size()) - 1) finest.push_back(&state);
-  return finest;
-}
 
 std::string Recorder::file_of(const std::string& method, int level, const char* extension) const {
   return "levels/" + method + "_l" + std::to_string(level) + extension;
@@ -200,6 +173,9 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
   const double energy = scene_.model(r.level).energy(r.x);
+  Json parts = Json::object();
+  for (const auto& [name, joules] : scene_.model(r.level).energy_parts(r.x))
+    parts[name] = finite_or_null(joules);
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
@@ -218,6 +194,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"seconds", r.seconds},
                 {"seconds_by_phase", r.seconds_by_phase},
                 {"energy", finite_or_null(energy)},
+                {"energy_parts", parts},
                 {"energy_on_finest", finite_or_null(on_finest)},
                 {"decrement", finite_or_null(r.decrement)},
                 {"force_residual", finite_or_null(r.force_residual)},
@@ -264,161 +241,6 @@ void Recorder::level_finished(const LevelResult& r) {
        {"message", r.message},
        {"seconds", r.seconds}});
   overhead_ += watch.seconds();
-}
-
-MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
-                               Json& entry) {
-  try {
-    return metric.evaluate(input);
-  } catch (const std::exception& error) {
-    entry["not_measured"][name] = error.what();
-    log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", error.what()}});
-    return {};
-  }
-}
-
-Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
-                                 const std::string& fields_file) {
-  Json row = Json::object();  // not null, even without a metric of pairs
-  VertexFields fields;
-  for (const auto& [name, metric] : experiment_.metrics) {
-    if (metric->scope() != MetricScope::pair) continue;
-    const MetricResult result =
-        measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
-    for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
-    for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
-  }
-  if (!fields_file.empty() && !fields.empty()) {
-    write_ply(folder_.file(fields_file), {x, scene_.hierarchy.levels[level].rest.triangles}, fields);
-    row["fields"] = fields_file;
-  }
-  return row;
-}
-
-void Recorder::method_finished(const std::vector<LevelResult>& results,
-                               const std::optional<MethodFailure>& failure) {
-  Json& entry = method_entry();
-  // A level that failed during recording may have left an entry.
-  while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
-  Outcome worst = Outcome::converged;
-  const int finest = static_cast<int>(scene_.models.size()) - 1;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const LevelResult& r = results[i];
-    worst = worse_of(worst, r.outcome);
-    Json& state = entry["levels"][i];
-    for (const auto& [name, metric] : experiment_.metrics)
-      if (metric->scope() == MetricScope::state)
-        for (const MetricValue& v :
-             measure(name, *metric, {scene_.hierarchy.levels[r.level], scene_.model(r.level), r.x}, state)
-                 .values)
-          at_dotted(state, v.name) = finite_or_null(v.value);
-  }
-  write_collection(method_);
-  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
-  std::vector<Json> of_start;  // the initial state compared with each level's state
-  for (const LevelResult& r : results)
-    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
-  for (std::size_t c = 0; c < results.size(); ++c)
-    for (std::size_t f = c + 1; f < results.size(); ++f) {
-      const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
-      const Positions prolonged = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
-      const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
-      Json row = {{"coarse", coarse}, {"fine", fine}};
-      row.update(compare(fine, results[f].x, prolonged, fine == finest ? "fields/" + tag + ".ply" : ""));
-      row["of_start"] = of_start[f];
-      entry["consistency"].push_back(row);
-    }
-  if (!method_intersection_free_) worst = Outcome::infeasible;
-  entry["status"] = failure ? failed : to_string(worst);
-  if (failure) {
-    const Level& level = scene_.hierarchy.levels[failure->level];
-    entry["levels"].push_back({{"level", failure->level},
-                               {"vertices", level.vertex_count()},
-                               {"triangles", level.triangle_count()},
-                               {"status", failed},
-                               {"message", failure->cause}});
-    log({{"event", "method_failed"},
-         {"method", method_},
-         {"level", failure->level},
-         {"message", failure->cause}});
-  }
-  save();
-  log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
-}
-
-const RecordedState* Recorder::reference_state() const {
-  const std::string& named = experiment_.parameters.reference.method;
-  const RecordedState* lowest = nullptr;
-  double lowest_energy = std::numeric_limits<double>::infinity();
-  for (const RecordedState* state : finest_states()) {
-    if (state->method == named) return state;
-    for (const Json& entry : results_.at("methods").at(state->method).at("levels")) {
-      if (entry.at("level") != state->level || !has_converged(entry.at("status").get<std::string>()))
-        continue;
-      const Json& energy = entry.at("energy");  // with limits and contact
-      if (energy.is_number() && energy < lowest_energy) lowest = state, lowest_energy = energy;
-    }
-  }
-  return named == ReferenceParameters::lowest ? lowest : nullptr;
-}
-
-const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
-  const ReferenceParameters& p = experiment_.parameters.reference;
-  if (scene_.reference) {
-    results_["reference"] = {{"file", p.file}, {"mesh", "reference.ply"}};
-    return &*scene_.reference;
-  }
-  const RecordedState* state = reference_state();
-  if (!state) return nullptr;
-  Json& entry = results_["reference"];
-  entry = {{"method", state->method}, {"mesh", "reference.ply"}};
-  if (p.method != state->method) entry["chosen"] = p.method;
-  if (p.force_tolerance == 0 || cancelled) return &state->x;
-  entry["force_tolerance"] = p.force_tolerance;
-  try {
-    solved_reference_ = solve_to_tolerance(experiment_, scene_, state->x, observer);
-  } catch (const std::exception& error) {
-    entry.update({{"status", failed}, {"message", error.what()}});
-    log({{"event", "reference_solved"}, {"status", failed}, {"message", error.what()}});
-    return &state->x;
-  }
-  entry.update({{"status", to_string(solved_reference_->outcome)},
-                {"message", solved_reference_->message},
-                {"force_residual", finite_or_null(solved_reference_->force_residual)},
-                {"newton_iterations", solved_reference_->iterations},
-                {"seconds", solved_reference_->seconds}});
-  log({{"event", "reference_solved"}, {"status", to_string(solved_reference_->outcome)}});
-  return &solved_reference_->x;
-}
-
-bool Recorder::measure_errors(Observer& observer, bool cancelled) {
-  const ReferenceParameters& p = experiment_.parameters.reference;
-  const int finest = static_cast<int>(scene_.models.size()) - 1;
-  const Positions* reference = find_reference(observer, cancelled);
-  if (reference) {
-    write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
-    for (const RecordedState* state : finest_states())
-      if (&state->x != reference) {
-        method_ = state->method;
-        Json row = compare(finest, *reference, state->x, "");
-        row["against"] = results_["reference"].value("method", p.file);
-        method_entry()["reference"] = row;
-      }
-  }
-  save();
-  if (errors_.empty()) return !observer.stop_requested() || cancelled;
-  const auto stop = [&] { return !cancelled && observer.stop_requested(); };
-  const auto fault = [&](const std::string& message) {
-    log({{"event", "not_measured"}, {"message", message}});
-  };
-  try {
-    errors_.write(reference, stop, fault);
-  } catch (const WriteError&) {
-    throw;
-  } catch (const std::exception& error) {
-    fault(std::string("errors.csv: ") + error.what());
-  }
-  return !stop();
 }
 
 void Recorder::run_finished(bool complete) {

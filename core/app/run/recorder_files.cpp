@@ -1,6 +1,7 @@
 #include "core/app/run/recorder_files.h"
 
 #include <chrono>
+#include <cmath>
 #include <fstream>
 
 #include "core/kernel/mesh/file.h"
@@ -28,6 +29,10 @@ void cut(const std::filesystem::path& file, std::uint64_t bytes) {
 
 std::string json_text(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+nlohmann::ordered_json finite_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
 }
 
 double wall_clock() {

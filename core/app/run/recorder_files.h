@@ -15,6 +15,12 @@ namespace drape {
 /// The JSON text; bytes that are not UTF-8, as in file names, are replaced.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
 
+/// The value, or null if it is not finite: JSON has no such number.
+nlohmann::ordered_json finite_or_null(double value);
+
+/// Status of a method that threw, and of its current level; no solver returns it.
+inline constexpr const char* failed = "failed";
+
 /// Seconds since 1970.
 double wall_clock();
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/kernel/mesh/file.h"
+#include "core/kernel/model/metric_declaration.h"
 
 namespace drape {
 
@@ -21,8 +22,8 @@ constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html
                                      "pictures",    "obstacles",    "snapshots",    "errors.csv",
                                      "start.ply",   "checkpoint",   "reference.ply"};
 constexpr const char* lock_name = "checkpoint/lock";
-/// Longest ending of a method's file names, which begin with the method's name.
-constexpr const char* longest_ending = "_l10_l11_H_difference.png.part";
+/// Longest ending of a method's file names, which begin with the method's name: a picture's.
+constexpr std::size_t longest_ending = std::string_view("_l10_l11_.png.part").size() + longest_picture_name;
 
 /// Whether it is a run's folder: a run creates its lock first and never removes it.
 bool is_of_a_run(const RunFolder& folder) {
@@ -105,7 +106,7 @@ void refuse_long_names(const fs::path& folder, const std::vector<std::string>& m
                                std::to_string(part.string().size()) + " bytes, and the file system takes " +
                                std::to_string(most_in_name) + "; name another with --out");
   for (const std::string& method : methods) {
-    const std::size_t name = method.size() + std::strlen(longest_ending);
+    const std::size_t name = method.size() + longest_ending;
     if (name > most_in_name)
       throw std::runtime_error("method \"" + method + "\" would have files with names of " +
                                std::to_string(name) + " bytes, and the file system takes " +

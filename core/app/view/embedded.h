@@ -13,7 +13,6 @@ struct Embedded {
   static std::string_view charts_js();
   static std::string_view runs_html();
   static std::string_view runs_js();
-  static std::string_view table1_json();
   static std::string_view chart_js();
   static std::string_view three_js();
   static std::string_view viewer_html();

@@ -28,6 +28,8 @@ std::string row(const std::vector<Cell>& cells, bool head) {
 
 }  // namespace
 
+Cell words(const std::string& content) { return {content, false}; }
+
 std::string escape(std::string_view text) {
   std::string safe;
   for (const char c : text) {
@@ -52,6 +54,26 @@ std::string escape(std::string_view text) {
     }
   }
   return safe;
+}
+
+std::string formula(std::string_view text) {
+  const std::string plain = escape(text);
+  const auto in_name = [&](std::size_t k) {
+    return k < plain.size() && std::isalnum(static_cast<unsigned char>(plain[k]));
+  };
+  std::string html;
+  for (std::size_t k = 0; k < plain.size(); ++k) {
+    const bool script = (plain[k] == '_' || plain[k] == '^') && k > 0 && in_name(k - 1) && in_name(k + 1);
+    if (!script) {
+      html += plain[k];
+      continue;
+    }
+    const std::string tag = plain[k] == '_' ? "sub" : "sup";
+    html += "<" + tag + ">";
+    for (; in_name(k + 1); ++k) html += plain[k + 1];
+    html += "</" + tag + ">";
+  }
+  return html;
 }
 
 std::string number_text(const OptionalNumber& value) {

@@ -13,6 +13,9 @@ namespace drape::html {
 /// Text made safe inside elements and quoted attributes.
 std::string escape(std::string_view text);
 
+/// HTML of a text with subscripts and superscripts: "d_H^fit" shows H below and fit above the line.
+std::string formula(std::string_view text);
+
 /// Three significant digits ("403", "0.0213", "7.21e4"), or a dash if absent.
 std::string number_text(const OptionalNumber& value);
 /// With so many decimals, or a dash.
@@ -30,6 +33,9 @@ struct Cell {
   int rows = 1;     ///< rowspan
   int columns = 1;  ///< colspan
 };
+
+/// A cell of words, aligned to the left.
+Cell words(const std::string& content);
 
 /// A table in a frame that scrolls sideways when the screen is narrow.
 std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<std::vector<Cell>>& body);

@@ -52,6 +52,17 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
 
 }  // namespace
 
+const std::vector<FieldKind>& derived_fields() {
+  static const std::vector<FieldKind> kinds = {
+      {"mean_curvature", "mean curvature", "1/m", "diverging",
+       "mean curvature; beyond the ends the end colours"},
+      {"stretch", "largest stretch", "1", "sequential",
+       "largest principal stretch of the triangles around; 1 is unstretched"},
+      {"gap", "contact gap", "m", "near",
+       "distance to an obstacle or another part of the cloth; farther away in cloth colour"}};
+  return kinds;
+}
+
 Eigen::VectorXd mean_curvature(const Level& level, const Positions& x) {
   const Triangles& triangles = level.rest.triangles;
   Eigen::VectorXd area = Eigen::VectorXd::Zero(x.rows()), sum = area;
@@ -113,7 +124,7 @@ double shown_gap(const Level& level) {
 
 std::pair<double, double> field_range(const FieldKind& kind,
                                       const std::vector<const Eigen::VectorXd*>& values, double gap_range) {
-  const std::string map = kind.map;
+  const std::string& map = kind.map;
   if (map == "near") return {0, gap_range};
   if (map == "diverging") {
     const double end = magnitude_quantile(values, quantile);

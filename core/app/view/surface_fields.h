@@ -9,16 +9,14 @@
 
 namespace drape {
 
-/// Scalar fields that the viewer can show.
+/// A scalar field that the viewer can show.
 struct FieldKind {
-  const char *name, *label, *unit;
-  const char* map;  ///< "diverging" about 0, "sequential" upwards, "near" for what is close to 0
+  std::string name, label, unit;
+  std::string map;   ///< "diverging" about 0, "sequential" upwards, "near" for what is close to 0
+  std::string note;  ///< below the legend
 };
-inline constexpr FieldKind field_kinds[] = {
-    {"mean_curvature", "mean curvature", "1/m", "diverging"},
-    {"H_difference", "curvature difference from the finest level", "1/m", "diverging"},
-    {"stretch", "largest stretch", "1", "sequential"},
-    {"gap", "contact gap", "m", "near"}};
+/// The fields that the viewer computes from positions.
+const std::vector<FieldKind>& derived_fields();
 
 /// Values by the name of their kind.
 using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;

@@ -1,7 +1,6 @@
 #include "core/app/view/view_document.h"
 
 #include <algorithm>
-#include <iterator>
 
 #include "core/app/view/embedded.h"
 #include "core/app/view/view_blocks.h"
@@ -9,8 +8,6 @@
 namespace drape {
 
 namespace {
-
-constexpr std::size_t derived_fields = 3;  // bytes per vertex: mean curvature, stretch and gap
 
 const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name) {
   const auto found =
@@ -21,12 +18,14 @@ const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name
 }  // namespace
 
 ViewDocument::ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles,
-                           bool with_gaps, Keep keep)
+                           bool with_gaps, Keep keep, const std::vector<FieldKind>& further)
     : levels_(levels),
       with_gaps_(with_gaps),
       obstacles_(obstacles),
       keep_(std::move(keep)),
-      ranges_(std::size(field_kinds), {0, 0}) {
+      kinds_(derived_fields()) {
+  kinds_.insert(kinds_.end(), further.begin(), further.end());
+  ranges_.resize(kinds_.size(), {0, 0});
   for (const Level& level : levels_) {
     const std::string name = "l" + std::to_string(level.index);
     keep_(name, encode_triangles(level.rest.triangles));
@@ -55,9 +54,9 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
     std::vector<const Eigen::VectorXd*> values;
     for (const SurfaceFields* state : states)
-      if (const Eigen::VectorXd* field = find(*state, field_kinds[k].name); field && !field->isZero(0))
+      if (const Eigen::VectorXd* field = find(*state, kinds_[k].name); field && !field->isZero(0))
         values.push_back(field);  // the finest level's difference from itself is zero
-    if (!values.empty()) ranges_[k] = field_range(field_kinds[k], values, shown_gap(levels_.front()));
+    if (!values.empty()) ranges_[k] = field_range(kinds_[k], values, shown_gap(levels_.front()));
   }
 }
 
@@ -67,28 +66,29 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
   rounding_ = std::max(rounding_, position_rounding(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
-    const Eigen::VectorXd* values = find(fields, field_kinds[k].name);
+    const Eigen::VectorXd* values = find(fields, kinds_[k].name);
     if (!values) continue;
-    const std::string block = name + "-" + field_kinds[k].name;
+    const std::string block = name + "-" + kinds_[k].name;
     keep_(block, encode_scalars(*values, ranges_[k].first, ranges_[k].second));
-    entry["fields"][field_kinds[k].name] = block;
+    entry["fields"][kinds_[k].name] = block;
   }
   return entry;
 }
 
 std::size_t ViewDocument::state_bytes(int level) const {
-  return levels_[level].vertex_count() * (6 + derived_fields);
+  return levels_[level].vertex_count() * (6 + derived_fields().size());
 }
 
 ViewDocument::Json ViewDocument::document(const std::string& title, Json methods) const {
   Json fields = Json::array();
   for (std::size_t k = 0; k < ranges_.size(); ++k) {
     if (!(ranges_[k].second > ranges_[k].first)) continue;
-    const FieldKind& kind = field_kinds[k];
+    const FieldKind& kind = kinds_[k];
     fields.push_back({{"name", kind.name},
                       {"label", kind.label},
                       {"unit", kind.unit},
                       {"map", kind.map},
+                      {"note", kind.note},
                       {"low", ranges_[k].first},
                       {"high", ranges_[k].second}});
   }

@@ -17,9 +17,10 @@ class ViewDocument {
   /// Receives a named block.
   using Keep = std::function<void(const std::string& name, std::string bytes)>;
 
-  /// `levels`, coarse to fine, and `obstacles` must outlive the document; gaps are shown `with_gaps`.
+  /// `levels`, coarse to fine, and `obstacles` must outlive the document; gaps are shown `with_gaps`. States
+  /// may have the fields `further` beside the derived ones.
   ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles, bool with_gaps,
-               Keep keep);
+               Keep keep, const std::vector<FieldKind>& further = {});
 
   /// The fields that depend on positions only.
   SurfaceFields fields(int level, const Positions& x) const;
@@ -38,7 +39,8 @@ class ViewDocument {
   bool with_gaps_;
   const std::vector<TriangleMesh>& obstacles_;
   Keep keep_;
-  std::vector<std::pair<double, double>> ranges_;  // of field_kinds
+  std::vector<FieldKind> kinds_;
+  std::vector<std::pair<double, double>> ranges_;  // of kinds_
   double rounding_ = 0;
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };

@@ -1,25 +1,21 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/kernel/mesh/triangle_mesh.h"
 #include "core/kernel/model/level.h"
+#include "core/kernel/model/metric_declaration.h"
 
 namespace drape {
 
 class LevelModel;
 
-enum class Better { lower, higher, neither };
-
-/// One value, with its unit and the better direction.
+/// One value. In results.json, "a.b" is member b of the object a; the column "a" declares it.
 struct MetricValue {
   std::string name;
   double value = 0;
-  std::string unit;
-  Better better = Better::lower;
 };
 
 /// One scalar for each vertex of the fine level, for pictures.
@@ -53,7 +49,15 @@ class Metric {
  public:
   virtual ~Metric() = default;
   virtual MetricScope scope() const = 0;
-  virtual MetricResult evaluate(const MetricInput& input) const = 0;
+  /// How reports show the values and fields.
+  virtual MetricDeclaration declaration() const = 0;
+  /// Checks the states, then measures them. Throws std::runtime_error if a pair's second state is missing, or
+  /// if a state has another number of vertices than the level or is not finite.
+  MetricResult evaluate(const MetricInput& input) const;
+
+ private:
+  /// The states have been checked.
+  virtual MetricResult measure(const MetricInput& input) const = 0;
 };
 
 }  // namespace drape

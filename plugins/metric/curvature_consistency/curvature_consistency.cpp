@@ -1,8 +1,5 @@
 #include "plugins/metric/curvature_consistency/curvature_consistency.h"
 
-#include <stdexcept>
-#include <string>
-
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/metric/curvature_consistency/curvature.h"
 
@@ -16,13 +13,47 @@ void CurvatureConsistency::Parameters::declare(Declaration<Parameters>& d) {
       .source("Panozzo et al. 2010; libigl's default is 5");
 }
 
-MetricResult CurvatureConsistency::evaluate(const MetricInput& input) const {
-  if (!input.other)
-    throw std::runtime_error("curvature_consistency compares two states of one level, but was given one");
-  if (input.x.rows() != input.level.vertex_count() || input.other->rows() != input.level.vertex_count())
-    throw std::runtime_error("curvature_consistency: both states must have the level's " +
-                             std::to_string(input.level.vertex_count()) + " vertices, not " +
-                             std::to_string(input.x.rows()) + " and " + std::to_string(input.other->rows()));
+MetricDeclaration CurvatureConsistency::declaration() const {
+  MetricDeclaration d;
+  d.columns = {{.name = "d_H_fit",
+                .label = "d_H^fit",
+                .unit = "1",
+                .shown = Shown::summary,
+                .best = "changes its mean curvature least",
+                .error = "d_H_fit",
+                .error_use = ErrorUse::summary},
+               {.name = "d_H_ddg", .label = "d_H^ddg", .unit = "1"},
+               {.name = "d_K_fit", .label = "d_K^fit", .unit = "1/m²"},
+               {.name = "d_K_ddg", .label = "d_K^ddg", .unit = "1/m²"}};
+  d.pictures = {
+      {.kind = PictureKind::difference,
+       .name = "H_difference",
+       .field = "H_difference",
+       .unit = "1/m",
+       .label = "difference in mean curvature",
+       .title = "Where the curvature changes",
+       .text = "Difference in mean curvature between the coarsest level, prolonged, and the finest. "
+               "White means that the coarse level predicted the curvature; deep blue and red mean "
+               "folds that moved, vanished or appeared.",
+       .column = "d_H_fit"},
+      {.kind = PictureKind::threshold,
+       .name = "folds",
+       .field = "principal_curvature",
+       .other_field = "principal_curvature_other",
+       .unit = "1/m",
+       .label = "folds",
+       .title = "Folds across levels",
+       .text = "The principal curvature of larger magnitude, coloured by its sign above a "
+               "threshold. Compare down a column: every level should have the same folds, only "
+               "sharper."}};
+  d.text =
+      "The squared difference of curvatures is integrated over the rest shape: d_H of mean curvature H "
+      "[1/m], dimensionless; d_K of Gaussian curvature K [1/m²], in 1/m². “fit” takes curvatures from "
+      "fitted quadrics, “ddg” from dihedral angles (H) and angle defects (K).";
+  return d;
+}
+
+MetricResult CurvatureConsistency::measure(const MetricInput& input) const {
   const Triangles& triangles = input.level.rest.triangles;
   const Topology& topology = input.level.topology;
   const VertexCurvatures fit = fit_curvatures(input.x, triangles, topology, parameters_.rings);
@@ -34,10 +65,10 @@ MetricResult CurvatureConsistency::evaluate(const MetricInput& input) const {
     return integrated_square_difference(input.level.vertex_area, coarse, fine);
   };
   MetricResult result;
-  result.values = {{"d_H_fit", integral(other_fit.mean, fit.mean), "1", Better::lower},
-                   {"d_H_ddg", integral(other_ddg.mean, ddg.mean), "1", Better::lower},
-                   {"d_K_fit", integral(other_fit.gaussian, fit.gaussian), "1/m²", Better::lower},
-                   {"d_K_ddg", integral(other_ddg.gaussian, ddg.gaussian), "1/m²", Better::lower}};
+  result.values = {{"d_H_fit", integral(other_fit.mean, fit.mean)},
+                   {"d_H_ddg", integral(other_ddg.mean, ddg.mean)},
+                   {"d_K_fit", integral(other_fit.gaussian, fit.gaussian)},
+                   {"d_K_ddg", integral(other_ddg.gaussian, ddg.gaussian)}};
   result.fields = {{"H_difference", other_fit.mean - fit.mean, "1/m"},
                    {"principal_curvature", strongest_curvature(fit), "1/m"},
                    {"principal_curvature_other", strongest_curvature(other_fit), "1/m"}};

@@ -16,10 +16,11 @@ class CurvatureConsistency : public Metric {
 
   explicit CurvatureConsistency(const Parameters& parameters) : parameters_(parameters) {}
   MetricScope scope() const override { return MetricScope::pair; }
-  /// Throws std::runtime_error without a second state, or where it has another number of vertices.
-  MetricResult evaluate(const MetricInput& input) const override;
+  MetricDeclaration declaration() const override;
 
  private:
+  MetricResult measure(const MetricInput& input) const override;
+
   Parameters parameters_;
 };
 

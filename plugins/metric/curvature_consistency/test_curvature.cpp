@@ -477,8 +477,11 @@ TEST_CASE("a surface is consistent with itself", "[curvature_consistency]") {
   for (const MetricValue& v : result.values) {
     CAPTURE(v.name);
     CHECK(v.value == 0);
-    CHECK(v.better == Better::lower);
-    CHECK(v.unit == (v.name[2] == 'H' ? "1" : "1/m²"));
+  }
+  for (const MetricColumn& c : CurvatureConsistency({}).declaration().columns) {
+    CAPTURE(c.name);
+    CHECK(c.better == Better::lower);
+    CHECK(c.unit == (c.name[2] == 'H' ? "1" : "1/m²"));
   }
   REQUIRE(result.fields.size() == 3);
   CHECK(result.fields[0].name == "H_difference");

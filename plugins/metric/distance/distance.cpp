@@ -8,8 +8,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "core/kernel/contact/closest.h"
@@ -74,16 +72,27 @@ Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions
 
 }  // namespace
 
-MetricResult Distance::evaluate(const MetricInput& input) const {
-  if (!input.other) throw std::runtime_error("distance compares two states of one level, but was given one");
+MetricDeclaration Distance::declaration() const {
+  return {.columns = {{.name = "distance_rms",
+                       .label = "distance, RMS",
+                       .unit = "diagonal",
+                       .error = "rms",
+                       .error_use = ErrorUse::ranking},
+                      {.name = "distance_max",
+                       .label = "distance, largest",
+                       .unit = "diagonal",
+                       .shown = Shown::stored},
+                      {.name = "distance_hausdorff",
+                       .label = "Hausdorff distance",
+                       .unit = "diagonal",
+                       .shown = Shown::stored,
+                       .error = "hausdorff"}},
+          .text = "The distance is that of corresponding points, in units of the rest shape's diagonal."};
+}
+
+MetricResult Distance::measure(const MetricInput& input) const {
   const Positions& x = input.x;
   const Positions& other = *input.other;
-  if (x.rows() != input.level.vertex_count() || other.rows() != input.level.vertex_count())
-    throw std::runtime_error("distance: both states must have the level's " +
-                             std::to_string(input.level.vertex_count()) + " vertices, not " +
-                             std::to_string(x.rows()) + " and " + std::to_string(other.rows()));
-  if (!x.allFinite() || !other.allFinite())
-    throw std::runtime_error("distance: a state has positions that are not finite");
   const Positions& rest = input.level.rest.vertices;
   const double diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
 
@@ -95,7 +104,7 @@ MetricResult Distance::evaluate(const MetricInput& input) const {
 
   MetricResult result;
   const auto add = [&](const char* name, double squared_distance) {
-    result.values.push_back({name, std::sqrt(squared_distance) / diagonal, "diagonal", Better::lower});
+    result.values.push_back({name, std::sqrt(squared_distance) / diagonal});
   };
   add("distance_rms", area.dot(squared) / area.sum());
   add("distance_max", squared.maxCoeff());

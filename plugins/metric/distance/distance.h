@@ -15,8 +15,10 @@ class Distance : public Metric {
 
   explicit Distance(const Parameters&) {}
   MetricScope scope() const override { return MetricScope::pair; }
-  /// Throws std::runtime_error without a second state, or where it has another number of vertices.
-  MetricResult evaluate(const MetricInput& input) const override;
+  MetricDeclaration declaration() const override;
+
+ private:
+  MetricResult measure(const MetricInput& input) const override;
 };
 
 }  // namespace drape

@@ -14,11 +14,19 @@ class EnergyByPart : public Metric {
 
   MetricScope scope() const override { return MetricScope::state; }
 
-  MetricResult evaluate(const MetricInput& input) const override {
+  /// Reports show the energies that the run itself records.
+  MetricDeclaration declaration() const override {
+    return {.columns = {
+                {.name = "energy_parts", .label = "energy of a part", .unit = "J", .shown = Shown::stored},
+                {.name = "energy", .label = "energy", .unit = "J", .shown = Shown::stored}}};
+  }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
     MetricResult result;
     for (const auto& [name, joules] : input.model.energy_parts(input.x))
-      result.values.push_back({"energy_parts." + name, joules, "J", Better::lower});
-    result.values.push_back({"energy", input.model.energy(input.x), "J", Better::lower});
+      result.values.push_back({"energy_parts." + name, joules});
+    result.values.push_back({"energy", input.model.energy(input.x)});
     return result;
   }
 };

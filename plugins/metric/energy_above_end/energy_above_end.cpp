@@ -1,5 +1,3 @@
-#include <stdexcept>
-
 #include "core/kernel/model/level_model.h"
 #include "core/kernel/model/metric.h"
 #include "core/kernel/plugin/plugin.h"
@@ -16,12 +14,19 @@ class EnergyAboveEnd : public Metric {
 
   MetricScope scope() const override { return MetricScope::pair; }
 
-  MetricResult evaluate(const MetricInput& input) const override {
-    if (!input.other)
-      throw std::runtime_error("energy_above_end compares two states of one level, but was given one");
+  MetricDeclaration declaration() const override {
+    return {.columns = {{.name = "energy_above_end", .label = "energy above the end", .unit = "J"}},
+            .text =
+                "Energy above the end is the fine level's energy, without contact, at the prolonged state "
+                "less that at the fine one; a dash means that the prolonged state violates the strain "
+                "limit."};
+  }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
     const double above =
         input.model.energy_without_contact(*input.other) - input.model.energy_without_contact(input.x);
-    return {{{"energy_above_end", above, "J", Better::lower}}, {}};
+    return {{{"energy_above_end", above}}};
   }
 };
 

@@ -26,8 +26,9 @@ methods: {newton: {}}
     REQUIRE(metric->scope() == MetricScope::pair);
     const MetricResult result = metric->evaluate({s.level(), s.model(), end, &other});
     REQUIRE(result.values.size() == 1);
-    CHECK(result.values[0].unit == "J");
-    CHECK(result.values[0].better == Better::lower);
+    const MetricColumn column = metric->declaration().columns.at(0);
+    CHECK(column.unit == "J");
+    CHECK(column.better == Better::lower);
     return value(result, "energy_above_end");
   }
   Positions lifted(double height) const {

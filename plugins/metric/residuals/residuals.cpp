@@ -26,15 +26,24 @@ class Residuals : public Metric {
 
   MetricScope scope() const override { return MetricScope::state; }
 
-  MetricResult evaluate(const MetricInput& input) const override {
-    MetricResult result;
-    result.values.push_back(
-        {"force_residual_plain", input.model.force_residual(input.x), "1", Better::lower});
-    result.values.push_back({"decrement_plain", decrement(input.model, input.x), "m/s", Better::lower});
-    return result;
+  MetricDeclaration declaration() const override {
+    return {.columns = {{.name = "force_residual_plain",
+                         .label = "force residual of the plain model",
+                         .unit = "1",
+                         .shown = Shown::stored},
+                        {.name = "decrement_plain",
+                         .label = "decrement of the plain model",
+                         .unit = "m/s",
+                         .shown = Shown::stored}}};
   }
 
  private:
+  MetricResult measure(const MetricInput& input) const override {
+    return {{{"force_residual_plain", input.model.force_residual(input.x)},
+             {"decrement_plain", decrement(input.model, input.x)}},
+            {}};
+  }
+
   /// ‖p‖ / (h √n) of the first Newton direction of an implicit step from x, with the clamped matrix.
   double decrement(const LevelModel& model, const Positions& x) const {
     Positions g, p;

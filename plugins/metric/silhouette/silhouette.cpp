@@ -3,8 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "core/kernel/linear_algebra/parallel.h"
@@ -99,17 +97,25 @@ std::array<Eigen::Vector3d, 12> Silhouette::directions() {
   return all;
 }
 
-MetricResult Silhouette::evaluate(const MetricInput& input) const {
-  if (!input.other)
-    throw std::runtime_error("silhouette compares two states of one level, but was given one");
+MetricDeclaration Silhouette::declaration() const {
+  return {.columns = {{.name = "silhouette_overlap",
+                       .label = "silhouette overlap",
+                       .unit = "1",
+                       .better = Better::higher,
+                       .error = "silhouette_mismatch"},
+                      {.name = "silhouette_lowest",
+                       .label = "silhouette overlap, worst view",
+                       .unit = "1",
+                       .better = Better::higher,
+                       .shown = Shown::stored}},
+          .text =
+              "Silhouette overlap is intersection over union of the outlines, averaged over twelve views; "
+              "higher is better."};
+}
+
+MetricResult Silhouette::measure(const MetricInput& input) const {
   const Positions& x = input.x;
   const Positions& other = *input.other;
-  if (x.rows() != input.level.vertex_count() || other.rows() != input.level.vertex_count())
-    throw std::runtime_error("silhouette: both states must have the level's " +
-                             std::to_string(input.level.vertex_count()) + " vertices, not " +
-                             std::to_string(x.rows()) + " and " + std::to_string(other.rows()));
-  if (!x.allFinite() || !other.allFinite())
-    throw std::runtime_error("silhouette: a state has positions that are not finite");
   const Positions& rest = input.level.rest.vertices;
   const double diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   const auto views = directions();
@@ -121,9 +127,8 @@ MetricResult Silhouette::evaluate(const MetricInput& input) const {
   double sum = 0;
   for (const double v : values) sum += v;
   MetricResult result;
-  result.values.push_back({"silhouette_overlap", sum / values.size(), "1", Better::higher});
-  result.values.push_back(
-      {"silhouette_lowest", *std::min_element(values.begin(), values.end()), "1", Better::higher});
+  result.values.push_back({"silhouette_overlap", sum / values.size()});
+  result.values.push_back({"silhouette_lowest", *std::min_element(values.begin(), values.end())});
   return result;
 }
 

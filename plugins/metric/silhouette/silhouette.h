@@ -23,14 +23,14 @@ class Silhouette : public Metric {
 
   explicit Silhouette(const Parameters& parameters) : p_(parameters) {}
   MetricScope scope() const override { return MetricScope::pair; }
-  /// Throws std::runtime_error without a second state, where one has another number of vertices than the
-  /// level, or where one is not finite.
-  MetricResult evaluate(const MetricInput& input) const override;
+  MetricDeclaration declaration() const override;
 
   /// The directions of view, as unit vectors: the twelve axes through the vertices of a rhombicuboctahedron.
   static std::array<Eigen::Vector3d, 12> directions();
 
  private:
+  MetricResult measure(const MetricInput& input) const override;
+
   Parameters p_;
 };
 

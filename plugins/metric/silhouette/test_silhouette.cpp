@@ -51,10 +51,10 @@ TEST_CASE("A state covers itself, and nothing of one beside it", "[silhouette]")
   const Positions x = wavy(level, 0);
   const MetricResult same = evaluate(level, x, x);
   REQUIRE(same.values.size() == 2);
-  for (const MetricValue& v : same.values) {
-    CHECK(v.value == 1);
-    CHECK(v.unit == "1");
-    CHECK(v.better == Better::higher);
+  for (const MetricValue& v : same.values) CHECK(v.value == 1);
+  for (const MetricColumn& c : Silhouette(Silhouette::Parameters()).declaration().columns) {
+    CHECK(c.unit == "1");
+    CHECK(c.better == Better::higher);
   }
   // In a direction that no view looks along.
   for (const MetricValue& v : evaluate(level, x, shifted(x, 20, 30, 0)).values) CHECK(v.value == 0);

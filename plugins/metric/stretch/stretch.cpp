@@ -2,21 +2,36 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
-#include <string>
 
 #include "core/kernel/elements/stretch.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace drape {
 
-MetricResult Stretch::evaluate(const MetricInput& input) const {
-  const Positions& x = input.x;
-  if (x.rows() != input.level.vertex_count())
-    throw std::runtime_error("stretch: the state has " + std::to_string(x.rows()) + " vertices, the level " +
-                             std::to_string(input.level.vertex_count()));
-  if (!x.allFinite()) throw std::runtime_error("stretch: the state has positions that are not finite");
+MetricDeclaration Stretch::declaration() const {
+  return {.columns = {{.name = "largest_stretch",
+                       .label = "largest stretch",
+                       .unit = "1",
+                       .better = Better::neither,
+                       .shown = Shown::summary,
+                       .decimals = 4},
+                      {.name = "smallest_stretch",
+                       .label = "smallest stretch",
+                       .unit = "1",
+                       .better = Better::neither,
+                       .shown = Shown::stored,
+                       .decimals = 4},
+                      {.name = "mean_stretch",
+                       .label = "mean stretch",
+                       .unit = "1",
+                       .better = Better::neither,
+                       .shown = Shown::stored,
+                       .decimals = 4}},
+          .text = "Stretch is the largest principal stretch (1 is unstretched)."};
+}
 
+MetricResult Stretch::measure(const MetricInput& input) const {
+  const Positions& x = input.x;
   double largest = 0, smallest = std::numeric_limits<double>::infinity(), weighted_sum = 0, area_sum = 0;
   Eigen::VectorXd vertex_stretch = Eigen::VectorXd::Zero(x.rows());
   for (int t = 0; t < input.level.triangle_count(); ++t) {
@@ -32,9 +47,9 @@ MetricResult Stretch::evaluate(const MetricInput& input) const {
   }
 
   MetricResult result;
-  result.values = {{"largest_stretch", largest, "1", Better::neither},
-                   {"smallest_stretch", smallest, "1", Better::neither},
-                   {"mean_stretch", weighted_sum / area_sum, "1", Better::neither}};
+  result.values = {{"largest_stretch", largest},
+                   {"smallest_stretch", smallest},
+                   {"mean_stretch", weighted_sum / area_sum}};
   result.fields = {{"stretch", vertex_stretch, "1"}};
   return result;
 }

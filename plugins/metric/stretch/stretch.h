@@ -14,9 +14,11 @@ class Stretch : public Metric {
 
   explicit Stretch(const Parameters&) {}
   MetricScope scope() const override { return MetricScope::state; }
-  /// Throws std::runtime_error where the state has another number of vertices than the level, or a rest
-  /// triangle has no area.
-  MetricResult evaluate(const MetricInput& input) const override;
+  MetricDeclaration declaration() const override;
+
+ private:
+  /// Throws std::runtime_error if a rest triangle has no area.
+  MetricResult measure(const MetricInput& input) const override;
 };
 
 }  // namespace drape

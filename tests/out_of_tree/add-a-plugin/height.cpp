@@ -14,11 +14,17 @@ class Height : public drape::Metric {
 
   drape::MetricScope scope() const override { return drape::MetricScope::state; }
 
-  drape::MetricResult evaluate(const drape::MetricInput& input) const override {
+  drape::MetricDeclaration declaration() const override {
+    using drape::Better;
+    return {
+        .columns = {{.name = "lowest", .label = "lowest point", .unit = "m", .better = Better::neither},
+                    {.name = "highest", .label = "highest point", .unit = "m", .better = Better::neither}}};
+  }
+
+ private:
+  drape::MetricResult measure(const drape::MetricInput& input) const override {
     const auto z = input.x.col(2);
-    return {{{"lowest", z.minCoeff(), "m", drape::Better::neither},
-             {"highest", z.maxCoeff(), "m", drape::Better::neither}},
-            {{"height", z, "m"}}};
+    return {{{"lowest", z.minCoeff()}, {"highest", z.maxCoeff()}}, {{"height", z, "m"}}};
   }
 };
 

@@ -9,10 +9,8 @@ const drape = (() => {
     ? value.toExponential(2).replace('e+', 'e') : String(Number(value.toPrecision(3)));
   const superscript = n => String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
 
-  // Measures, targets and costs of errors, as in errors.csv.
-  const measures = {rms: 'distance, RMS [diagonals]', hausdorff: 'Hausdorff distance [diagonals]',
-    d_H_fit: 'difference in mean curvature, d_H_fit', silhouette_mismatch: 'silhouettes, 1 − overlap',
-    energy_gap: 'energy above the target, relative'};
+  // Measures (those that the run's metrics declare), targets and costs of errors, as in errors.csv.
+  const measures = Object.fromEntries(data.measures.map(measure => [measure.name, measure.label]));
   const targets = {reference: 'the reference', own: 'the method’s own finest state'};
   const costKinds = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 

@@ -18,7 +18,7 @@
 
   function drawErrors() {
     const {measure, target, cost} = chosen();
-    const plot = ((data.errors || {})[cost] || {})[target][measure];
+    const plot = (((data.errors || {})[cost] || {})[target] || {})[measure] || {curves: data.rows.map(() => []), front: []};
     const datasets = [];
     let count = 0;
     data.rows.forEach((row, r) => {

@@ -67,12 +67,7 @@ class Viewer {
     low.textContent = text(field.low);
     bar.style.background = ViewerColours.gradient(field.map);
     high.textContent = text(field.high) + (field.unit === '1' ? '' : ' ' + field.unit);
-    note.textContent = {
-      mean_curvature: 'mean curvature; beyond the ends the end colours',
-      H_difference: 'mean curvature less the finest level’s, at the vertices both have; known for last states only',
-      stretch: 'largest principal stretch of the triangles around; 1 is unstretched',
-      gap: 'distance to an obstacle or another part of the cloth; farther away in cloth colour',
-    }[field.name] || field.label;
+    note.textContent = field.note;
   }
 
   listMethods() {

@@ -1,0 +1,171 @@
+#include "core/app/experiment/declared_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/app/files/json_file.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The words of an enumeration in results.json; the first is the default.
+template <class Enum>
+using Words = std::vector<std::pair<const char*, Enum>>;
+
+const Words<MetricScope> scopes = {{"pair", MetricScope::pair}, {"state", MetricScope::state}};
+const Words<Better> directions = {
+    {"neither", Better::neither}, {"lower", Better::lower}, {"higher", Better::higher}};
+const Words<Shown> shown_words = {
+    {"tables", Shown::tables}, {"stored", Shown::stored}, {"summary", Shown::summary}};
+const Words<ErrorUse> error_uses = {
+    {"plots", ErrorUse::plots}, {"summary", ErrorUse::summary}, {"ranking", ErrorUse::ranking}};
+const Words<PictureKind> picture_kinds = {{"difference", PictureKind::difference},
+                                          {"threshold", PictureKind::threshold}};
+
+template <class Enum>
+const char* word_of(const Words<Enum>& words, Enum value) {
+  return std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.second == value; })->first;
+}
+
+template <class Enum>
+Enum value_of(const Words<Enum>& words, const Json& json, const char* key) {
+  const std::string word = text_member(json, key);
+  const auto found = std::find_if(words.begin(), words.end(), [&](const auto& w) { return w.first == word; });
+  return found == words.end() ? words.front().second : found->second;
+}
+
+const Json& list(const Json& json, const char* key) {
+  static const Json none = Json::array();
+  const Json& member = member_of(json, key);
+  return member.is_array() ? member : none;
+}
+
+Json column_json(const MetricColumn& c) {
+  Json json = {{"name", c.name},
+               {"label", c.label},
+               {"unit", c.unit},
+               {"better", word_of(directions, c.better)},
+               {"shown", word_of(shown_words, c.shown)}};
+  if (c.decimals >= 0) json["decimals"] = c.decimals;
+  if (!c.best.empty()) json["best"] = c.best;
+  if (c.error.empty()) return json;
+  json["error"] = c.error;
+  json["error_use"] = word_of(error_uses, c.error_use);
+  return json;
+}
+
+MetricColumn column_of(const Json& json) {
+  MetricColumn c;
+  c.name = text_member(json, "name");
+  c.label = text_member(json, "label");
+  c.unit = text_member(json, "unit");
+  c.better = value_of(directions, json, "better");
+  c.shown = value_of(shown_words, json, "shown");
+  if (const Json& decimals = member_of(json, "decimals"); decimals.is_number())
+    c.decimals = static_cast<int>(std::clamp(decimals.get<double>(), -1.0, 17.0));
+  c.best = text_member(json, "best");
+  c.error = text_member(json, "error");
+  c.error_use = value_of(error_uses, json, "error_use");
+  return c;
+}
+
+struct PictureMember {
+  const char* key;
+  std::string MetricPicture::*text;
+};
+constexpr PictureMember picture_members[] = {{"name", &MetricPicture::name},
+                                             {"field", &MetricPicture::field},
+                                             {"other_field", &MetricPicture::other_field},
+                                             {"unit", &MetricPicture::unit},
+                                             {"label", &MetricPicture::label},
+                                             {"title", &MetricPicture::title},
+                                             {"text", &MetricPicture::text},
+                                             {"column", &MetricPicture::column}};
+
+Json picture_json(const MetricPicture& p) {
+  Json json = {{"kind", word_of(picture_kinds, p.kind)}};
+  for (const auto& [key, member] : picture_members) json[key] = p.*member;
+  return json;
+}
+
+MetricPicture picture_of(const Json& json) {
+  MetricPicture p;
+  p.kind = value_of(picture_kinds, json, "kind");
+  for (const auto& [key, member] : picture_members) p.*member = text_member(json, key);
+  return p;
+}
+
+template <class Named>
+void add_new(std::vector<Named>& all, const std::vector<Named>& more) {
+  for (const Named& one : more)
+    if (std::none_of(all.begin(), all.end(), [&](const Named& n) { return n.name == one.name; }))
+      all.push_back(one);
+}
+
+}  // namespace
+
+std::vector<DeclaredMetric> declared_metrics(
+    const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics) {
+  std::vector<DeclaredMetric> declared;
+  for (const auto& [name, metric] : metrics)
+    add_new(declared, {DeclaredMetric{name, metric->scope(), metric->declaration()}});
+  return declared;
+}
+
+Json json_of(const std::vector<DeclaredMetric>& metrics) {
+  Json all = Json::object();
+  for (const auto& [name, scope, declaration] : metrics) {
+    Json& entry = all[name];
+    entry = {{"scope", word_of(scopes, scope)}, {"text", declaration.text}, {"columns", Json::array()}};
+    for (const MetricColumn& column : declaration.columns) entry["columns"].push_back(column_json(column));
+    for (const MetricPicture& p : declaration.pictures) entry["pictures"].push_back(picture_json(p));
+  }
+  return all;
+}
+
+std::vector<DeclaredMetric> declared_metrics(const Json& json) {
+  std::vector<DeclaredMetric> metrics;
+  if (!json.is_object()) return metrics;
+  for (const auto& [name, entry] : json.items()) {
+    DeclaredMetric metric{name, value_of(scopes, entry, "scope"), {}};
+    metric.declaration.text = text_member(entry, "text");
+    for (const Json& column : list(entry, "columns"))
+      if (!text_member(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
+    for (const Json& picture : list(entry, "pictures"))
+      if (!text_member(picture, "field").empty()) metric.declaration.pictures.push_back(picture_of(picture));
+    metrics.push_back(std::move(metric));
+  }
+  return metrics;
+}
+
+std::vector<MetricColumn> columns_of(const std::vector<DeclaredMetric>& metrics, MetricScope scope,
+                                     Shown least) {
+  std::vector<MetricColumn> columns;
+  for (const DeclaredMetric& metric : metrics)
+    if (metric.scope == scope)
+      for (const MetricColumn& column : metric.declaration.columns)
+        if (column.shown >= least) add_new(columns, {column});
+  return columns;
+}
+
+void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& more) {
+  add_new(all, more);
+  for (const DeclaredMetric& metric : more)
+    for (DeclaredMetric& own : all)
+      if (own.name == metric.name) {
+        add_new(own.declaration.columns, metric.declaration.columns);
+        add_new(own.declaration.pictures, metric.declaration.pictures);
+      }
+}
+
+bool beats(Better better, double a, double b) {
+  if (better == Better::neither) return false;
+  return better == Better::higher ? a > b : std::abs(a) < std::abs(b);
+}
+
+}  // namespace drape

@@ -1,0 +1,247 @@
+#include "core/app/experiment/experiment_parameters.h"
+
+#include "core/kernel/plugin/bounds.h"
+
+namespace drape {
+
+void LoopParameters::declare(Declaration<LoopParameters>& d) {
+  d.add("points", &LoopParameters::points)
+      .unit("m")
+      .at_least(-bounds::largest_length)
+      .at_most(bounds::largest_length)
+      .description("x0, y0, x1, y1, … around the outline")
+      .required();
+}
+
+void ClothParameters::declare(Declaration<ClothParameters>& d) {
+  d.add("shape", &ClothParameters::shape)
+      .choices({"square", "rectangle", "disc", "polygon", "file"})
+      .description(
+          "flat pattern in z = 0 with a corner (of a disc, the centre) at the origin, or a mesh file");
+  d.add("side", &ClothParameters::side)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .description("side of a square");
+  d.add("size", &ClothParameters::size)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .description("width and height of a rectangle");
+  d.add("radius", &ClothParameters::radius)
+      .unit("m")
+      .at_least(1e-6)
+      .at_most(bounds::largest_length)
+      .description("radius of a disc");
+  d.add_sections("loops", &ClothParameters::loops).description("outline of a polygon, then its holes");
+  d.add("file", &ClothParameters::file)
+      .path()
+      .description("mesh of the rest shape (OBJ, OFF or PLY), relative to this file");
+  d.add("triangulation", &ClothParameters::triangulation)
+      .choices({"one_way", "criss_cross", "equilateral", "random"})
+      .description("triangulation of a square or rectangle; discs and polygons are Delaunay meshes");
+  d.add("vertices", &ClothParameters::vertices)
+      .at_least(3)
+      .at_most(bounds::most_vertices)
+      .description("approximate number of vertices of the coarsest level");
+  d.add("columns", &ClothParameters::columns)
+      .at_least(0)
+      .at_most(bounds::most_vertices)
+      .description("number of vertices along the width of a grid; 0 derives it from `vertices`");
+  d.add("rows", &ClothParameters::rows)
+      .at_least(0)
+      .at_most(bounds::most_vertices)
+      .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
+  d.add("seed", &ClothParameters::seed)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description("seed of a random triangulation");
+}
+
+void StartParameters::declare(Declaration<StartParameters>& d) {
+  d.add("file", &StartParameters::file)
+      .path()
+      .description(
+          "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels "
+          "split "
+          "it at edge midpoints");
+  d.add("scale", &StartParameters::scale)
+      .at_least(-bounds::largest_scale)
+      .at_most(bounds::largest_scale)
+      .description("scale factors along x, y, z, applied first");
+  d.add("rotate", &StartParameters::rotate)
+      .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .description("rotation about x, then y, then z, applied after `scale`");
+  d.add("translate", &StartParameters::translate)
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description("translation, applied last");
+  d.add("perturbation", &StartParameters::perturbation)
+      .unit("m")
+      .at_least(0)
+      .at_most(bounds::largest_length)
+      .description(
+          "amplitude of smooth noise normal to the pattern, equal on every level; pinned vertices have none");
+  d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(bounds::largest_length)
+      .description("wavelength of the noise");
+  d.add("seed", &StartParameters::seed)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description("seed of the noise");
+}
+
+namespace {
+
+/// The parameters that pins and handles share.
+template <class Condition>
+void declare_selection(Declaration<Condition>& d) {
+  const auto member = [](auto VertexSelection::*m) {
+    return static_cast<std::decay_t<decltype(std::declval<Condition>().*m)> Condition::*>(m);
+  };
+  d.add("region", member(&VertexSelection::region))
+      .choices({"nearest", "ball", "box", "border", "vertices"})
+      .description(
+          "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
+          "within "
+          "`radius` of `point`, all in a box, the boundary, or coarsest-level indices");
+  d.add("point", member(&VertexSelection::point))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description("point of `nearest`, centre of `ball`, in the rest shape");
+  d.add("radius", member(&VertexSelection::radius))
+      .unit("m")
+      .at_least(0)
+      .at_most(bounds::largest_coordinate)
+      .description("radius of `ball`");
+  d.add("lower", member(&VertexSelection::lower))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description("lower corner of `box`, in the rest shape");
+  d.add("upper", member(&VertexSelection::upper))
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description("upper corner of `box`, in the rest shape");
+  d.add("vertices", member(&VertexSelection::vertices))
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description("indices on the coarsest level, from 0");
+  d.add("translate", member(&VertexSelection::translate))
+      .formerly("move")
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description(
+          "translation from the rest position to the target, applied after `rotate`; without both, the "
+          "target "
+          "is the start position");
+  d.add("rotate", member(&VertexSelection::rotate))
+      .formerly("turn")
+      .unit("degree")
+      .at_least(-bounds::largest_angle)
+      .at_most(bounds::largest_angle)
+      .description("rotation of the rest position about x, then y, then z through `centre`");
+  d.add("centre", member(&VertexSelection::centre))
+      .formerly("about")
+      .unit("m")
+      .at_least(-bounds::largest_coordinate)
+      .at_most(bounds::largest_coordinate)
+      .description("centre of `rotate`, in the rest shape");
+}
+
+}  // namespace
+
+void PinParameters::declare(Declaration<PinParameters>& d) { declare_selection(d); }
+
+void HandleParameters::declare(Declaration<HandleParameters>& d) {
+  declare_selection(d);
+  d.add("stiffness", &HandleParameters::stiffness)
+      .unit("1/s²")
+      .at_least(0)
+      .at_most(bounds::largest_modulus)
+      .description(
+          "κ_B of the penalty κ_B/2 m ‖x − x̃‖²; by default the numerical value of the membrane modulus")
+      .source("supplement, section 4");
+}
+
+void ReferenceParameters::declare(Declaration<ReferenceParameters>& d) {
+  d.add("method", &ReferenceParameters::method)
+      .description(
+          "method whose finest state is the reference; `lowest` chooses the converged finest state of lowest "
+          "energy");
+  d.add("force_tolerance", &ReferenceParameters::force_tolerance)
+      .at_least(0)
+      .at_most(1e12)
+      .description("force tolerance to which the reference is solved after all methods; 0 takes it as it is");
+  d.add("file", &ReferenceParameters::file)
+      .path()
+      .description(
+          "in place of `method`: a mesh of the finest level, or the folder of a run with a reference");
+}
+
+void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
+  d.add("name", &ExperimentParameters::name)
+      .required()
+      .description("names the results folder and the report");
+  d.add("description", &ExperimentParameters::description).description("one sentence for the report");
+  d.add_section("cloth", &ExperimentParameters::cloth).description("the coarsest level");
+  d.add("levels", &ExperimentParameters::levels)
+      .at_least(1)
+      .at_most(10)
+      .description("number of levels; each splits every triangle of the last into four");
+  d.add_section("material", &ExperimentParameters::material).description("material of the cloth");
+  d.add_section("start", &ExperimentParameters::start)
+      .description("initial state: the rest shape or a file, transformed");
+  d.add_sections("pins", &ExperimentParameters::pins)
+      .description("Dirichlet boundary conditions: vertices at prescribed positions (hard positions)");
+  d.add_sections("handles", &ExperimentParameters::handles)
+      .description("penalty boundary conditions: vertices on springs to their targets (soft positions)");
+  d.add_section("schedule", &ExperimentParameters::schedule)
+      .description(
+          "load stepping on a level that begins from the initial state; later levels are solved under the "
+          "final loads");
+  d.add_node("energies", &ExperimentParameters::energies)
+      .plugin("energy")
+      .required()
+      .description("energies; their sum is minimised");
+  d.add_node("refiner", &ExperimentParameters::refiner)
+      .plugin("refiner")
+      .description("refinement scheme; loop by default");
+  d.add_node("contact", &ExperimentParameters::contact)
+      .plugin("contact")
+      .or_list()
+      .description("contact model or a list of them; none by default");
+  d.add_section("newton", &ExperimentParameters::newton)
+      .description("Newton parameters of every method; a method's own take precedence");
+  d.add_node("methods", &ExperimentParameters::methods)
+      .required()
+      .description("map from method names to solvers; `type` defaults to the name");
+  d.add_node("metrics", &ExperimentParameters::metrics)
+      .plugin("metric")
+      .description("metrics to evaluate; all by default");
+  d.add_section("reference", &ExperimentParameters::reference)
+      .shorthand("method")
+      .description(
+          "state that errors are measured against, beside each method's own finest one; the name of a method "
+          "or `lowest` is a shorthand");
+  d.add("snapshots", &ExperimentParameters::snapshots)
+      .formerly("frames")
+      .at_least(0)
+      .at_most(1000)
+      .description("number of intermediate states per level to record and to measure errors of");
+  d.add_choice(
+       "check_intersections", &ExperimentParameters::check_intersections,
+       {{"every_level", IntersectionCheck::every_level}, {"every_step", IntersectionCheck::every_step}})
+      .formerly("verify")
+      .description("when to count intersections, by exact predicates between meshes");
+}
+
+}  // namespace drape

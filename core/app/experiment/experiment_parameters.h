@@ -1,0 +1,133 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/model/material.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/solve/newton_parameters.h"
+
+namespace drape {
+
+/// One closed outline of a polygonal cloth.
+struct LoopParameters {
+  std::vector<double> points;  ///< x0, y0, x1, y1, … [m]
+  static void declare(Declaration<LoopParameters>& d);
+};
+
+/// The coarsest level: a flat pattern or a mesh file.
+struct ClothParameters {
+  std::string shape = "square";
+  double side = 1;
+  Eigen::Vector2d size{1, 1};
+  double radius = 0.5;
+  std::vector<LoopParameters> loops;
+  std::string file;
+  std::string triangulation = "one_way";
+  int vertices = 1024;
+  int columns = 0, rows = 0;
+  int seed = 1;
+  static void declare(Declaration<ClothParameters>& d);
+};
+
+/// The initial state: the rest shape, or that of a file, scaled, then rotated, then translated.
+struct StartParameters {
+  std::string file;
+  Eigen::Vector3d scale{1, 1, 1};
+  Eigen::Vector3d rotate{0, 0, 0};
+  Eigen::Vector3d translate{0, 0, 0};
+  double perturbation = 0;
+  double perturbation_wavelength = 0.25;
+  int seed = 1;
+  /// The initial position of a vertex; `noise` is normal to the pattern [m].
+  Eigen::Vector3d transformed(const Eigen::Vector3d& rest, double noise = 0) const;
+  static void declare(Declaration<StartParameters>& d);
+};
+
+/// A boundary condition's vertices, by a region of the rest shape that means the same on every level, and the
+/// rigid motion that gives their targets.
+struct VertexSelection {
+  std::string region = "nearest";
+  Eigen::Vector3d point{0, 0, 0};
+  double radius = 0;
+  Eigen::Vector3d lower{0, 0, 0}, upper{0, 0, 0};
+  std::vector<int> vertices;
+  std::optional<Eigen::Vector3d> translate;
+  std::optional<Eigen::Vector3d> rotate;
+  Eigen::Vector3d centre{0, 0, 0};
+
+  bool has_transform() const { return translate || rotate; }
+  /// The target of a vertex with this rest position: rotated about `centre`, then translated.
+  Eigen::Vector3d target(const Eigen::Vector3d& rest) const;
+};
+
+/// Dirichlet boundary condition (hard positions): the vertices stay at their targets on every level.
+struct PinParameters : VertexSelection {
+  static void declare(Declaration<PinParameters>& d);
+};
+
+/// Penalty boundary condition (soft positions): springs pull the vertices to their targets.
+struct HandleParameters : VertexSelection {
+  std::optional<double> stiffness;
+  static void declare(Declaration<HandleParameters>& d);
+};
+
+/// How a keyed value goes from one time to the next.
+enum class KeyInterpolation { linear, log, step };
+
+/// One parameter of the experiment over pseudo-time.
+struct KeyParameters {
+  std::string parameter;
+  std::vector<double> times;
+  ConfigNode values;
+  KeyInterpolation interpolation = KeyInterpolation::linear;
+  static void declare(Declaration<KeyParameters>& d);
+};
+
+/// Load stepping: parameters that change in increments while a level is solved.
+struct ScheduleParameters {
+  double duration = 0;
+  int steps = 1;
+  bool equilibrate = false;
+  std::vector<KeyParameters> keys;
+  static void declare(Declaration<ScheduleParameters>& d);
+};
+
+/// The state that errors are measured against, beside each method's own finest one.
+struct ReferenceParameters {
+  /// In place of a method's name: the converged finest state of lowest energy.
+  static constexpr const char* lowest = "lowest";
+  std::string method;
+  double force_tolerance = 0;
+  std::string file;
+  static void declare(Declaration<ReferenceParameters>& d);
+};
+
+/// How often exact predicates count the intersections.
+enum class IntersectionCheck { every_level, every_step };
+
+/// A whole experiment file.
+struct ExperimentParameters {
+  std::string name;
+  std::string description;
+  ClothParameters cloth;
+  int levels = 4;
+  Material material;
+  StartParameters start;
+  std::vector<PinParameters> pins;
+  std::vector<HandleParameters> handles;
+  ScheduleParameters schedule;
+  std::vector<ConfigNode> energies;
+  ConfigNode refiner, contact;
+  NewtonParameters newton;
+  ConfigNode methods;
+  std::vector<ConfigNode> metrics;
+  ReferenceParameters reference;
+  int snapshots = 8;
+  IntersectionCheck check_intersections = IntersectionCheck::every_level;
+  static void declare(Declaration<ExperimentParameters>& d);
+};
+
+}  // namespace drape

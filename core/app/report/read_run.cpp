@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/csv.h"
+#include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
+#include "core/app/report/run_data.h"
+#include "core/app/report/undeclared_metrics.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/message_text.h"
+
+namespace drape {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* remedy = "run the experiment again";
+
+OptionalNumber number(const Json& json) {
+  if (!json.is_number() || !std::isfinite(json.get<double>())) return {};
+  return json.get<double>();
+}
+
+NamedNumbers named_numbers(const Json& json) {
+  NamedNumbers numbers;
+  if (!json.is_object()) return numbers;
+  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
+  return numbers;
+}
+
+using Metrics = std::vector<DeclaredMetric>;
+
+Values metric_values(const Json& json, const Metrics& metrics, MetricScope scope) {
+  Values values;
+  for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored))
+    values.set(column.name, number(member_of(json, column.name)));
+  return values;
+}
+
+LevelRecord level_record(const JsonFile& file, const Metrics& metrics, const Json& json, int position) {
+  LevelRecord r;
+  r.level = file.find<int>(json, "level").value_or(position);
+  r.status = text_member(json, "status");
+  r.message = text_member(json, "message");
+  r.vertices = number(member_of(json, "vertices"));
+  r.triangles = number(member_of(json, "triangles"));
+  r.steps = number(member_of(json, "steps"));
+  r.newton_iterations = number(member_of(json, "newton_iterations"));
+  r.flops = number(member_of(json, "flops"));
+  r.from_initial_state =
+      member_of(json, "from_initial_state").is_boolean() && member_of(json, "from_initial_state").get<bool>();
+  r.seconds = number(member_of(json, "seconds"));
+  r.energy = number(member_of(json, "energy"));
+  r.energy_on_finest = number(member_of(json, "energy_on_finest"));
+  r.decrement = number(member_of(json, "decrement"));
+  r.force_residual = number(member_of(json, "force_residual"));
+  r.intersections = number(member_of(json, "intersections"));
+  r.smallest_gap = number(member_of(json, "smallest_gap"));
+  r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
+  r.energy_parts = named_numbers(member_of(json, "energy_parts"));
+  r.metrics = metric_values(json, metrics, MetricScope::state);
+  r.mesh = text_member(json, "mesh");
+  return r;
+}
+
+ConsistencyRecord consistency_record(const JsonFile& file, const Metrics& metrics, const Json& json) {
+  ConsistencyRecord r;
+  r.coarse = file.find<int>(json, "coarse").value_or(-1);
+  r.fine = file.find<int>(json, "fine").value_or(-1);
+  r.metrics = metric_values(json, metrics, MetricScope::pair);
+  r.of_start = metric_values(member_of(json, "of_start"), metrics, MetricScope::pair);
+  r.fields = text_member(json, "fields");
+  return r;
+}
+
+MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const std::string& name,
+                           const Json& json) {
+  MethodRecord method;
+  method.name = name;
+  method.status = text_member(json, "status");
+  method.seconds = number(member_of(json, "seconds"));
+  method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
+  const Json& levels = member_of(json, "levels");
+  const Json& pairs = member_of(json, "consistency");
+  if (levels.is_array()) {
+    for (const Json& level : levels) {
+      if (level.is_object())
+        method.levels.push_back(level_record(file, metrics, level, int(method.levels.size())));
+    }
+  }
+  if (pairs.is_array()) {
+    for (const Json& pair : pairs) {
+      const ConsistencyRecord record = consistency_record(file, metrics, pair);
+      if (record.coarse >= 0 && record.fine > record.coarse) method.consistency.push_back(record);
+    }
+  }
+  std::stable_sort(method.levels.begin(), method.levels.end(),
+                   [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
+  return method;
+}
+
+IncrementRecord increment_record(const Json& json) {
+  return {number(member_of(json, "time")), number(member_of(json, "steps")),
+          number(member_of(json, "energy"))};
+}
+
+std::string file_if_there(const std::filesystem::path& path) {
+  return std::filesystem::is_regular_file(path) ? read_file(path) : std::string();
+}
+
+/// The level of a row; the coarsest if the cell is empty.
+int level_of(const Csv& csv, std::size_t row, const std::filesystem::path& path) {
+  const double level = csv.number(row, "level").value_or(0);
+  if (const std::optional<int> whole = whole_number(level)) return *whole;
+  throw std::runtime_error(path.string() + ": \"level\" of row " + std::to_string(row + 1) +
+                           " must be a whole number, not " + excerpt(csv.text(row, "level")) + "; " + remedy);
+}
+
+/// The rows of one level of one method; added if new.
+template <class Series>
+Series& series_of(std::vector<Series>& all, const std::string& method, int level) {
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const Series& s) { return s.method == method && s.level == level; });
+  if (found != all.end()) return *found;
+  return *all.insert(all.end(), {method, level, {}});
+}
+
+std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
+  std::vector<IterationSeries> all;
+  const Csv csv(path);
+  if (!csv.has("method") || !csv.has("level")) return all;
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    const auto cell = [&](const char* name) { return csv.number(k, name); };
+    series_of(all, csv.text(k, "method"), level_of(csv, k, path))
+        .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
+                         cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
+                         cell("smallest_gap"), cell("intersections")});
+  }
+  return all;
+}
+
+std::vector<ErrorSeries> read_errors(const std::filesystem::path& path,
+                                     const std::vector<ErrorMeasure>& measures) {
+  std::vector<ErrorSeries> all;
+  const Csv csv(path);
+  if (!csv.has("method") || !csv.has("level")) return all;
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    ErrorRow row;
+    for (std::size_t w = 0; w < error_costs.size(); ++w) row.cost[w] = csv.number(k, error_costs[w]);
+    for (std::size_t t = 0; t < error_targets.size(); ++t)
+      for (const ErrorMeasure& measure : measures)
+        row.error[t].set(measure.name, csv.number(k, std::string(error_targets[t]) + "_" + measure.name));
+    series_of(all, csv.text(k, "method"), level_of(csv, k, path)).rows.push_back(row);
+  }
+  return all;
+}
+
+std::vector<IncrementSeries> increments_of(const JsonFile& file, const std::string& method,
+                                           const Json& increments) {
+  std::vector<IncrementSeries> all;
+  if (!increments.is_array()) return all;
+  for (const Json& increment : increments)
+    series_of(all, method, file.find<int>(increment, "level").value_or(0))
+        .rows.push_back(increment_record(increment));
+  return all;
+}
+
+void add_last_contacts(RunData& run) {
+  for (const IterationSeries& series : run.iterations)
+    for (MethodRecord& method : run.methods)
+      for (LevelRecord& level : method.levels)
+        if (method.name == series.method && level.level == series.level)
+          level.contacts = series.rows.back().contacts;
+}
+
+void add_step_sizes(RunData& run) {
+  ConfigErrors unread;
+  const ConfigNode config = parse_yaml(run.configuration, "config.yaml", unread);
+  for (MethodRecord& method : run.methods) {
+    const ConfigNode* node = config.find("methods");
+    for (const char* key : {method.name.c_str(), "newton", "step_size"}) node = node ? node->find(key) : node;
+    if (node) method.step_size = number_of(node->scalar);
+  }
+}
+
+}  // namespace
+
+RunData read_run(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "results.json";
+  if (!std::filesystem::is_regular_file(path)) {
+    throw std::runtime_error(folder.string() + ": no results.json here; give the folder of a run");
+  }
+  const Json json = Json::parse(read_file(path), nullptr, false);
+  if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
+
+  const JsonFile file(path, remedy);
+  RunData run;
+  run.folder = folder;
+  run.experiment = text_member(json, "experiment");
+  run.description = text_member(json, "description");
+  run.version = text_member(json, "version");
+  if (const Json& obstacles = member_of(json, "obstacles"); obstacles.is_array())
+    for (const Json& name : obstacles)
+      run.obstacles.push_back(name.is_string() ? name.get<std::string>() : std::string());
+  run.complete = member_of(json, "complete").is_boolean() && member_of(json, "complete").get<bool>();
+  run.aborted = text_member(json, "aborted");
+  const Json& machine = member_of(json, "machine");
+  run.cpu = text_member(machine, "cpu");
+  run.cores = number(member_of(machine, "cores"));
+  run.threads = number(member_of(machine, "threads"));
+  const Json& reference = member_of(json, "reference");
+  for (const char* key : {"method", "file"})
+    if (!text_member(reference, key).empty()) run.reference = text_member(reference, key);
+  run.reference_is_lowest = text_member(reference, "chosen") == ReferenceParameters::lowest;
+  run.reference_tolerance = number(member_of(reference, "force_tolerance"));
+  run.force_tolerance = number(member_of(member_of(json, "tolerance"), "force_residual"));
+  const Json& methods = member_of(json, "methods");
+  const Json& declared = member_of(json, "metrics");
+  run.metrics = declared.is_object() ? declared_metrics(declared) : undeclared_metrics(methods);
+  run.error_measures =
+      declared.is_object() ? error_measures(run.metrics) : undeclared_errors(Csv(folder / "errors.csv"));
+  if (methods.is_object()) {
+    for (const auto& [name, value] : methods.items()) {
+      run.methods.push_back(method_record(file, run.metrics, name, value));
+      const std::vector<IncrementSeries> increments =
+          increments_of(file, name, member_of(value, "increments"));
+      run.increments.insert(run.increments.end(), increments.begin(), increments.end());
+    }
+  }
+  // The progressive method comes first; the others stay in file order.
+  std::stable_partition(run.methods.begin(), run.methods.end(),
+                        [](const MethodRecord& m) { return m.name == "pcs"; });
+  run.iterations = read_steps(folder / "steps.csv");
+  const auto place = [&run](const auto& s) {
+    const auto method = std::find_if(run.methods.begin(), run.methods.end(),
+                                     [&](const MethodRecord& m) { return m.name == s.method; });
+    return std::pair(method - run.methods.begin(), s.level);
+  };
+  std::stable_sort(run.iterations.begin(), run.iterations.end(),
+                   [&](const IterationSeries& a, const IterationSeries& b) { return place(a) < place(b); });
+  run.errors = read_errors(folder / "errors.csv", run.error_measures);
+  std::stable_sort(run.errors.begin(), run.errors.end(),
+                   [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
+  std::stable_sort(run.increments.begin(), run.increments.end(),
+                   [&](const IncrementSeries& a, const IncrementSeries& b) { return place(a) < place(b); });
+  run.configuration = file_if_there(folder / "config.yaml");
+  add_last_contacts(run);
+  add_step_sizes(run);
+  return run;
+}
+
+}  // namespace drape

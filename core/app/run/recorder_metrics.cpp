@@ -1,0 +1,100 @@
+// The recorder's job at the end of a method: metrics of its levels and of pairs of them.
+
+#include "core/app/run/recorder.h"
+#include "core/app/run/recorder_files.h"
+#include "core/kernel/mesh/io.h"
+
+namespace drape {
+
+namespace {
+
+/// The member of an object with a dotted name: "a.b" is member b of member a.
+nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::string& name) {
+  const std::size_t dot = name.find('.');
+  return dot == std::string::npos ? object[name]
+                                  : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
+}
+
+}  // namespace
+
+MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
+                               Json& entry) {
+  try {
+    return metric.evaluate(input);
+  } catch (const std::exception& error) {
+    entry["not_measured"][name] = error.what();
+    log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", error.what()}});
+    return {};
+  }
+}
+
+Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
+                                 const std::string& fields_file) {
+  Json row = Json::object();  // not null, even without a metric of pairs
+  VertexFields fields;
+  for (const auto& [name, metric] : experiment_.metrics) {
+    if (metric->scope() != MetricScope::pair) continue;
+    const MetricResult result =
+        measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
+    for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
+    for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
+  }
+  if (!fields_file.empty() && !fields.empty()) {
+    write_ply(folder_.file(fields_file), {x, scene_.hierarchy.levels[level].rest.triangles}, fields);
+    row["fields"] = fields_file;
+  }
+  return row;
+}
+
+void Recorder::method_finished(const std::vector<LevelResult>& results,
+                               const std::optional<MethodFailure>& failure) {
+  Json& entry = method_entry();
+  // A level that failed during recording may have left an entry.
+  while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
+  Outcome worst = Outcome::converged;
+  const int finest = static_cast<int>(scene_.models.size()) - 1;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const LevelResult& r = results[i];
+    worst = worse_of(worst, r.outcome);
+    Json& state = entry["levels"][i];
+    for (const auto& [name, metric] : experiment_.metrics)
+      if (metric->scope() == MetricScope::state)
+        for (const MetricValue& v :
+             measure(name, *metric, {scene_.hierarchy.levels[r.level], scene_.model(r.level), r.x}, state)
+                 .values)
+          at_dotted(state, v.name) = finite_or_null(v.value);
+  }
+  write_collection(method_);
+  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+  std::vector<Json> of_start;  // the initial state compared with each level's state
+  for (const LevelResult& r : results)
+    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
+  for (std::size_t c = 0; c < results.size(); ++c)
+    for (std::size_t f = c + 1; f < results.size(); ++f) {
+      const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
+      const Positions prolonged = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
+      const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
+      Json row = {{"coarse", coarse}, {"fine", fine}};
+      row.update(compare(fine, results[f].x, prolonged, fine == finest ? "fields/" + tag + ".ply" : ""));
+      row["of_start"] = of_start[f];
+      entry["consistency"].push_back(row);
+    }
+  if (!method_intersection_free_) worst = Outcome::infeasible;
+  entry["status"] = failure ? failed : to_string(worst);
+  if (failure) {
+    const Level& level = scene_.hierarchy.levels[failure->level];
+    entry["levels"].push_back({{"level", failure->level},
+                               {"vertices", level.vertex_count()},
+                               {"triangles", level.triangle_count()},
+                               {"status", failed},
+                               {"message", failure->cause}});
+    log({{"event", "method_failed"},
+         {"method", method_},
+         {"level", failure->level},
+         {"message", failure->cause}});
+  }
+  save();
+  log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
+}
+
+}  // namespace drape

@@ -1,0 +1,185 @@
+#include "core/app/experiment/declared_metrics.h"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/app/experiment/error_measures.h"
+#include "core/app/report/metric_columns.h"
+#include "core/app/report/run_data.h"
+#include "core/app/report/tables.h"
+#include "core/app/view/html.h"
+#include "tests/support/command.h"
+#include "tests/support/declared_metrics.h"
+#include "tests/support/folders.h"
+
+using namespace drape;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+std::vector<std::string> names_of(const std::vector<MetricColumn>& columns) {
+  std::vector<std::string> names;
+  for (const MetricColumn& c : columns) names.push_back(c.name);
+  return names;
+}
+
+/// Reads a run with these results, and this errors.csv if it is not empty.
+RunData run_of(const Json& results, const std::string& errors = "") {
+  const Scratch folder;
+  folder.write("results.json", results.dump());
+  if (!errors.empty()) folder.write("errors.csv", errors);
+  return read_run(folder.path);
+}
+
+}  // namespace
+
+TEST_CASE("what metrics declare goes through results.json unchanged") {
+  const std::vector<DeclaredMetric> before = sample_metrics(), after = declared_metrics(json_of(before));
+  REQUIRE(after.size() == before.size());
+  for (std::size_t m = 0; m < before.size(); ++m) {
+    INFO(before[m].name);
+    CHECK(after[m].name == before[m].name);
+    CHECK(after[m].scope == before[m].scope);
+    CHECK(after[m].declaration.text == before[m].declaration.text);
+    REQUIRE(after[m].declaration.columns.size() == before[m].declaration.columns.size());
+    for (std::size_t k = 0; k < before[m].declaration.columns.size(); ++k) {
+      const MetricColumn &a = before[m].declaration.columns[k], &b = after[m].declaration.columns[k];
+      CHECK((b.name == a.name && b.label == a.label && b.unit == a.unit && b.best == a.best));
+      CHECK((b.better == a.better && b.shown == a.shown && b.decimals == a.decimals));
+      CHECK((b.error == a.error && b.error_use == a.error_use));
+    }
+    REQUIRE(after[m].declaration.pictures.size() == before[m].declaration.pictures.size());
+    for (std::size_t k = 0; k < before[m].declaration.pictures.size(); ++k) {
+      const MetricPicture &a = before[m].declaration.pictures[k], &b = after[m].declaration.pictures[k];
+      CHECK((b.kind == a.kind && b.name == a.name && b.field == a.field && b.other_field == a.other_field));
+      CHECK((b.unit == a.unit && b.label == a.label && b.title == a.title && b.text == a.text));
+      CHECK(b.column == a.column);
+    }
+  }
+}
+
+TEST_CASE("declarations that someone edited are read as far as they can be") {
+  for (const char* text :
+       {"null", "3", "[]", R"({"a": 1})", R"({"a": {"columns": 1, "pictures": [1, {"field": 2}]}})",
+        R"({"a": {"columns": [1, {}, {"name": 2}]}})"}) {
+    INFO(text);
+    for (const DeclaredMetric& metric : declared_metrics(Json::parse(text))) {
+      CHECK(metric.declaration.columns.empty());
+      CHECK(metric.declaration.pictures.empty());
+    }
+  }
+  const auto odd = declared_metrics(
+      Json::parse(R"({"a": {"columns": [{"name": "b", "decimals": 1e300, "better": "x"}]}})"));
+  REQUIRE(odd.at(0).declaration.columns.size() == 1);
+  CHECK(odd[0].declaration.columns[0].decimals == 17);
+  CHECK(odd[0].declaration.columns[0].better == Better::neither);
+}
+
+TEST_CASE("columns come in the order of declaration, each name once, as widely shown as asked for") {
+  std::vector<DeclaredMetric> metrics = sample_metrics();
+  CHECK((names_of(columns_of(metrics, MetricScope::pair, Shown::tables)) ==
+         std::vector<std::string>{"d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg", "distance_rms",
+                                  "energy_above_end", "silhouette_overlap"}));
+  CHECK((names_of(columns_of(metrics, MetricScope::pair, Shown::summary)) ==
+         std::vector<std::string>{"d_H_fit"}));
+  const std::size_t all = columns_of(metrics, MetricScope::pair, Shown::stored).size();
+  metrics.push_back({"again", MetricScope::pair, metrics[0].declaration});
+  CHECK(columns_of(metrics, MetricScope::pair, Shown::stored).size() == all);
+
+  DeclaredMetric more = metrics[1];
+  more.declaration.columns = {{.name = "distance_max", .label = "distance, largest", .unit = "diagonal"}};
+  merge(metrics, {more});
+  CHECK(metrics[1].declaration.columns.size() == 3);
+  CHECK(metrics.size() == 6);
+}
+
+TEST_CASE("errors are those that metrics declare, and the energy gap; what ranks comes first") {
+  std::vector<std::string> names;
+  for (const ErrorMeasure& m : error_measures(sample_metrics())) names.push_back(m.name);
+  CHECK((names ==
+         std::vector<std::string>{"rms", "d_H_fit", "hausdorff", "silhouette_mismatch", "energy_gap"}));
+  CHECK(error_measures(sample_metrics())[0].label == "distance, RMS [diagonal]");
+  CHECK(error_measures(sample_metrics())[3].label == "1 − silhouette overlap");
+  REQUIRE(error_measures({}).size() == 1);
+  CHECK(error_measures({})[0].name == "energy_gap");
+}
+
+TEST_CASE("a report shows a column that nothing but its metric knows") {
+  MetricDeclaration wrinkles;
+  wrinkles.columns = {{.name = "wrinkles", .label = "n_w^max", .unit = "1/m", .better = Better::higher},
+                      {.name = "hidden", .label = "hidden", .unit = "1", .shown = Shown::stored}};
+  Json results = {{"metrics", json_of({{"wrinkles", MetricScope::pair, wrinkles}})}};
+  for (const std::string method : {"a", "b"})
+    results["methods"][method] = {{"status", "converged"},
+                                  {"consistency", Json::array({{{"coarse", 0},
+                                                                {"fine", 1},
+                                                                {"wrinkles", method == "a" ? 3 : 5},
+                                                                {"hidden", 77},
+                                                                {"of_start", {{"wrinkles", 1}}}}})}};
+  const RunData run = run_of(results);
+  const std::string table = consistency_table(run);
+  CHECK(table.find("n<sub>w</sub><sup>max</sup>") != std::string::npos);
+  CHECK(table.find("<td>3.00</td><td><strong>5.00</strong></td><td>1.00</td>") != std::string::npos);
+  CHECK(table.find("77") == std::string::npos);
+}
+
+TEST_CASE("results without declarations open with plain names, none of them the best") {
+  Json results;
+  for (const std::string method : {"a", "b"})
+    results["methods"][method] = {
+        {"status", "converged"},
+        {"levels", Json::array({{{"level", 0}, {"energy", 1}, {"largest_stretch", 1.25}}})},
+        {"consistency", Json::array({{{"coarse", 0}, {"fine", 1}, {"d_<H", method == "a" ? 3 : 5}}})}};
+  const RunData run = run_of(results, "method,level,own_rms,own_energy_gap\na,0,0.5,0.25\n");
+  CHECK((names_of(run.columns(MetricScope::state, Shown::tables)) ==
+         std::vector<std::string>{"largest_stretch"}));
+  CHECK(run.methods[0].levels[0].metrics.of("largest_stretch") == 1.25);
+  CHECK(level_table(run).find("<th>largest_stretch</th>") != std::string::npos);
+  const std::string table = consistency_table(run);
+  CHECK(table.find("d_&lt;H") != std::string::npos);
+  CHECK(table.find("<td>3.00</td><td>5.00</td>") != std::string::npos);
+  CHECK(table.find("<strong>") == std::string::npos);
+  REQUIRE(run.error_measures.size() == 2);
+  CHECK(run.error_measures[0].name == "rms");
+  CHECK(run.errors.at(0).rows.at(0).error[0].of("rms") == 0.5);
+  CHECK(run.errors[0].rows[0].error[0].of("energy_gap") == 0.25);
+}
+
+TEST_CASE("a summary has the worst of a method's levels") {
+  MethodRecord method;
+  const MetricColumn lower{.name = "m"}, higher{.name = "m", .better = Better::higher},
+      neither{.name = "m", .better = Better::neither};
+  CHECK_FALSE(worst_over_levels(lower, method));
+  for (const double value : {2.0, 5.0, 3.0}) method.levels.emplace_back().metrics.set("m", value);
+  CHECK(worst_over_levels(lower, method) == 5);
+  CHECK(worst_over_levels(higher, method) == 2);
+  CHECK(worst_over_levels(neither, method) == 5);
+}
+
+TEST_CASE("labels have subscripts and superscripts, and cannot break a page") {
+  CHECK(html::formula("d_H^fit") == "d<sub>H</sub><sup>fit</sup>");
+  CHECK(html::formula("of d_H, [1/m]") == "of d<sub>H</sub>, [1/m]");
+  CHECK(html::formula("_a b_ ^") == "_a b_ ^");
+  CHECK(html::formula("a_<b>") == "a_&lt;b&gt;");
+}
+
+TEST_CASE("the published Table 1 says what the supplement says: PCS lower in every measure") {
+  std::ifstream file(folders::source() + "/benchmarks/published_table1.json");
+  const Json scenes = Json::parse(file);
+  int rows = 0;
+  for (const auto& [scene, block] : scenes.items()) {
+    REQUIRE(block.size() % 2 == 0);
+    for (std::size_t k = 0; k < block.size(); k += 2) {
+      const Json &pcs = block[k], &other = block[k + 1];
+      INFO(scene << " " << pcs.dump());
+      CHECK(pcs["method"] == "PCS");
+      CHECK((pcs["coarse"] == other["coarse"] && pcs["fine"] == other["fine"]));
+      for (const char* measure : {"d_H_fit", "d_H_ddg", "d_K_fit", "d_K_ddg"})
+        CHECK(pcs[measure].get<double>() < other[measure].get<double>());
+      rows += 2;
+    }
+  }
+  CHECK(rows == 20);
+  CHECK(scenes.at("Bunny in Figure 12")[1]["d_K_ddg"] == 1.10e8);
+}
