@@ -26,7 +26,7 @@ class EnergyAboveEnd : public Metric {
   MetricResult measure(const MetricInput& input) const override {
     const double above =
         input.model.energy_without_contact(*input.other) - input.model.energy_without_contact(input.x);
-    return {{{"energy_above_end", above}}};
+    return {{{"energy_above_end", above}}, {}};
   }
 };
 
