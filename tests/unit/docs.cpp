@@ -28,8 +28,9 @@ std::string sources() {
 
 }  // namespace
 
-TEST_CASE("docs/troubleshooting.md speaks of messages that there are") {
-  const std::string page = text_of(fs::path(folders::source()) / "docs/troubleshooting.md"), code = sources();
+TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
+  const std::string page = text_of(fs::path(folders::source()) / "docs/guide/troubleshooting.md"),
+                    code = sources();
   const std::regex row("\n\\| `([^`]+)` \\|");
   int rows = 0;
   for (std::sregex_iterator it(page.begin(), page.end(), row), end; it != end; ++it, ++rows) {
@@ -39,8 +40,8 @@ TEST_CASE("docs/troubleshooting.md speaks of messages that there are") {
   CHECK(rows > 20);
 }
 
-TEST_CASE("docs/exit-codes.md has every code as `drape --help` does") {
-  const std::string page = text_of(fs::path(folders::source()) / "docs/exit-codes.md");
+TEST_CASE("docs/reference/exit-codes.md has every code as `drape --help` does") {
+  const std::string page = text_of(fs::path(folders::source()) / "docs/reference/exit-codes.md");
   for (const drape::ExitCode& code : drape::exit_codes) {
     INFO(code.code);
     CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n") !=

@@ -23,7 +23,7 @@ struct ContactPair {
   double friction = 0;   ///< μ
 };
 
-/// Barrier and friction parameters that all pairs share (docs/method.md, section 6).
+/// Barrier and friction parameters that all pairs share (docs/theory/method.md, section 6).
 struct BarrierParameters {
   double dhat = 1e-3;                         ///< d̂ [m]
   double stiffness = 1;                       ///< κ [Pa]

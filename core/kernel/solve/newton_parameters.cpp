@@ -39,7 +39,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e12)
       .description(
           "a level has converged when the net force on its free vertices is below this fraction of the load")
-      .source("docs/method.md section 2");
+      .source("docs/theory/method.md section 2");
   d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
       .unit("m/s")
       .at_least(0)

@@ -24,7 +24,7 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
       .at_most(1e3)
       .description("barrier activation distance d̂: the barrier acts on smaller gaps")
       .formerly("range")
-      .source("docs/method.md, section 6");
+      .source("docs/theory/method.md, section 6");
   d.add("stiffness", &P::stiffness)
       .unit("Pa")
       .at_least(1e-9)
