@@ -99,6 +99,30 @@ TEST_CASE("every link between the pages leads somewhere") {
   CHECK(fragments > 10);
 }
 
+TEST_CASE("pages that sources and scripts name are there, with the sections that they name") {
+  const fs::path root = folders::source();
+  const std::regex name("(docs/[A-Za-z0-9/_-]+\\.md)(,? sections? ([0-9]))?");
+  int names = 0, sections = 0;
+  std::vector<fs::path> files = {root / "Makefile"};
+  for (const char* folder : {"core", "plugins", "tests", "benchmarks", "configs", "third_party"})
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file() && entry.file_size() < 200000) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    const std::string text = text_of(file);
+    for (std::sregex_iterator it(text.begin(), text.end(), name), end; it != end; ++it) {
+      INFO(file.string() << " names " << (*it)[0].str());
+      const fs::path page = root / (*it)[1].str();
+      REQUIRE(fs::exists(page));
+      ++names;
+      if (!(*it)[3].matched) continue;
+      CHECK(text_of(page).find("\n## " + (*it)[3].str() + ". ") != std::string::npos);
+      ++sections;
+    }
+  }
+  CHECK(names > 40);
+  CHECK(sections > 10);
+}
+
 TEST_CASE("docs/README.md is the map of every page, and a page shows every picture") {
   const fs::path docs = fs::path(folders::source()) / "docs";
   const std::string map = text_of(docs / "README.md");

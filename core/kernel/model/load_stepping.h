@@ -14,7 +14,7 @@ struct LoadSteppingState {
 };
 
 /// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
-/// is solved (docs/theory/method.md, section 8). The increments are 0 … increment_count(); the models of a
+/// is solved (docs/guide/schedules.md). The increments are 0 … increment_count(); the models of a
 /// problem always have the parameters that were reached. An increment that the cloth does not allow at once,
 /// such as an obstacle that would hit it, is applied in part and continued later.
 class LoadStepping {
