@@ -11,7 +11,7 @@
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmarks
-# make hard     the hard cases (docs/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
+# make hard     the hard cases (docs/results/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
 # make pictures the README's pictures, from the runs that `make bench` has left in results/bench_sphere and, of the bunny,
 #               those that `make table1` has finished in results/table1/bunny
 # make format   check the layout of the sources;  make fix-format  rewrites them
@@ -19,7 +19,7 @@
 # make clean    remove what was built
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
-# `make test` leaves out the long studies (docs/testing.md).
+# `make test` leaves out the long studies (docs/contributing/testing.md).
 
 PRESET ?= release
 JOBS ?= $(shell nproc)

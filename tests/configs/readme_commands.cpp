@@ -1,6 +1,7 @@
-// The README's commands do what it says: each is run, with experiments made small.
+// The commands of README.md and docs/start do what the pages say: each is run, with experiments made small.
 
 #include <catch2/catch.hpp>
+#include <map>
 #include <regex>
 
 #include "tests/support/command.h"
@@ -10,21 +11,36 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The lines of the README's sh blocks that call the command, continued lines joined, comments cut.
-std::vector<std::string> readme_commands() {
+/// What a page has a reader write and type: blocks that name a file (```yaml my_drape.yaml), and the lines of
+/// its sh blocks that call the command, continued lines joined, comments cut.
+struct Page {
+  std::map<std::string, std::string> files;
   std::vector<std::string> commands;
-  std::istringstream lines(text_of(fs::path(folders::source()) / "README.md"));
-  bool inside = false;
+};
+
+Page page_of(const fs::path& file) {
+  Page page;
+  std::istringstream lines(text_of(file));
+  bool shell = false, block = false;
+  std::string* written = nullptr;
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("```")) inside = !inside && line.starts_with("```sh");
-    while (inside && line.ends_with("\\")) {
+    if (line.starts_with("```")) {
+      const std::size_t name = line.find(' ');
+      shell = !block && line.starts_with("```sh");
+      written = block || name == line.npos ? nullptr : &page.files[line.substr(name + 1)];
+      block = !block;
+      continue;
+    }
+    if (written) *written += line + "\n";
+    while (shell && line.ends_with("\\")) {
       std::string more;
       std::getline(lines, more);
       line = line.substr(0, line.size() - 1) + more;
     }
-    if (inside && line.starts_with("build/bin/drape ")) commands.push_back(line.substr(0, line.find(" #")));
+    if (shell && line.starts_with("build/bin/drape "))
+      page.commands.push_back(line.substr(0, line.find(" #")));
   }
-  return commands;
+  return page;
 }
 
 /// A `run` that ends in a second or so; anything else as it is, and what goes on with such a run.
@@ -36,21 +52,26 @@ std::string made_small(const std::string& command) {
          " --set newton.force_tolerance=1e-2";
 }
 
-}  // namespace
-
-TEST_CASE("every command of README.md runs") {
+void run_all(const fs::path& file, std::size_t at_least) {
   const fs::path source = folders::source();
   // In a copy, so that what a command writes stays out of the tree.
   const Scratch folder;
   for (const char* name : {"configs", "docs", "benchmarks"})
     fs::copy(source / name, folder / name, fs::copy_options::recursive);
   fs::create_directory_symlink(fs::path(folders::commands()).parent_path(), folder / "build");
-  const std::vector<std::string> commands = readme_commands();
-  CHECK(commands.size() >= 3);
-  for (const std::string& command : commands) {
+  const Page page = page_of(source / file);
+  for (const auto& [name, text] : page.files) folder.write(name, text);
+  CHECK(page.commands.size() >= at_least);
+  for (const std::string& command : page.commands) {
     INFO(command);
     const Ended ended = Command(made_small(command), folder.path).wait();
     INFO(ended.err);
     CHECK(ended.exit_code == 0);
   }
 }
+
+}  // namespace
+
+TEST_CASE("every command of README.md runs") { run_all("README.md", 4); }
+
+TEST_CASE("every command of docs/start/first-drape.md runs") { run_all("docs/start/first-drape.md", 6); }

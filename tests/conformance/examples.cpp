@@ -1,5 +1,5 @@
-// The examples of docs/add-a-plugin.md and docs/add-an-energy.md, which the other tests of this program do
-// not name, are put through them too.
+// The examples of docs/extend/add-a-plugin.md and docs/extend/add-an-energy.md, which the other tests of this
+// program do not name, are put through them too.
 
 #include <catch2/catch.hpp>
 

@@ -23,7 +23,7 @@ struct Sheet {
   }
 };
 
-/// Energy of a homogeneous stretch over rest volume, as it is documented (docs/method.md, section 5).
+/// Energy of a homogeneous stretch over rest volume, as it is documented (docs/theory/method.md, section 5).
 double energy_density(const std::string& membrane, double modulus, double nu, double s1, double s2) {
   const double mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / (1 - nu * nu);
   if (membrane == "stvk") {

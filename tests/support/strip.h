@@ -18,7 +18,8 @@ inline std::string text(const Eigen::Vector3d& v) {
 
 /// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack:
 /// mirrored at its middle line, so that bending does not twist it. Its cells are far longer than wide: with
-/// wide ones the diagonals would bend along (see docs/validation.md, "What the hinge model's stiffness is").
+/// wide ones the diagonals would bend along (see docs/results/validation.md, "What the hinge model's
+/// stiffness is").
 ///
 /// The hinges of column j carry the curvature from half a cell before it to half a cell behind. With columns
 /// 0 and 1 pinned, the first hinges that can bend are those of column 1, and the clamp is at half a cell. The

@@ -306,6 +306,23 @@ TEST_CASE("doubles are written short and read back the same") {
   }
 }
 
+TEST_CASE("a page describes a shared section once, unless its defaults differ") {
+  struct Small {
+    Ball ball{.radius = 0.1};
+    static void declare(Declaration<Small>& d) { d.add_section("ball", &Small::ball); }
+  };
+  struct Usual {
+    Ball ball;
+    static void declare(Declaration<Usual>& d) { d.add_section("ball", &Usual::ball).description("thrown"); }
+  };
+  const SharedSection ball{schema_of<Ball>("ball"), "[Ball](#ball)"};
+  const std::string usual = describe_markdown(schema_of<Usual>(), &ball);
+  CHECK(usual.ends_with("\n| `ball` | section |  |  |  | thrown; see [Ball](#ball) |  |\n"));
+  const std::string small = describe_markdown(schema_of<Small>(), &ball);
+  CHECK(small.find("| `ball.radius` | number | `0.1` |") != std::string::npos);
+  CHECK(small.find("[Ball]") == std::string::npos);
+}
+
 TEST_CASE("a schema describes sections and lists of them") {
   struct Top {
     Ball ball;

@@ -29,6 +29,7 @@
 #include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/solve/newton_parameters.h"
 #include "core/kernel/version.h"
 
 namespace {
@@ -88,13 +89,19 @@ int describe_plugin(const std::string& name, const Registry& registry) {
   return exit_bad_input;
 }
 
+/// Newton's settings, which experiments and methods have alike: described once, at this link.
+SharedSection newton_section(const std::string& link) {
+  return {schema_of<NewtonParameters>("newton"), "[Newton](" + link + ")"};
+}
+
 /// Writes every plugin's parameters into FOLDER/KIND/NAME/README.md, if that exists.
 int reference_into(const std::filesystem::path& folder, const Registry& registry) {
+  const SharedSection newton = newton_section("../../../docs/reference/configuration.md#newton");
   int pages = 0;
   for (const auto& entry : registry.entries()) {
     const std::filesystem::path file = folder / entry->kind / entry->name / "README.md";
     if (!std::filesystem::exists(file)) continue;
-    write_file(file, with_parameters(read_file(file), *entry));
+    write_file(file, with_parameters(read_file(file), *entry, &newton));
     ++pages;
   }
   if (pages == 0)
@@ -105,11 +112,16 @@ int reference_into(const std::filesystem::path& folder, const Registry& registry
 }
 
 int reference(const Registry& registry) {
+  const SharedSection newton = newton_section("#newton");
   std::cout << "# Configuration reference\n\nMade by `drape reference`; do not edit.\n\n## Experiment\n\n"
-            << describe_markdown(schema_of<ExperimentParameters>("experiment"));
+            << describe_markdown(schema_of<ExperimentParameters>("experiment"), &newton)
+            << "\n## Newton\n\nThe section `newton` of an experiment applies to every method. A method's own "
+               "`newton` takes precedence, key by key.\n\n"
+            << describe_markdown(newton.schema);
   for (const char* kind : kinds) {
     std::cout << "\n## Kind: " << kind << "\n";
-    for (const RegistryEntry* entry : registry.of_kind(kind)) std::cout << "\n" << describe_markdown(*entry);
+    for (const RegistryEntry* entry : registry.of_kind(kind))
+      std::cout << "\n" << describe_markdown(*entry, &newton);
   }
   std::cout << "\n## Sweep\n\n" << describe_sweep_markdown();
   return exit_done;

@@ -13,8 +13,10 @@ struct Row {
   int depth = 0;
   std::string path;  ///< "section.name"
   const Parameter* parameter = nullptr;
-  std::string type, initial, range;
+  std::string type, initial, range, link;
 };
+
+ConfigNode defaults_of(const Schema& schema) { return schema.write(schema.fresh().get()); }
 
 std::string range_text(const Parameter& p) {
   std::vector<std::string> parts;
@@ -35,26 +37,30 @@ std::string type_text(const Parameter& p) {
   return type + (p.nullable ? " or null" : "");
 }
 
-/// Every parameter in order; a section is followed by its parameters.
+/// Every parameter in order; a section is followed by its parameters, unless it is the shared one.
 void collect(const Schema& schema, const ConfigNode& defaults, int depth, const std::string& prefix,
-             std::vector<Row>& rows) {
+             const SharedSection* shared, std::vector<Row>& rows) {
   for (const Parameter& p : schema.parameters) {
     const ConfigNode* initial = defaults.find(p.name);
-    Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p)};
+    Row row{depth, prefix + p.name, &p, type_text(p), "", range_text(p), ""};
+    const bool is_shared = shared && p.type == "section" && p.section->name == shared->schema.name &&
+                           initial->one_line() == defaults_of(shared->schema).one_line();
+    if (is_shared) row.link = shared->link;
     if (p.required)
       row.initial = "required";
     else if (p.type != "section" && initial)
       row.initial = initial->one_line();
     rows.push_back(row);
-    if (p.type == "section") collect(*p.section, *initial, depth + 1, row.path + ".", rows);
+    if (is_shared) continue;
+    if (p.type == "section") collect(*p.section, *initial, depth + 1, row.path + ".", shared, rows);
     if (p.type == "list of sections")
-      collect(*p.section, p.section->write(p.section->fresh().get()), depth + 1, row.path + "[].", rows);
+      collect(*p.section, defaults_of(*p.section), depth + 1, row.path + "[].", shared, rows);
   }
 }
 
-std::vector<Row> rows_of(const Schema& schema) {
+std::vector<Row> rows_of(const Schema& schema, const SharedSection* shared = nullptr) {
   std::vector<Row> rows;
-  collect(schema, schema.write(schema.fresh().get()), 0, "", rows);
+  collect(schema, defaults_of(schema), 0, "", shared, rows);
   return rows;
 }
 
@@ -104,8 +110,8 @@ std::string describe(const RegistryEntry& entry) {
          describe(entry.schema);
 }
 
-std::string describe_markdown(const Schema& schema) {
-  const std::vector<Row> rows = rows_of(schema);
+std::string describe_markdown(const Schema& schema, const SharedSection* shared) {
+  const std::vector<Row> rows = rows_of(schema, shared);
   if (rows.empty()) return "No parameters.\n";
   std::string text =
       "| name | type | default | unit | range | description | source |\n|---|---|---|---|---|---|---|\n";
@@ -113,23 +119,25 @@ std::string describe_markdown(const Schema& schema) {
     const Parameter& p = *row.parameter;
     const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
     text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
-            cell(row.range) + cell(p.description) + cell(p.source) + "\n";
+            cell(row.range) + cell(p.description + (row.link.empty() ? "" : "; see " + row.link)) +
+            cell(p.source) + "\n";
   }
   return text;
 }
 
-std::string describe_markdown(const RegistryEntry& entry) {
+std::string describe_markdown(const RegistryEntry& entry, const SharedSection* shared) {
   return "### " + entry.kind + " `" + entry.name + "`\n\n" + entry.summary + "\n\n" +
-         describe_markdown(entry.schema);
+         describe_markdown(entry.schema, shared);
 }
 
-std::string with_parameters(const std::string& page, const RegistryEntry& entry) {
+std::string with_parameters(const std::string& page, const RegistryEntry& entry,
+                            const SharedSection* shared) {
   static const std::string heading = "## Parameters\n";
   const std::size_t at = page.find("\n" + heading);
   const std::size_t next = at == std::string::npos ? at : page.find("\n## ", at + heading.size());
   const std::string before = at == std::string::npos ? page + "\n" : page.substr(0, at + 1);
   return before + heading + "\nMade by `drape reference --readmes`; do not edit.\n\n" +
-         describe_markdown(entry.schema) + (next == std::string::npos ? "" : page.substr(next));
+         describe_markdown(entry.schema, shared) + (next == std::string::npos ? "" : page.substr(next));
 }
 
 }  // namespace drape

@@ -12,12 +12,21 @@ namespace drape {
 std::string describe(const Schema& schema);
 std::string describe(const RegistryEntry& entry);  ///< with the entry's name, summary and library above
 
-/// A Markdown table for the reference page; parameters of sections appear as `section.name`.
-std::string describe_markdown(const Schema& schema);
-std::string describe_markdown(const RegistryEntry& entry);  ///< with a heading and the summary above
+/// A section that several schemas have, which a page describes once.
+struct SharedSection {
+  Schema schema;
+  std::string link;  ///< Markdown link to its description
+};
+
+/// A Markdown table for the reference page; parameters of sections appear as `section.name`. A section with
+/// the name, parameters and defaults of the shared one is a single row with its link.
+std::string describe_markdown(const Schema& schema, const SharedSection* shared = nullptr);
+/// The same with a heading and the summary above.
+std::string describe_markdown(const RegistryEntry& entry, const SharedSection* shared = nullptr);
 
 /// A plugin's README with its section "## Parameters" replaced; the section is appended if there was none.
-std::string with_parameters(const std::string& page, const RegistryEntry& entry);
+std::string with_parameters(const std::string& page, const RegistryEntry& entry,
+                            const SharedSection* shared = nullptr);
 
 /// The node as JSON; unquoted scalars become numbers or booleans if they spell one.
 nlohmann::ordered_json json_value(const ConfigNode& node);

@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// A measure of a state's error (docs/errors.md); errors.csv has a column of it for every target.
+/// A measure of a state's error (docs/theory/errors.md); errors.csv has a column of it for every target.
 struct ErrorMeasure {
   std::string name;   ///< in errors.csv, after the target's
   std::string label;  ///< as MetricColumn::label, with the unit

@@ -2,7 +2,7 @@
 
 namespace drape {
 
-// Exit codes of `drape`. `drape --help` prints the list below; docs/exit-codes.md has details.
+// Exit codes of `drape`. `drape --help` prints the list below; docs/reference/exit-codes.md has details.
 
 constexpr int exit_done = 0;
 constexpr int exit_not_converged = 1, exit_bound_broken = 1;

@@ -8,7 +8,7 @@
 
 namespace drape {
 
-// The viewer's blocks of bytes, little endian; docs/viewer.md says what each holds.
+// The viewer's blocks of bytes, little endian; docs/guide/viewer.md says what each holds.
 
 /// Six float32, lower corner and size of the box, then x, y and z plane by plane as uint16 within it, each
 /// the difference from the vertex before modulo 2^16. What is not finite becomes the lower corner.

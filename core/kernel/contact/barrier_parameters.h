@@ -2,7 +2,8 @@
 
 namespace drape {
 
-/// Barrier and friction parameters that all collisions of a contact model share (docs/method.md, section 6).
+/// Barrier and friction parameters that all collisions of a contact model share (docs/theory/method.md,
+/// section 6).
 struct BarrierParameters {
   double dhat = 1e-3;                         ///< d̂ [m]
   double stiffness = 1;                       ///< κ [Pa]

@@ -25,9 +25,9 @@ struct StretchPenaltyLaw {
 };
 
 /// Stretch penalty A(x) = κ Σ_t V_t Σ_i (σ_{t,i} - 1)² [J] over the flagged triangles, V rest area ×
-/// thickness [m], κ [Pa]. It pulls triangles that violate a strain limit back within it (docs/method.md,
-/// section 4; Zhang et al. 2022, section 4.3). `flags` has one entry for each triangle. Throws
-/// std::runtime_error if a flagged one has no rest area.
+/// thickness [m], κ [Pa]. It pulls triangles that violate a strain limit back within it
+/// (docs/theory/method.md, section 4; Zhang et al. 2022, section 4.3). `flags` has one entry for each
+/// triangle. Throws std::runtime_error if a flagged one has no rest area.
 std::unique_ptr<BoundEnergy> make_stretch_penalty(const Level& level, double thickness, double stiffness,
                                                   const std::vector<char>& flags);
 

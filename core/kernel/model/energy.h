@@ -13,7 +13,7 @@
 
 namespace drape {
 
-/// Treatment of negative eigenvalues λ of an element's Hessian (docs/method.md, section 2): λ becomes
+/// Treatment of negative eigenvalues λ of an element's Hessian (docs/theory/method.md, section 2): λ becomes
 /// (1 - blend) λ + blend max(λ, 0) for clamp, with |λ| in place of max(λ, 0) for absolute.
 struct Projection {
   enum Kind { clamp, absolute, none };

@@ -28,8 +28,8 @@ struct DirichletVertex {
 };
 
 /// The plain model of one level at one point of the pseudo-time: the sum E_l of its energies, its contacts,
-/// its lumped masses and its Dirichlet vertices (docs/method.md, section 1). Immutable: load stepping makes
-/// another one. Refers to `level`, which must outlive it.
+/// its lumped masses and its Dirichlet vertices (docs/theory/method.md, section 1). Immutable: load stepping
+/// makes another one. Refers to `level`, which must outlive it.
 class LevelModel {
  public:
   /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
@@ -79,7 +79,7 @@ class LevelModel {
   /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance
   /// each other still set the scale of the residual.
   double load_norm(const Positions& x) const;
-  /// ‖∇E_l(x)‖ over the load, on free vertices [1], without friction (docs/method.md, section 2); see
+  /// ‖∇E_l(x)‖ over the load, on free vertices [1], without friction (docs/theory/method.md, section 2); see
   /// residual_scale.
   double force_residual(const Positions& x) const;
 

@@ -17,7 +17,7 @@ struct LoadSteppingState {
 };
 
 /// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
-/// is solved (docs/method.md, section 8). The increments are 0 … increment_count(). An increment that the
+/// is solved (docs/guide/schedules.md). The increments are 0 … increment_count(). An increment that the
 /// cloth does not allow at once, such as an obstacle that would hit it, is applied in part and continued
 /// later. Models are values: every load that is reached has its own.
 class LoadStepping {

@@ -15,7 +15,7 @@ enum class Shown {
   summary  ///< also in tables with one row per method
 };
 
-/// Where reports show a pair's value as the error of a state (docs/errors.md).
+/// Where reports show a pair's value as the error of a state (docs/theory/errors.md).
 enum class ErrorUse {
   plots,    ///< only in plots of error against cost
   summary,  ///< in tables with one row per method too

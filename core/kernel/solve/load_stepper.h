@@ -22,7 +22,7 @@ struct IncrementResponse {
 };
 
 /// Applies the increments of load stepping to a level that is being solved. An increment that the cloth does
-/// not allow at once is applied in parts, with the cloth's response extrapolated (docs/method.md, section 8).
+/// not allow at once is applied in parts, with the cloth's response extrapolated (docs/guide/schedules.md).
 class LoadStepper {
  public:
   struct State {

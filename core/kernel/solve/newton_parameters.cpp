@@ -39,7 +39,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_most(1e12)
       .description(
           "a level has converged when the net force on its free vertices is below this fraction of the load")
-      .source("docs/method.md section 2");
+      .source("docs/theory/method.md section 2");
   d.add("decrement_tolerance", &NewtonParameters::decrement_tolerance)
       .unit("m/s")
       .at_least(0)
@@ -88,7 +88,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .description(
           "numeric Cholesky factorisation: drape's own, which is parallel and gives the same bits with any "
           "number of threads, or CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
-      .source("docs/speed.md; Chen et al. 2008 for cholmod");
+      .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
 }
 
 }  // namespace drape

@@ -6,7 +6,7 @@
 
 namespace drape {
 
-/// Damped gradient flow in implicit steps, or one minimisation (docs/method.md, sections 2, 3).
+/// Damped gradient flow in implicit steps, or one minimisation (docs/theory/method.md, sections 2, 3).
 enum class NewtonForm { quasistatic, statics };
 
 /// How much of the PSD projection of element Hessians goes into the Newton matrix.

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Plane-stress neo-Hookean membrane (docs/method.md, section 5); +∞ if a triangle degenerates.
+/// Plane-stress neo-Hookean membrane (docs/theory/method.md, section 5); +∞ if a triangle degenerates.
 class NeoHookean final : public Energy {
  public:
   struct Parameters {

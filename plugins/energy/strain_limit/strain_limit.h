@@ -6,8 +6,8 @@
 
 namespace drape {
 
-/// Strain limit of C-IPC (docs/method.md, section 5): a barrier on principal stretches above 1, +∞ at the
-/// limit. Its bound energy is also a StepFilter and StretchLimited.
+/// Strain limit of C-IPC (docs/theory/method.md, section 5): a barrier on principal stretches above 1, +∞ at
+/// the limit. Its bound energy is also a StepFilter and StretchLimited.
 class StrainLimit final : public Energy {
  public:
   struct Parameters {

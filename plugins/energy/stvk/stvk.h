@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// St. Venant–Kirchhoff membrane in plane stress (docs/method.md, section 5); finite everywhere.
+/// St. Venant–Kirchhoff membrane in plane stress (docs/theory/method.md, section 5); finite everywhere.
 class Stvk final : public Energy {
  public:
   struct Parameters {

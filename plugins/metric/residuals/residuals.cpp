@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// How far a state is from an equilibrium of the plain model of its level (docs/method.md, section 2).
+/// How far a state is from an equilibrium of the plain model of its level (docs/theory/method.md, section 2).
 class Residuals : public Metric {
  public:
   struct Parameters {

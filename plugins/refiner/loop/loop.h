@@ -28,7 +28,7 @@ class LoopRefiner : public Refiner {
           .description(
               "border vertices whose interior rest angle differs from 180 degrees by more than this are "
               "corners and are interpolated; others are smoothed")
-          .source("docs/method.md, section 4");
+          .source("docs/theory/method.md, section 4");
     }
   };
 

@@ -15,7 +15,7 @@ class CascadicSolver : public ResumableSolver {
       d.add_choice("prolongation", &Parameters::prolongation,
                    {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
           .description("prolongs a level's state: by edge midpoints, or by the experiment's refiner")
-          .source("docs/method.md section 3");
+          .source("docs/theory/method.md section 3");
       d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Solves each level from the scene's start under its own energy (docs/method.md, section 3).
+/// Solves each level from the scene's start under its own energy (docs/theory/method.md, section 3).
 class NewtonSolver : public ResumableSolver {
  public:
   struct Parameters {

@@ -14,7 +14,7 @@ enum class Relaxation {
 };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
-/// plain Newton (Zhang et al. 2022; docs/method.md, section 3).
+/// plain Newton (Zhang et al. 2022; docs/theory/method.md, section 3).
 class PcsSolver : public ResumableSolver {
  public:
   struct Parameters {
@@ -50,7 +50,7 @@ class PcsSolver : public ResumableSolver {
           .description(
               "what a coarse level minimises after its proxy: its own plain energy, which makes folds as "
               "sharp as the level allows, or nothing")
-          .source("PCS section 4 for none; plain is a departure (docs/locking.md)");
+          .source("PCS section 4 for none; plain is a departure (docs/theory/locking.md)");
       d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
   };

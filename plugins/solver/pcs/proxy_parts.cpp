@@ -13,17 +13,17 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
   };
   add("membrane", &ProxyInterpolation::membrane)
       .description("surface on which stretching is measured: the coarse one, or the refiner's, which locks")
-      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/theory/locking.md)");
   add("bending", &ProxyInterpolation::bending)
       .description(
           "surface on which bending is measured: the coarse one with folds at its edges, or the refiner's")
-      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/theory/locking.md)");
   add("external", &ProxyInterpolation::external)
       .description("surface on which loads and handles act")
-      .source("PCS section 4 for refiner; midpoint is a departure (docs/locking.md)");
+      .source("PCS section 4 for refiner; midpoint is a departure (docs/theory/locking.md)");
   add("state", &ProxyInterpolation::state)
       .description("prolongs a level's state to the next level")
-      .source("PCS section 4.3 for refiner; midpoint is a departure (docs/locking.md)");
+      .source("PCS section 4.3 for refiner; midpoint is a departure (docs/theory/locking.md)");
 }
 
 std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,

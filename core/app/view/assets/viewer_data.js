@@ -1,5 +1,5 @@
 'use strict';
-/// Sources of the viewer's document and blocks, and the blocks' formats (docs/viewer.md).
+/// Sources of the viewer's document and blocks, and the blocks' formats (docs/guide/viewer.md).
 const ViewerData = (() => {
   function bytesOfBase64(text) {
     const binary = atob(text), bytes = new Uint8Array(binary.length);
