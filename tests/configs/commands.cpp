@@ -53,12 +53,12 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
 
 TEST_CASE("help shows a command's options and an example; developers' commands are listed apart") {
   CHECK(shown_by("help") == shown_by("--help"));
-  const std::string all = shown_by("help"), heading = "\nFor developers of drape:\n  table1 ";
+  const std::string all = shown_by("help"), heading = "\nFor developers of drape:\n  reference ";
   CHECK(all.find("\n  help ") < all.find(heading));
   CHECK(all.find(heading) < all.find("\n  reference "));
   CHECK(all.find("\n  reference ") != std::string::npos);
   for (const std::string command : {"new", "check", "run", "view", "export", "report", "compare", "table",
-                                    "sweep", "list", "describe", "schema", "help", "table1", "reference"}) {
+                                    "sweep", "list", "describe", "schema", "help", "reference"}) {
     INFO(command);
     const std::string page = shown_by("help " + command);
     CHECK(page == shown_by(command + " --help"));
