@@ -91,8 +91,8 @@ TEST_CASE("a plugin includes the kernel and its own folder, nothing else of the 
     if (file.filename().string().rfind("test_", 0) == 0) continue;
     for (const std::string& included : includes_of(file)) {
       CAPTURE(file, included);
-      CHECK((included.rfind("core/kernel/", 0) == 0 ||
-             fs::path(included).parent_path() == file.parent_path()));
+      CHECK(
+          (included.rfind("core/kernel/", 0) == 0 || fs::path(included).parent_path() == file.parent_path()));
     }
   }
 }

@@ -18,8 +18,8 @@ class FakeLoads : public LoadStepping {
   bool follows = true;  ///< whether advance_by() applies anything
   bool to_equilibrium = true;
   const LevelModel* unchanged = nullptr;  ///< the model under every load
-  std::vector<double> fractions;  ///< that advance_by() applied
-  Positions last;                 ///< the cloth that was last asked about
+  std::vector<double> fractions;          ///< that advance_by() applied
+  Positions last;                         ///< the cloth that was last asked about
 
   int increment_count() const override { return 3; }
   bool equilibrates() const override { return to_equilibrium; }
