@@ -1,12 +1,14 @@
 #include "core/app/report/pictures.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cctype>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
-#include "core/app/report/render.h"
+#include "core/app/picture/render.h"
+#include "core/app/picture/surface.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
@@ -58,6 +60,15 @@ Positions near_cloth(const Positions& obstacle, const std::vector<const Position
   return chosen;
 }
 
+/// The least height of all points; none without points.
+std::optional<double> lowest(const std::vector<const Positions*>& states) {
+  std::optional<double> least;
+  for (const Positions* x : states)
+    for (Eigen::Index i = 0; i < x->rows(); ++i)
+      if (x->row(i).allFinite()) least = std::min(least.value_or((*x)(i, 2)), (*x)(i, 2));
+  return least;
+}
+
 class PictureMaker {
  public:
   PictureMaker(const RunData& run, const std::function<bool()>& leave) : run_(run), leave_(leave) {}
@@ -107,6 +118,7 @@ class PictureMaker {
     obstacle_ = merged(obstacles);
     const Positions near = near_cloth(obstacle_.vertices, all);
     if (near.rows() > 0) all.push_back(&near);
+    floor_ = lowest(all);
     // Three quarters from above: the top shows how it lies, the side how it folds.
     camera_ = Camera::around(all, {0.55, -1.0, 0.68}, double(picture_width) / picture_height);
   }
@@ -118,6 +130,7 @@ class PictureMaker {
         if (state == states_.end()) continue;
         Drawing drawing{state->second};
         drawing.obstacle = obstacle();
+        drawing.floor = floor_;
         drawing.edges = state->second.vertices.rows() <= most_vertices_with_edges;
         keep(state_picture(method, level.level), renderer().draw(drawing, camera_));
       }
@@ -170,7 +183,7 @@ class PictureMaker {
         if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, leave_);
         keep(name, map_renderer_->draw({*rest, nullptr, &colours, false, false}, Camera::facing(*rest, 1)));
       } else {
-        keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
+        keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle(), floor_}, camera_));
       }
     }
   }
@@ -221,14 +234,14 @@ class PictureMaker {
       Positions normals = smooth_normals(mesh);
       if (!prolong(mesh, normals, f->mesh.triangles, f->mesh.vertices.rows())) continue;
       const Colours colours = fold_colours(f->principal_other, set_.fold_threshold);
-      keep(name, renderer().draw({mesh, &normals, &colours, false, true, obstacle()}, camera_));
+      keep(name, renderer().draw({mesh, &normals, &colours, false, true, obstacle(), floor_}, camera_));
       return;
     }
     for (const ConsistencyRecord& pair : method.consistency) {
       const PairFields* f = fields(method, pair.coarse, pair.fine);
       if (!f || pair.fine != level || f->principal.size() == 0) continue;
       const Colours colours = fold_colours(f->principal, set_.fold_threshold);
-      keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle()}, camera_));
+      keep(name, renderer().draw({f->mesh, nullptr, &colours, false, true, obstacle(), floor_}, camera_));
       return;
     }
   }
@@ -282,6 +295,7 @@ class PictureMaker {
   std::map<PairKey, PairFields> fields_;
   TriangleMesh obstacle_;
   Camera camera_;
+  std::optional<double> floor_;
   std::unique_ptr<Renderer> renderer_, map_renderer_;
 };
 
