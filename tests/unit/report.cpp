@@ -11,7 +11,6 @@
 
 #include "core/app/report/chart_data.h"
 #include "core/app/report/pictures.h"
-#include "core/app/report/render.h"
 #include "core/app/report/tables.h"
 #include "core/app/view/colours.h"
 #include "core/app/view/html.h"
@@ -396,53 +395,6 @@ TEST_CASE("figures in a report have three digits") {
   CHECK(html::base64("light wor") == "bGlnaHQgd29y");
   CHECK(html::base64("light wo") == "bGlnaHQgd28=");
   CHECK_THROWS_WITH(html::fill("a {{b}} c", {}), Catch::Contains("{{b}}"));
-}
-
-TEST_CASE("the camera sees all of every state and wastes no picture") {
-  const TriangleMesh sheet = flat_sheet(9);
-  Positions other = rippled(sheet.vertices, 9).array() * 1.7 + 0.4;
-  other(3, 0) = std::numeric_limits<double>::infinity();
-  const Camera camera = Camera::around({&sheet.vertices, &other}, {0.55, -1, 0.68}, 9.0 / 7);
-  double reach = 0;
-  for (const Positions* x : {&sheet.vertices, static_cast<const Positions*>(&other)}) {
-    for (int i = 0; i < x->rows(); ++i) {
-      if (!x->row(i).allFinite()) continue;
-      const Eigen::Vector4d p = camera.projection * camera.view * x->row(i).transpose().homogeneous();
-      CHECK(p[3] > 0);
-      CHECK((p / p[3]).head<3>().cwiseAbs().maxCoeff() < 1);
-      reach = std::max(reach, (p / p[3]).head<2>().cwiseAbs().maxCoeff());
-    }
-  }
-  CHECK(reach > 0.9);
-  const Camera map = Camera::facing(sheet, 1);
-  const Eigen::Vector4d corner = map.projection * map.view * Eigen::Vector4d(1, 1, 0, 1);
-  CHECK(corner[0] == Approx(1 / 1.06));  // x to the right and y up, the margin around
-  CHECK(corner[1] == Approx(1 / 1.06));
-}
-
-TEST_CASE("a drawing shows its colours and both sides of the cloth") {
-  TriangleMesh sheet = flat_sheet(5);
-  const Renderer renderer(60, 60);
-  const auto middle = [&](const Drawing& drawing, const Camera& camera) {
-    const Image image = renderer.draw(drawing, camera);
-    const unsigned char* p = &image.pixels[3 * (30 * 60 + 30)];
-    return Eigen::Vector3i(p[0], p[1], p[2]);
-  };
-  Eigen::VectorXd values = Eigen::VectorXd::Constant(25, 2);
-  const Colours red = diverging_colours(values, 2), blue = diverging_colours(-values, 2);
-  const Camera flat = Camera::facing(sheet, 1);
-  CHECK(middle({sheet, nullptr, &red, false, false}, flat) == Eigen::Vector3i(103, 0, 31));
-  CHECK(middle({sheet, nullptr, &blue, false, false}, flat) == Eigen::Vector3i(5, 48, 97));
-  CHECK(middle({sheet, nullptr, &red, false, false}, flat) == Eigen::Vector3i(103, 0, 31));
-
-  const Camera above = Camera::around({&sheet.vertices}, {0.2, -0.3, 1}, 1);
-  const Eigen::Vector3i front = middle({sheet}, above);
-  CHECK(front[0] > front[2] + 10);  // warm
-  sheet.triangles.col(1).swap(sheet.triangles.col(2));
-  const Eigen::Vector3i back = middle({sheet}, above);
-  CHECK(back[2] > back[0] + 5);  // cool
-  CHECK(std::min(front.minCoeff(), back.minCoeff()) > 90);
-  CHECK(middle({sheet, nullptr, nullptr, true}, above).sum() <= back.sum());
 }
 
 TEST_CASE("colour maps are symmetric around their middle and clamp at their ends") {

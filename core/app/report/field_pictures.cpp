@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/app/picture/surface.h"
 #include "core/app/report/midpoint_surface.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/mesh/io.h"

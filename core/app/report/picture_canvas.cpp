@@ -1,8 +1,10 @@
 #include "core/app/report/picture_canvas.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <stdexcept>
 
+#include "core/app/picture/surface.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/message_text.h"
@@ -38,6 +40,15 @@ Positions near_cloth(const Positions& obstacle, const std::vector<const Position
   return chosen;
 }
 
+/// The least height of all points; none without points.
+std::optional<double> lowest(const std::vector<const Positions*>& states) {
+  std::optional<double> least;
+  for (const Positions* x : states)
+    for (Eigen::Index i = 0; i < x->rows(); ++i)
+      if (x->row(i).allFinite()) least = std::min(least.value_or((*x)(i, 2)), (*x)(i, 2));
+  return least;
+}
+
 }  // namespace
 
 PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& leave, PictureSet& set)
@@ -56,6 +67,7 @@ PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& le
   obstacle_ = merged(obstacles);
   const Positions near = near_cloth(obstacle_.vertices, all);
   if (near.rows() > 0) all.push_back(&near);
+  floor_ = lowest(all);
   // Three quarters from above: the top shows how it lies, the side how it folds.
   camera_ = Camera::around(all, {0.55, -1.0, 0.68}, double(picture_width) / picture_height);
 }
@@ -86,6 +98,7 @@ const Triangles* PictureCanvas::triangles_of(Eigen::Index vertex_count) const {
 void PictureCanvas::draw(const std::string& name, Drawing drawing) {
   if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height, leave_);
   drawing.obstacle = obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr;
+  drawing.floor = floor_;
   keep(name, renderer_->draw(drawing, camera_));
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/app/report/pictures.h"
-#include "core/app/report/render.h"
+#include "core/app/picture/render.h"
 
 namespace drape {
 
@@ -40,6 +40,7 @@ class PictureCanvas {
   std::map<std::pair<std::string, int>, TriangleMesh> states_;  // by method and level
   TriangleMesh obstacle_;
   Camera camera_;
+  std::optional<double> floor_;  // height below everything
   std::unique_ptr<Renderer> renderer_, map_renderer_;
 };
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/app/report/image.h"
+#include "core/app/picture/image.h"
 #include "core/app/report/run_data.h"
 
 namespace drape {

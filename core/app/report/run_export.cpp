@@ -5,8 +5,9 @@
 
 #include "core/app/experiment/method_choice.h"
 #include "core/app/files/gltf.h"
+#include "core/app/picture/render.h"
+#include "core/app/picture/surface.h"
 #include "core/app/report/recorded_snapshots.h"
-#include "core/app/report/render.h"
 #include "core/app/report/run_data.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"

@@ -23,10 +23,6 @@ struct Embedded {
   static std::string_view viewer_js();
   static std::string_view live_html();
   static std::string_view live_js();
-  static std::string_view cloth_vertex_shader();
-  static std::string_view cloth_fragment_shader();
-  static std::string_view depth_vertex_shader();
-  static std::string_view depth_fragment_shader();
 };
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-#include "core/app/report/image.h"
+#include "core/app/picture/image.h"
 
 #include <png.h>
 

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/app/report/render.h"
+#include "core/app/picture/render.h"
+#include "core/app/picture/surface.h"
 
 namespace drape {
 

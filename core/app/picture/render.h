@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "core/app/picture/image.h"
+#include "core/app/view/colours.h"
+#include "core/kernel/mesh/triangle_mesh.h"
+
+namespace drape {
+
+/// The camera of a picture, as OpenGL matrices.
+struct Camera {
+  Eigen::Matrix4d view;        ///< world to eye
+  Eigen::Matrix4d projection;  ///< eye to clip
+
+  /// Perspective from `direction` (towards the camera), z up, as close as possible with all points in view.
+  static Camera around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
+                       double aspect);
+  /// Orthographic, perpendicular to a nearly flat mesh.
+  static Camera facing(const TriangleMesh& flat, double aspect);
+};
+
+/// Contents of a picture. Triangles with a vertex that is not finite are skipped.
+struct Drawing {
+  const TriangleMesh& mesh;
+  const Positions* normals = nullptr;  ///< n×3 unit normals; otherwise the mesh's own smooth ones
+  const Colours* colours = nullptr;    ///< n×3; otherwise plain cloth
+  bool edges = false;                  ///< thin lines along the triangles' edges
+  bool lit = true;                     ///< otherwise flat colours, for maps
+  const TriangleMesh* obstacle =
+      nullptr;                       ///< plain and dark; plain cloth in front of it lets it show faintly
+  std::optional<double> floor = {};  ///< height of a floor that shows shadows only [m]
+};
+
+/// A Renderer stopped before its picture was finished.
+struct PictureLeft : std::runtime_error {
+  PictureLeft() : std::runtime_error("the picture was left unfinished") {}
+};
+
+/// Traces rays (Embree) on thread_count() threads: a wide key light with soft shadows, a fill light, and sky
+/// light with occlusion. The same drawing gives the same bits with any number of threads.
+class Renderer {
+ public:
+  /// Size of the pictures [pixels]; random rays to each light a pixel. `leave`, which may be empty, is polled
+  /// between tiles, on the thread that draws.
+  Renderer(int width, int height, std::function<bool()> leave = {}, int light_rays = 4);
+
+  /// Throws PictureLeft once `leave` returns true, std::runtime_error if Embree fails.
+  Image draw(const Drawing& drawing, const Camera& camera) const;
+
+ private:
+  /// Calls body for all pixels, on all threads.
+  void for_tiles(const std::function<void(int column, int row)>& body) const;
+
+  int width_, height_;
+  std::function<bool()> leave_;
+  int light_rays_;
+};
+
+}  // namespace drape

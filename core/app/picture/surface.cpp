@@ -1,0 +1,63 @@
+#include "core/app/picture/surface.h"
+
+#include <Eigen/Geometry>
+
+namespace drape {
+
+Positions smooth_normals(const TriangleMesh& mesh) {
+  Positions normals = Positions::Zero(mesh.vertices.rows(), 3);
+  for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+    const Eigen::Vector3d a = mesh.vertices.row(mesh.triangles(t, 0));
+    const Eigen::Vector3d b = mesh.vertices.row(mesh.triangles(t, 1));
+    const Eigen::Vector3d c = mesh.vertices.row(mesh.triangles(t, 2));
+    const Eigen::Vector3d n = (b - a).cross(c - a);
+    if (!n.allFinite()) continue;
+    for (int k = 0; k < 3; ++k) normals.row(mesh.triangles(t, k)) += n.transpose();
+  }
+  for (Eigen::Index i = 0; i < normals.rows(); ++i) {
+    const double length = normals.row(i).norm();
+    if (length > 0) normals.row(i) /= length;
+  }
+  return normals;
+}
+
+TriangleMesh merged(const std::vector<TriangleMesh>& meshes) {
+  TriangleMesh all;
+  for (const TriangleMesh& mesh : meshes) {
+    const Eigen::Index n = all.vertices.rows(), m = all.triangles.rows();
+    all.vertices.conservativeResize(n + mesh.vertices.rows(), 3);
+    all.vertices.bottomRows(mesh.vertices.rows()) = mesh.vertices;
+    all.triangles.conservativeResize(m + mesh.triangles.rows(), 3);
+    all.triangles.bottomRows(mesh.triangles.rows()) = mesh.triangles.array() + static_cast<int>(n);
+  }
+  return all;
+}
+
+TriangleMesh split_at_creases(const TriangleMesh& mesh, Positions& normals) {
+  constexpr double cosine_of_crease = 0.766;
+  const Eigen::Index m = mesh.triangles.rows();
+  Positions areas(m, 3);  // normals of the length of twice the area
+  std::vector<std::vector<int>> around(mesh.vertices.rows());
+  for (Eigen::Index t = 0; t < m; ++t) {
+    const Eigen::RowVector3d a = mesh.vertices.row(mesh.triangles(t, 0));
+    areas.row(t) =
+        (mesh.vertices.row(mesh.triangles(t, 1)) - a).cross(mesh.vertices.row(mesh.triangles(t, 2)) - a);
+    for (int k = 0; k < 3; ++k) around[mesh.triangles(t, k)].push_back(static_cast<int>(t));
+  }
+  TriangleMesh split{Positions(3 * m, 3), Triangles(m, 3)};
+  normals = Positions::Zero(3 * m, 3);
+  for (Eigen::Index t = 0; t < m; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const int i = mesh.triangles(t, k), corner = static_cast<int>(3 * t) + k;
+      split.triangles(t, k) = corner;
+      split.vertices.row(corner) = mesh.vertices.row(i);
+      for (const int other : around[i])
+        if (areas.row(t).dot(areas.row(other)) >=
+            cosine_of_crease * areas.row(t).norm() * areas.row(other).norm())
+          normals.row(corner) += areas.row(other);
+      normals.row(corner).normalize();
+    }
+  return split;
+}
+
+}  // namespace drape
