@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "core/app/report/pictures.h"
 #include "core/app/picture/render.h"
+#include "core/app/report/pictures.h"
 
 namespace drape {
 
