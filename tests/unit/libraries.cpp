@@ -1,5 +1,6 @@
 // What the built libraries need and export, as the dynamic linker sees it.
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cstdio>
@@ -47,6 +48,16 @@ std::vector<std::string> symbols_of(const fs::path& library, const std::string& 
   return names;
 }
 
+/// Symbols of the project that a library defines for others; headers of other libraries make some of theirs
+/// visible.
+std::vector<std::string> own_symbols_of(const fs::path& library) {
+  std::vector<std::string> names = symbols_of(library, "--defined-only");
+  names.erase(std::remove_if(names.begin(), names.end(),
+                             [](const std::string& name) { return name.find("drape") == std::string::npos; }),
+              names.end());
+  return names;
+}
+
 fs::path library(const std::string& name) {
   return fs::path(folders::commands()).parent_path() / "lib" / name;
 }
@@ -79,7 +90,7 @@ TEST_CASE("a plugin needs the kernel, not the application, and exports one funct
     const std::set<std::string> needed = needed_by(entry.path());
     CHECK(needed.count("libdrape.so") == 1);
     CHECK(needed.count("libdrape_app.so") == 0);
-    CHECK(symbols_of(entry.path(), "--defined-only") == std::vector<std::string>{"drape_plugin"});
+    CHECK(own_symbols_of(entry.path()) == std::vector<std::string>{"drape_plugin"});
   }
   CHECK(plugins > 20);
 }
