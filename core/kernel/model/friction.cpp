@@ -115,9 +115,9 @@ TangentialDisplacements LaggedFriction::tangential_displacements(const Positions
 TangentialDisplacements LaggedFriction::advected_tangential_displacements(
     const Positions& x, const Positions& obstacle_motion) const {
   return collect([&](int i) {
-    const Vector3d u = displacement(i, x);
-    if (!is_with_obstacle(contacts_[i])) return u;
-    return Vector3d(u - tangential(i, position(contacts_[i], obstacle_motion)));
+    Vector3d u = displacement(i, x);
+    if (is_with_obstacle(contacts_[i])) u -= tangential(i, position(contacts_[i], obstacle_motion));
+    return u;
   });
 }
 

@@ -130,8 +130,8 @@ std::shared_ptr<const RestCloth> RestCloth::of(const Level& level, double dhat, 
   return cloth;
 }
 
-std::shared_ptr<const ObstacleTree> ObstacleTree::of(std::shared_ptr<const Obstacles> obstacles, double dhat,
-                                                     BroadPhaseKind kind) {
+std::shared_ptr<const ObstacleTree> ObstacleTree::of(const std::shared_ptr<const Obstacles>& obstacles,
+                                                     double dhat, BroadPhaseKind kind) {
   auto tree = std::make_shared<ObstacleTree>(
       ObstacleTree{obstacles,
                    dhat,

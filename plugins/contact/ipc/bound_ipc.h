@@ -36,8 +36,8 @@ struct ObstacleTree {
   OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;
 
-  static std::shared_ptr<const ObstacleTree> of(std::shared_ptr<const Obstacles> obstacles, double dhat,
-                                                BroadPhaseKind kind);
+  static std::shared_ptr<const ObstacleTree> of(const std::shared_ptr<const Obstacles>& obstacles,
+                                                double dhat, BroadPhaseKind kind);
 };
 
 /// The contact model `ipc` bound to one level.
