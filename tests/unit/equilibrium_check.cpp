@@ -39,7 +39,7 @@ TEST_CASE("The tolerances ask for a small residual, and for three small decremen
   CHECK(!check.in_tolerance());
 }
 
-TEST_CASE("The drift is the way of the free vertices' centroid, in diagonals of the sheet") {
+TEST_CASE("The drift is the displacement of the free vertices' centroid, in diagonals of the sheet") {
   const NewtonParameters p;
   NewtonProblem problem = at_minimum();
   EquilibriumCheck check(problem.iterate, p);

@@ -64,7 +64,7 @@ TEST_CASE("The keys' values follow the pseudo-time, one after another") {
   for (std::size_t c = 0; c < values.size(); ++c) CHECK(values[c] == Approx(expected[c]));
 }
 
-TEST_CASE("A load is a value: equal when asked for twice, by whatever way, and never changed") {
+TEST_CASE("A load is a value: equal when asked for twice, from whatever load, and never changed") {
   const Solved s = scene_from(two_levels);
   const LoadSchedule schedule(s.experiment, *s.scene);
   const auto half = schedule.at(schedule.values(2)), again = schedule.at(schedule.values(2));

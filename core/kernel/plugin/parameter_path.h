@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// The way to one declared parameter of a struct, found once by name and then written often. Refers to the
+/// One declared parameter of a struct, resolved once by its path and then written often. Refers to the
 /// schema.
 class ParameterPath {
  public:
