@@ -1,6 +1,9 @@
-# make          install what is needed, configure, build: build/bin/drape
-# make setup    install what third_party/apt-packages.txt lists (Debian 12, asks apt-get)
-# make demo     run configs/sphere.yaml to 25K vertices by three methods; its values beside the supplement's
+# make          install what is needed, configure, build the command and its plugins: build/bin/drape
+# make setup    install what third_party/packages-to-run.txt and packages-to-test.txt list (Debian 12, asks apt-get); each
+#               target installs what it needs of them
+# make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
+# make results  run what the pages state and fill their figures in; resumes; STUDIES="sphere scale" chooses some
+# make figures  fill the pages' figures in from the stored records; runs nothing
 # make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
 # make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
@@ -10,7 +13,7 @@
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
-# make bench    build and run the benchmarks
+# make bench    build and run the benchmarks; benchmarks alone builds them
 # make hard     the hard cases (docs/results/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
 # make pictures the README's pictures, from the runs that `make bench` has left in results/bench_sphere and, of the bunny,
 #               those that `make table1` has finished in results/table1/bunny
@@ -27,24 +30,37 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 scenes test fuzz extremes data bench hard pictures format fix-format lint clean
+.PHONY: all setup configure build build-tests benchmarks demo table1 scenes test fuzz extremes data bench hard results figures \
+        pictures format fix-format lint clean
 all: build
 
 setup:
-	@third_party/setup
+	@third_party/setup run test
 
-configure: setup
-	@cmake --preset $(PRESET) --log-level=WARNING >/dev/null
+# A build folder begins without tests and benchmarks, whose packages running does not need, and has them from the first
+# target on that asks for them.
+CONFIGURE = cmake --preset $(PRESET) --log-level=WARNING \
+            $$([ -e $(BUILD)/CMakeCache.txt ] || echo -D DRAPE_TESTS=OFF -D DRAPE_BENCHMARKS=OFF)
+
+configure:
+	@third_party/setup run
+	@$(CONFIGURE) >/dev/null
 
 build: configure
-	@cmake --build $(BUILD) -j $(JOBS)
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins
+
+build-tests: setup
+	@$(CONFIGURE) -D DRAPE_TESTS=ON >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_tests
+
+benchmarks: setup
+	@$(CONFIGURE) -D DRAPE_BENCHMARKS=ON >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_benchmarks
 
 demo: build
-	@$(BUILD)/bin/drape run configs/sphere.yaml --levels 3 --method pcs --method cascadic --method newton --out results/sphere --overwrite; ended=$$?; \
-	  benchmarks/table1 --show results/sphere; \
-	  echo "Open results/sphere/report.html in a browser."; exit $$ended
+	@configs/demo $(BUILD)/bin/drape
 
-table1: build
+table1: build setup
 	@benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS))
 
 SCENES_NAME = scenes$(if $(LEVELS),_levels_$(LEVELS))
@@ -55,21 +71,21 @@ scenes: build
 	  $(BUILD)/bin/drape table results/$(SCENES_NAME) --columns $(SCENES_COLUMNS) > benchmarks/results/$(SCENES_NAME).md; \
 	  cat benchmarks/results/$(SCENES_NAME).md; exit $$ended
 
-test: build
+test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)
 
-fuzz: build
+fuzz: build setup
 	@cmake --preset fuzz --log-level=WARNING -DDRAPE_BUILD=$(abspath $(BUILD)) >/dev/null
 	@cmake --build build-fuzz -j $(JOBS)
 	@FUZZ_SECONDS=$(FUZZ_SECONDS) FUZZ_RUNS=$(FUZZ_RUNS) JOBS=$(JOBS) tests/fuzz/run build-fuzz $(FUZZ_TARGETS)
 
-extremes: build
+extremes: build setup
 	@tests/extremes/run $(BUILD)/bin/drape --count $(or $(EXTREMES),500) --seed $(or $(EXTREMES_SEED),1) --jobs $(JOBS)
 
 data: configure
 	@third_party/data/fetch data $(BUILD)
 
-bench: build
+bench: benchmarks
 	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
 	$(BUILD)/bin/drape_bench_linear_solvers benchmarks/results/linear_solvers.json
 	-$(BUILD)/bin/drape run configs/pinned_square.yaml --method pcs --method cascadic --method newton --out results/bench_pinned_square --overwrite
@@ -83,7 +99,14 @@ hard: build
 	@ended=0; for s in $(HARD); do $(BUILD)/bin/drape sweep configs/hard/sweeps/$$s.yaml --out results/hard/$$s || ended=$$?; \
 	  [ $$ended -lt 128 ] || exit $$ended; done; configs/hard/write_tables $(BUILD)/bin/drape results/hard benchmarks/results; exit $$ended
 
-pictures: build
+# The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/README.md).
+results: benchmarks
+	@benchmarks/results $(BUILD) $(STUDIES)
+
+figures:
+	@benchmarks/fill_figures
+
+pictures: build setup
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(BUILD)/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser \
 	  node docs/pictures/make.mjs results/bench_sphere/report.html
