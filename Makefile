@@ -2,7 +2,7 @@
 # make setup    install what third_party/packages-to-run.txt and packages-to-test.txt list (Debian 12, asks apt-get); each
 #               target installs what it needs of them
 # make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
-# make results  run what the pages state and fill their figures in; resumes; STUDIES="sphere scale" chooses some
+# make results  run what the pages state and fill their figures in; resumes; STUDIES=sphere,scale chooses some
 # make figures  fill the pages' figures in from the stored records; runs nothing
 # make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
@@ -13,10 +13,10 @@
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
-# make bench    build and run the benchmarks; benchmarks alone builds them
+# make bench    build and run the benchmark programs, to results/*.json; benchmarks alone builds them
 # make hard     the hard cases (docs/results/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
-# make pictures the README's pictures, from the runs that `make bench` has left in results/bench_sphere and, of the bunny,
-#               those that `make table1` has finished in results/table1/bunny
+# make pictures the README's pictures, from the runs of the studies sphere and table1 that `make results` has left; FROM=
+#               results/studies/COMMIT/ chooses the build, the newest otherwise
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
 # make clean    remove what was built
@@ -86,32 +86,34 @@ data: configure
 	@third_party/data/fetch data $(BUILD)
 
 bench: benchmarks
-	$(BUILD)/bin/drape_bench_kernels --benchmark_out=benchmarks/results/kernels.json --benchmark_out_format=json
-	$(BUILD)/bin/drape_bench_linear_solvers benchmarks/results/linear_solvers.json
-	-$(BUILD)/bin/drape run configs/pinned_square.yaml --method pcs --method cascadic --method newton --out results/bench_pinned_square --overwrite
-	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method cascadic --method newton --out results/bench_sphere --overwrite
-	-$(BUILD)/bin/drape run configs/sphere.yaml --method pcs --method newton --set newton.early_refinement_tolerance=1 --out results/bench_sphere_refined_early --overwrite
-	$(BUILD)/bin/drape_bench_ratios benchmarks/results/ratios.json $(addprefix results/bench_,pinned_square sphere sphere_refined_early)
-	$(BUILD)/bin/drape_bench_changes benchmarks/results/changes.json
+	mkdir -p results
+	$(BUILD)/bin/drape_bench_kernels --benchmark_out=results/kernels.json --benchmark_out_format=json
+	$(BUILD)/bin/drape_bench_linear_solvers results/linear_solvers.json
+	$(BUILD)/bin/drape_bench_ratios results/ratios.json
+	$(BUILD)/bin/drape_bench_changes results/changes.json
 
 HARD = $(sort $(basename $(notdir $(wildcard configs/hard/sweeps/*.yaml))))
 hard: build
 	@ended=0; for s in $(HARD); do $(BUILD)/bin/drape sweep configs/hard/sweeps/$$s.yaml --out results/hard/$$s || ended=$$?; \
 	  [ $$ended -lt 128 ] || exit $$ended; done; configs/hard/write_tables $(BUILD)/bin/drape results/hard benchmarks/results; exit $$ended
 
-# The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/README.md).
+# The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/run_studies).
 results: benchmarks
-	@benchmarks/results $(BUILD) $(STUDIES)
+	@benchmarks/run_studies $(BUILD) $(STUDIES)
 
 figures:
 	@benchmarks/fill_figures
 
+FROM ?= $(shell ls -td results/studies/*/ 2>/dev/null | head -1)
+SPHERE = $(FROM)sphere/runs/base/seed_1
 pictures: build setup
+	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
+	$(BUILD)/bin/drape report $(SPHERE)
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(BUILD)/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser \
-	  node docs/pictures/make.mjs results/bench_sphere/report.html
-	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp results/bench_sphere/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
-	@for run in $(patsubst %/finished.txt,%,$(wildcard results/table1/bunny/*/finished.txt)); do $(BUILD)/bin/drape report $$run || exit; \
+	  node docs/pictures/make.mjs $(SPHERE)/report.html
+	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp $(SPHERE)/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
+	@for run in $(patsubst %/finished.txt,%,$(wildcard $(FROM)table1/bunny/*/finished.txt)); do $(BUILD)/bin/drape report $$run || exit; \
 	  for picture in $$run/pictures/$${run##*/}_l[03].png; do to=docs/pictures/bunny_$${picture##*/}; \
 	    [ ! -f $$to ] || cp $$picture $$to; done; done
 

@@ -46,7 +46,8 @@ TEST_CASE("each package is in one of the two lists, once") {
       CHECK(all.insert(package).second);
     }
   // What makes `make demo` short: it installs no browser and no analysers.
-  for (const std::string& package : to_run) CHECK_FALSE(std::regex_search(package, std::regex("chrom|node|clang|npm")));
+  for (const std::string& package : to_run)
+    CHECK_FALSE(std::regex_search(package, std::regex("chrom|node|clang|npm")));
 }
 
 TEST_CASE("Makefile, Dockerfile and CI install packages by the lists alone") {
@@ -66,7 +67,8 @@ TEST_CASE("Makefile, Dockerfile and CI install packages by the lists alone") {
 }
 
 TEST_CASE("the Dockerfile is of Debian 12, and its commands are the README's") {
-  const std::string text = text_of("Dockerfile"), makefile = text_of("Makefile"), readme = text_of("README.md");
+  const std::string text = text_of("Dockerfile"), makefile = text_of("Makefile"),
+                    readme = text_of("README.md");
   CHECK(found(text, "\nFROM ([^\n]+)\n") == std::vector<std::string>{"debian:12"});
   // What the first command needs; everything else is in the lists.
   CHECK(found(text, "apt-get install -y --no-install-recommends ([^&]*) &&") ==
@@ -85,5 +87,6 @@ TEST_CASE("the Dockerfile is of Debian 12, and its commands are the README's") {
     CHECK(text.find(command) != text.npos);
     CHECK(readme.find(command) != readme.npos);
   }
-  for (const std::string& target : found(text, "make ([a-z]+)\n")) CHECK(makefile.find("\n" + target + ":") != makefile.npos);
+  for (const std::string& target : found(text, "make ([a-z]+)\n"))
+    CHECK(makefile.find("\n" + target + ":") != makefile.npos);
 }
