@@ -4,17 +4,17 @@
 # make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
 # make results  run what the pages state and fill their figures in; resumes; STUDIES=sphere,scale chooses some
 # make figures  fill the pages' figures in from the stored records; runs nothing
-# make table1   run every scene of the supplement's Table 1 to its finest level, or go on with it (hours; bunny and
-#               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
-# make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
-#               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
+# make table1   the study of the supplement's Table 1, hours (`make data` for all of its scenes); SCENES="sphere cube" LEVELS=3
+#               choose some scenes and fewer levels, and write no record
+# make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
+#               so many, and writes no record
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
 # make extremes run small drapes with parameters at their declared bounds: EXTREMES (500) of them, from the seed EXTREMES_SEED (1)
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmark programs, to results/*.json; benchmarks alone builds them
-# make hard     the hard cases (docs/results/hard-cases.md), and their tables in benchmarks/results; goes on where it was cut
+# make hard     the study of the hard cases (docs/results/hard-cases.md)
 # make pictures the README's pictures, from the runs of the studies sphere and table1 that `make results` has left; FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise
 # make format   check the layout of the sources;  make fix-format  rewrites them
@@ -60,16 +60,14 @@ benchmarks: setup
 demo: build
 	@configs/demo $(BUILD)/bin/drape
 
-table1: build setup
-	@benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS))
+# Whole studies are those of `make results`; a part of one stays in results/.
+table1: benchmarks
+	@$(if $(SCENES)$(LEVELS),benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS)),\
+	  benchmarks/run_studies $(BUILD) table1)
 
-SCENES_NAME = scenes$(if $(LEVELS),_levels_$(LEVELS))
-SCENES_COLUMNS = run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message
-scenes: build
-	@$(BUILD)/bin/drape sweep configs/sweeps/scenes.yaml --out results/$(SCENES_NAME) \
-	  $(if $(LEVELS),--most-levels $(LEVELS)); ended=$$?; [ $$ended -le 1 ] || exit $$ended; \
-	  $(BUILD)/bin/drape table results/$(SCENES_NAME) --columns $(SCENES_COLUMNS) > benchmarks/results/$(SCENES_NAME).md; \
-	  cat benchmarks/results/$(SCENES_NAME).md; exit $$ended
+scenes: benchmarks
+	@$(if $(LEVELS),$(BUILD)/bin/drape sweep configs/sweeps/scenes.yaml --out results/scenes_levels_$(LEVELS) --most-levels $(LEVELS); \
+	  $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies $(BUILD) scenes)
 
 test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)
@@ -92,10 +90,8 @@ bench: benchmarks
 	$(BUILD)/bin/drape_bench_ratios results/ratios.json
 	$(BUILD)/bin/drape_bench_changes results/changes.json
 
-HARD = $(sort $(basename $(notdir $(wildcard configs/hard/sweeps/*.yaml))))
-hard: build
-	@ended=0; for s in $(HARD); do $(BUILD)/bin/drape sweep configs/hard/sweeps/$$s.yaml --out results/hard/$$s || ended=$$?; \
-	  [ $$ended -lt 128 ] || exit $$ended; done; configs/hard/write_tables $(BUILD)/bin/drape results/hard benchmarks/results; exit $$ended
+hard: benchmarks
+	@benchmarks/run_studies $(BUILD) hard
 
 # The records are stamped with the commit that ran, so nothing may differ from it (benchmarks/run_studies).
 results: benchmarks

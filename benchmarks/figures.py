@@ -2,6 +2,8 @@
 
 A function of a record that is not stored raises FileNotFoundError or KeyError; fill_figures then says so in its place."""
 
+import re
+
 from records import RESULTS, conditions, figure, median, read, seconds_text
 
 METHODS = ["pcs", "cascadic", "newton"]
@@ -64,6 +66,34 @@ def scenes(study, columns):
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
     right = "l" + "".join("r" if c in ("preview's time, of cascadic's", "final energy, less cascadic's [J]") else "l" for c in columns)
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
+
+
+def chosen_scenes():
+    """Some of the scenes of the supplement's Table 2, small to large."""
+    lines = [line for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
+    head, *rows = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
+    columns = ["run", "vertices", "steps", "seconds", "energy", "smallest_gap", "largest_stretch", "intersections"]
+    by_name = {row[0]: [row[head.index(c)] for c in columns] for row in rows}
+    names = ["ribbon", "sphere", "cube", "tablecloth", "armadillo", "bunny", "sphere_fine", "dragon"]
+    return table(columns, [by_name[n] for n in names], ["scenes.md"], "lrrrrrrr")
+
+
+def table1():
+    """A row a scene of the supplement's Table 1: on how many rows the first method is best, iterations, builds."""
+    text = (RESULTS / "table1.md").read_text()
+    rows = []
+    for scene, entry in read("table1.json").items():
+        methods = entry["methods"]
+        best = re.search(rf"^## {scene}[:,].*?(\w+) is best on (\d+ of \d+) rows", text, re.M | re.S)
+        finest = ", ".join(f"{m} {r['iterations_by_level'][-1]}" for m, r in methods.items())
+        builds = {}
+        for m, r in methods.items():
+            builds.setdefault(r["commit"], []).append(m)
+        most = max(builds, key=lambda c: len(builds[c]))
+        build = "; ".join([most] + [f"{', '.join(builds[c])}: {c}" for c in builds if c != most])
+        first = next(iter(methods.values()))
+        rows.append([scene, str(first["vertices_by_level"][-1]), f"{best[1]}, {best[2]}" if best else "–", finest, build])
+    return table(["scene", "vertices", "best on rows", "iterations on the finest level", "build"], rows, [], "lr")[1:]
 
 
 def interpolation():
@@ -188,6 +218,8 @@ BLOCKS = {
     "six scenes": lambda: scenes("previews", [TOP[0], "preview's time, of cascadic's", *TOP[2:]]),
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", ["preview, RMS: pcs / cascadic", "overlap"]),
+    "chosen scenes": chosen_scenes,
+    "table 1": table1,
     "interpolation": interpolation,
     "progressions": progressions,
     "ratios": ratios,
@@ -197,9 +229,7 @@ BLOCKS = {
 }
 
 VALUES = {
-    **{f"conditions of {name}": lambda name=name: conditions(name)
-       for name in ("sphere.json", "previews.json", "interpolation.json", "ratios.json", "changes.json", "scenes.md", "hard.json",
-                    "scale.json", "progressions.json", "four_levels.json", "linear_solvers.json")},
+    **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
