@@ -9,7 +9,7 @@ benchmarks/results; `meshes` of data/ that it needs; whether it `may_fail`, whic
 MESHES = ["bunny.ply", "armadillo.ply"]
 ABLATIONS = ["methods_pinned_square", "methods_sphere", "methods_bunny", "sphere_ablation"]
 RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
-METHOD_COLUMNS = "run,seed,method,outcome,vertices,iterations,seconds,energy,intersections"
+METHOD_COLUMNS = "run,method,outcome,vertices,iterations,seconds,energy,intersections"
 
 
 def sweep(name, out="{out}"):
