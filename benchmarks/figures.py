@@ -1,6 +1,6 @@
 """What pages say of the records: BLOCKS, by name, give the lines of a table, VALUES the figures within sentences.
 
-A function of a record that is not stored raises FileNotFoundError or KeyError; fill_figures then says so in its place."""
+A function of a record that is not stored raises FileNotFoundError; fill_figures then says so in its place."""
 
 import re
 
@@ -94,6 +94,22 @@ def table1():
         first = next(iter(methods.values()))
         rows.append([scene, str(first["vertices_by_level"][-1]), f"{best[1]}, {best[2]}" if best else "–", finest, build])
     return table(["scene", "vertices", "best on rows", "iterations on the finest level", "build"], rows, [], "lr")[1:]
+
+
+def remedies():
+    """Newton iterations of each remedy that is a choice: three small scenes one by one, the sum of the large ones."""
+    small, large = {}, {}
+    for r in read("hard_remedies.json"):
+        scene, remedy = r["run"].split(", ", 1)
+        if r["sweep"] == "hard_remedies":
+            small.setdefault(remedy, {})[scene.removeprefix("hard_")] = r["iterations"]
+        else:
+            large[remedy] = large.get(remedy, 0) + r["iterations"]
+    scenes_of = list(next(iter(small.values())))
+    rows = [[remedy] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
+            for remedy, of_scene in small.items()]
+    # No comment for docs_figures: the sums stand in no record.
+    return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
 
 
 def interpolation():
@@ -220,6 +236,7 @@ BLOCKS = {
     "four levels": lambda: scenes("four_levels", ["preview, RMS: pcs / cascadic", "overlap"]),
     "chosen scenes": chosen_scenes,
     "table 1": table1,
+    "remedies": remedies,
     "interpolation": interpolation,
     "progressions": progressions,
     "ratios": ratios,
