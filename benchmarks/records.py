@@ -59,7 +59,9 @@ def conditions(name):
         parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", an earlier build"))
     else:
         parts.append(stamp.get("note", "build not recorded"))
-    if stamp.get("load_before") is not None and not idle(stamp):
+    if stamp.get("runs_at_a_time", 1) > 1:
+        parts.append(f"{stamp['runs_at_a_time']} runs at a time")
+    elif stamp.get("load_before") is not None and not idle(stamp):
         parts.append(f"beside other work (load {figure(stamp['load_before'], 2)} before)")
     elif stamp.get("busy"):
         parts.append("beside other work")
@@ -73,5 +75,5 @@ def record_files():
 
 
 def idle(stamp):
-    """Nothing else ran before; and, but for the study's own threads, while it did."""
-    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["own_load"] + 0.3
+    """Nothing else ran before, nor, but for the study's own threads, at its end."""
+    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["threads"] + 0.3
