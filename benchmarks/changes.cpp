@@ -5,12 +5,14 @@
 //
 // SIDE is the number of level 0's vertices along a side (40).
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "benchmarks/measure.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/machine.h"
 #include "core/kernel/linear_algebra/parallel.h"
@@ -21,6 +23,8 @@
 using namespace drape;
 
 namespace {
+
+constexpr int repeats = 3;
 
 /// What changes, one after another, and stays so.
 struct Change {
@@ -100,37 +104,43 @@ int run(const char* result_file, const std::string& side) {
   std::printf("%-28s %-9s %8s %12s %10s %14s\n", "change", "method", "steps", "ms a step", "seconds",
               "energy [J]");
   for (std::size_t k = 0; k <= std::size(changes); ++k) rows.push_back({});
-  std::vector<std::vector<IncrementRow>> all;
   const char* methods[] = {"pcs", "newton"};
-  for (const char* name : methods)
-    for (const auto& [own, solver] : e->methods)
-      if (own == name) {
-        LevelZero level;
-        solver->solve(scene->problem(), level);
-        all.push_back(level.rows);
-      }
+  // In turn, several times: the machine's speed drifts. Everything but the seconds is the same each time.
+  std::vector<std::vector<IncrementRow>> all[repeats];
+  for (auto& once : all)
+    for (const char* name : methods) {
+      LevelZero level;
+      method(*e, name).solve(scene->problem(), level);
+      once.push_back(level.rows);
+    }
   const std::vector<double> load = load_milliseconds(*scene);
   for (std::size_t k = 0; k <= std::size(changes); ++k) {
     const char* what = k == 0 ? "from the start" : changes[k - 1].what;
     rows[k]["change"] = what;
     rows[k]["load_milliseconds"] = load[k];
     std::printf("%-28s %-9s %21.2f ms\n", what, "load", load[k]);
-    for (std::size_t m = 0; m < all.size(); ++m) {
-      if (k >= all[m].size()) continue;
-      const IncrementRow& r = all[m][k];
-      const double ms = 1e3 * r.seconds / std::max(r.steps, 1);
-      std::printf("%-28s %-9s %8d %12.2f %10.3f %14.8f\n", what, methods[m], r.steps, ms, r.seconds,
-                  r.energy);
-      rows[k][methods[m]] = {{"steps", r.steps},     {"newton_iterations", r.iterations},
-                             {"seconds", r.seconds}, {"milliseconds_a_step", ms},
-                             {"energy", r.energy},   {"force_residual", r.force_residual}};
+    for (std::size_t m = 0; m < std::size(methods); ++m) {
+      if (k >= all[0][m].size()) continue;
+      const IncrementRow& r = all[0][m][k];
+      std::vector<double> seconds;
+      for (const auto& once : all)
+        if (k < once[m].size()) seconds.push_back(once[m][k].seconds);
+      const auto [lowest, highest] = std::minmax_element(seconds.begin(), seconds.end());
+      const double middle = median(seconds), ms = 1e3 * middle / std::max(r.steps, 1);
+      std::printf("%-28s %-9s %8d %12.2f %10.3f %14.8f\n", what, methods[m], r.steps, ms, middle, r.energy);
+      rows[k][methods[m]] = {
+          {"steps", r.steps},          {"newton_iterations", r.iterations}, {"seconds", middle},
+          {"seconds_lowest", *lowest}, {"seconds_highest", *highest},       {"milliseconds_a_step", ms},
+          {"energy", r.energy},        {"force_residual", r.force_residual}};
     }
   }
   if (result_file)
     std::ofstream(result_file) << nlohmann::ordered_json(
                                       {{"commit", commit()},
                                        {"cpu", cpu_name()},
+                                       {"cores", core_count()},
                                        {"threads", thread_count()},
+                                       {"repeats", repeats},
                                        {"vertices", scene->hierarchy.levels[0].vertex_count()},
                                        {"levels", e->parameters.levels},
                                        {"rows", rows}})

@@ -1,10 +1,10 @@
 // Speed of the solver as ratios of times taken in one run, medians of several:
 //
-//     drape_bench_ratios [RESULT.json [RUN_FOLDER]...]
+//     drape_bench_ratios [RESULT.json]
 //
 // Without contact and with it: the finest level's whole Newton iterations against its factorisation and
-// solve, and the steps of PCS's coarsest level against those of the plain coarse model. With folders of
-// finished runs of experiments, also each one's whole PCS progression against its direct fine solve.
+// solve, and the steps of PCS's coarsest level against those of the plain coarse model. Whole progressions
+// are another study, configs/sweeps/progressions.yaml.
 
 #include <cstdio>
 #include <fstream>
@@ -157,28 +157,6 @@ void draped_level(const Experiment& e, const Scene& scene, Table& table) {
   std::printf("\n");
 }
 
-/// Seconds of a phase in all levels of a run.
-double seconds_in(const nlohmann::json& method, const char* phase) {
-  double sum = 0;
-  for (const auto& level : method["levels"]) sum += level["seconds_by_phase"].value(phase, 0.0);
-  return sum;
-}
-
-/// Both to the same force residual; the energies are stored beside the times, since equilibria differ.
-void whole_progression(const std::string& folder, Table& table) {
-  std::ifstream in(folder + "/results.json");
-  if (!in) throw std::runtime_error(folder + "/results.json: cannot be read");
-  const auto methods = nlohmann::json::parse(in)["methods"];
-  const auto &fine = methods["newton"]["levels"].back(), &pcs = methods["pcs"]["levels"].back();
-  std::printf("finest level of %s: energy of PCS %.8f J, of the direct solve %.8f J\n", folder.c_str(),
-              pcs["energy"].get<double>(), fine["energy"].get<double>());
-  table.add(folder + ": whole PCS progression", methods["pcs"]["seconds"], "direct fine solve",
-            fine["seconds"], 0.2);
-  for (const auto& [name, method] : methods.items())
-    table.add(folder + ": analyses of " + name, seconds_in(method, "analyse"), "whole run", method["seconds"],
-              0.1);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -195,7 +173,6 @@ int main(int argc, char** argv) try {
     draped_level(*contact.experiment, *contact.scene, table);
     if (levels == std::string("4")) coarsest_level(*contact.experiment, *contact.scene, 50, table);
   }
-  for (int i = 2; i < argc; ++i) whole_progression(argv[i], table);
   if (argc > 1) {
     nlohmann::ordered_json result = {
         {"benchmark", "ratios"}, {"version", version()},      {"commit", commit()}, {"cpu", cpu_name()},

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,6 +10,7 @@
 #include "core/kernel/model/contact_model.h"
 #include "core/kernel/model/friction.h"
 #include "tests/support/conformance.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;
@@ -152,10 +152,6 @@ void for_each_state(const std::vector<NamedModel>& models, const Body& body) {
   }
 }
 
-Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& a) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 /// Clamped and absolute Hessians are positive semidefinite, the clamped one above the exact one. Returns
 /// whether the exact one is not.
 bool check_projections(const BoundEnergy& energy, const Positions& x) {
@@ -163,10 +159,10 @@ bool check_projections(const BoundEnergy& energy, const Positions& x) {
   const Eigen::MatrixXd clamped = dense(hessian_of(energy, x, Projection::clamp));
   const Eigen::MatrixXd absolute = dense(hessian_of(energy, x, Projection::absolute));
   const double rounding = 1e-12 * absolute.norm();
-  CHECK(eigenvalues(clamped).minCoeff() >= -rounding);
-  CHECK(eigenvalues(absolute).minCoeff() >= -rounding);
-  CHECK(eigenvalues(clamped - exact).minCoeff() >= -rounding);
-  return eigenvalues(exact).minCoeff() < -1e-6 * exact.norm();
+  CHECK(eigenvalues_of(clamped).minCoeff() >= -rounding);
+  CHECK(eigenvalues_of(absolute).minCoeff() >= -rounding);
+  CHECK(eigenvalues_of(clamped - exact).minCoeff() >= -rounding);
+  return eigenvalues_of(exact).minCoeff() < -1e-6 * exact.norm();
 }
 
 /// End states of motions from x that contact has to limit.

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "core/kernel/model/midpoint.h"
 #include "core/kernel/model/refiner.h"
 #include "tests/support/conformance.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;
@@ -111,10 +111,6 @@ std::vector<State> states(const Candidate& candidate, const Level& level) {
   return all;
 }
 
-Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& a) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(a, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
 class Threads {
  public:
   explicit Threads(int count) { set_thread_count(count); }
@@ -183,11 +179,11 @@ TEST_CASE("Projected Hessians are positive semidefinite and lie above the exact 
       const Eigen::MatrixXd clamped = dense(hessian_of(energy, s.x, Projection::clamp));
       const Eigen::MatrixXd absolute = dense(hessian_of(energy, s.x, Projection::absolute));
       const double rounding = 1e-12 * absolute.norm();
-      CHECK(eigenvalues(clamped).minCoeff() >= -rounding);
-      CHECK(eigenvalues(absolute).minCoeff() >= -rounding);
-      CHECK(eigenvalues(clamped - exact).minCoeff() >= -rounding);
-      CHECK(eigenvalues(absolute - clamped).minCoeff() >= -rounding);
-      indefinite += eigenvalues(exact).minCoeff() < -1e-6 * exact.norm();
+      CHECK(eigenvalues_of(clamped).minCoeff() >= -rounding);
+      CHECK(eigenvalues_of(absolute).minCoeff() >= -rounding);
+      CHECK(eigenvalues_of(clamped - exact).minCoeff() >= -rounding);
+      CHECK(eigenvalues_of(absolute - clamped).minCoeff() >= -rounding);
+      indefinite += eigenvalues_of(exact).minCoeff() < -1e-6 * exact.norm();
     }
   });
   REQUIRE(indefinite > 0);  // else nothing was projected

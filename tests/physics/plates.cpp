@@ -1,12 +1,12 @@
 // Plates under small loads, by every bending model on every triangulation. In the plane state bending sees
 // deflections alone, so that its exact Hessian there gives a linear problem for them.
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/kernel/mesh/generate.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 
@@ -204,8 +204,7 @@ TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and 
           k.row(number[v]) *= scale;
           k.col(number[v]) *= scale;
         }
-      const Eigen::VectorXd found =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+      const Eigen::VectorXd found = eigenvalues_of(k);
       row("%14s %10s  1st %.4f  2nd %.4f  5th %.4f  10th %.4f  20th %.4f", triangulation.c_str(),
           model.name.c_str(), found[0] / expected[0], found[1] / expected[1], found[4] / expected[4],
           found[9] / expected[9], found[19] / expected[19]);

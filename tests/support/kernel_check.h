@@ -1,12 +1,13 @@
 #pragma once
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <catch2/catch.hpp>
 #include <functional>
 #include <random>
 
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/evaluate.h"
 
 // What every element kernel owes (see core/kernel/elements/element_energy.h), for one state of one element. A
@@ -113,7 +114,7 @@ struct KernelCheck {
                             const std::function<Eigen::MatrixXd(const Hessian&)>& matrix_of = by_vertices) {
     const Hessian h = evaluate(x, rest).hessian;
     const Eigen::MatrixXd full = matrix_of(h);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full);
+    const Eigenpairs eigen = eigenpairs_of(full);
     using drape::Projection;
     for (const Projection projection :
          {Projection(Projection::clamp), Projection(Projection::absolute), Projection(Projection::none),
@@ -127,19 +128,17 @@ struct KernelCheck {
       Hessian projected;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) projected(i, j) = first_lane(a(i, j));
-      Eigen::VectorXd values = eigen.eigenvalues();
+      Eigen::VectorXd values = eigen.values;
       const double blend = projection.blend;
       if (projection.kind == Projection::clamp) values = (1 - blend) * values + blend * values.cwiseMax(0);
       if (projection.kind == Projection::absolute) values = (1 - blend) * values + blend * values.cwiseAbs();
-      const Eigen::MatrixXd expected =
-          eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+      const Eigen::MatrixXd expected = eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
       CHECK((matrix_of(projected) - expected).norm() <= 1e-10 * full.norm());
       if (projection.kind == Projection::none || blend < 1) continue;
-      const double smallest =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix_of(projected)).eigenvalues()[0];
+      const double smallest = eigenvalues_of(matrix_of(projected))[0];
       CHECK(smallest >= -1e-12 * full.norm());
     }
-    return eigen.eigenvalues()[0] / full.norm();
+    return eigen.values[0] / full.norm();
   }
 
  private:

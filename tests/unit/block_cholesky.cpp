@@ -1,12 +1,12 @@
 #include "core/kernel/linear_algebra/block_cholesky.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <limits>
 
 #include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/dense_matrix.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/random_block_matrix.h"
 
 using namespace drape;
@@ -167,8 +167,7 @@ TEST_CASE("Block Cholesky detects indefinite matrices up to round-off", "[choles
   const LinearSolver solver = any_solver();
   for (const auto& [n, stencils] : {std::pair(144, shell(12, 4)), std::pair(120, tangle(120, 500, 4))}) {
     const BlockMatrix a = random_matrix(n, stencils, 6);
-    const double smallest =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(a), Eigen::EigenvaluesOnly).eigenvalues()[0];
+    const double smallest = eigenvalues_of(dense(a))[0];
     BlockCholesky cholesky(solver);
     cholesky.analyse(a.pattern, std::vector<char>(n, 0));
     REQUIRE(cholesky.factorise(a, Eigen::VectorXd::Constant(n, -smallest + 1e-9)));

@@ -1,6 +1,5 @@
 #include "core/kernel/contact/vertex_contacts.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <limits>
 
@@ -64,7 +63,7 @@ TEST_CASE("vertex contacts: the barrier and its derivatives") {
   CHECK((differences(gradient, x, 1e-7) - h).norm() <= 1e-6 * h.norm());
   const auto lowest = [&](Projection projection) {
     const Eigen::MatrixXd matrix = dense(hessian_of(*collisions, x, projection));
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues()[0];
+    return eigenvalues_of(matrix)[0];
   };
   CHECK(lowest(Projection::none) < -1e-3 * h.norm());
   CHECK(lowest(Projection::clamp) >= -1e-12 * h.norm());

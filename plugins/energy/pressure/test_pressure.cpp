@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
@@ -73,14 +72,13 @@ TEST_CASE("pressure: projection is that of every edge's matrix") {
         one.block<3, 3>(3 * i, 3 * j) = exact.block<3, 3>(3 * i, 3 * j);
         one.block<3, 3>(3 * j, 3 * i) = exact.block<3, 3>(3 * j, 3 * i);
         edges += one.norm() > 0;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(one);
+        const Eigenpairs eigen = eigenpairs_of(one);
         const auto with = [&](const Eigen::VectorXd& lifted) {
-          const Eigen::VectorXd values = (1 - blend) * eigen.eigenvalues() + blend * lifted;
-          return Eigen::MatrixXd(eigen.eigenvectors() * values.asDiagonal() *
-                                 eigen.eigenvectors().transpose());
+          const Eigen::VectorXd values = (1 - blend) * eigen.values + blend * lifted;
+          return Eigen::MatrixXd(eigen.vectors * values.asDiagonal() * eigen.vectors.transpose());
         };
-        clamped += with(eigen.eigenvalues().cwiseMax(0));
-        absolute += with(eigen.eigenvalues().cwiseAbs());
+        clamped += with(eigen.values.cwiseMax(0));
+        absolute += with(eigen.values.cwiseAbs());
       }
     REQUIRE(edges == 5);
     const auto found = [&](Projection::Kind kind) { return dense(hessian_of(*energy, x, {kind, blend})); };

@@ -1,0 +1,261 @@
+"""What pages say of the records: BLOCKS, by name, give the lines of a table, VALUES the figures within sentences.
+
+A function of a record that is not stored raises FileNotFoundError; fill_figures then says so in its place."""
+
+import re
+
+from records import RESULTS, conditions, figure, median, read, seconds_text
+
+METHODS = ["pcs", "cascadic", "newton"]
+
+
+def table(head, rows, record, right=""):
+    """A Markdown table below the comment that tests/unit/docs_figures.cpp reads; `right` has an r for each column of numbers."""
+    rule = "|".join("---:" if k < len(right) and right[k] == "r" else "---" for k in range(len(head)))
+    lines = [f"<!-- record: {' '.join('benchmarks/results/' + name for name in record)} -->"]
+    return lines + ["| " + " | ".join(head) + " |", f"|{rule}|"] + ["| " + " | ".join(row) + " |" for row in rows]
+
+
+def runs(study, method, scene=None, variant=None):
+    found = [r for r in read(f"{study}.json") if r["method"] == method and scene in (None, r["scene"])
+             and variant in (None, r["variant"])]
+    if not found:
+        raise KeyError(f"{study}, {method}")
+    return found
+
+
+def of(records, key):
+    return median([r[key] for r in records])
+
+
+def iterations(records):
+    return [median(level) for level in zip(*(r["iterations"] for r in records))]
+
+
+def preview(records, measure, part="preview"):
+    return figure(median([r[part][measure] for r in records]))
+
+
+def sphere(columns):
+    """A row a method of the sphere to 98K vertices."""
+    direct = of(runs("sphere", "newton"), "tflop")
+    cells = {
+        "iterations": lambda r: ", ".join(figure(n) for n in iterations(r)),
+        "preview [s]": lambda r: seconds_text([x["seconds_of_preview"] for x in r]),
+        "in all [s]": lambda r: seconds_text([x["seconds"] for x in r]),
+        "flops, of direct": lambda r: figure(of(r, "tflop") / direct, 2),
+        "final energy [J]": lambda r: figure(of(r, "energy"), 6),
+        "preview: RMS from its end [diagonals]": lambda r: preview(r, "distance_rms"),
+        "overlap of outlines": lambda r: preview(r, "silhouette_overlap"),
+        "energy above end [J]": lambda r: preview(r, "energy_above_end"),
+        "level 1: RMS": lambda r: preview(r, "distance_rms", "level_1")}
+    rows = [[m] + [cells[c](runs("sphere", m)) for c in columns] for m in METHODS]
+    return table(["method"] + ["Newton iterations by level" if c == "iterations" else c for c in columns], rows,
+                 ["sphere.md", "sphere.json"], "ll" + "r" * (len(columns) - 1))
+
+
+def scenes(study, columns):
+    """PCS, the cascadic method and the direct solve, a row a scene: the columns of the study's summary that are asked for."""
+    lines = [line for line in (RESULTS / f"{study}.md").read_text().splitlines() if line.startswith("|")]
+    head = [c.strip() for c in lines[0].strip("|").split("|")]
+    rows = []
+    for line in lines[2:]:
+        cells = [c.strip() for c in line.strip("|").split("|")]
+        if len(cells) != len(head) or cells[0] == "method":
+            break
+        rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
+    right = "l" + "".join("r" if c in ("preview's time, of cascadic's", "final energy, less cascadic's [J]") else "l" for c in columns)
+    return table(["scene"] + columns, rows, [f"{study}.md"], right)
+
+
+def chosen_scenes():
+    """Some of the scenes of the supplement's Table 2, small to large."""
+    lines = [line for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
+    head, *rows = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
+    columns = ["run", "vertices", "steps", "seconds", "energy", "smallest_gap", "largest_stretch", "intersections"]
+    by_name = {row[0]: [row[head.index(c)] for c in columns] for row in rows}
+    names = ["ribbon", "sphere", "cube", "tablecloth", "armadillo", "bunny", "sphere_fine", "dragon"]
+    return table(columns, [by_name[n] for n in names], ["scenes.md"], "lrrrrrrr")
+
+
+def table1():
+    """A row a scene of the supplement's Table 1: on how many rows the first method is best, iterations, builds."""
+    text = (RESULTS / "table1.md").read_text()
+    rows = []
+    for scene, entry in read("table1.json").items():
+        methods = entry["methods"]
+        best = re.search(rf"^## {scene}[:,].*?(\w+) is best on (\d+ of \d+) rows", text, re.M | re.S)
+        finest = ", ".join(f"{m} {r['iterations_by_level'][-1]}" for m, r in methods.items())
+        builds = {}
+        for m, r in methods.items():
+            builds.setdefault(r["commit"], []).append(m)
+        most = max(builds, key=lambda c: len(builds[c]))
+        build = "; ".join([most] + [f"{', '.join(builds[c])}: {c}" for c in builds if c != most])
+        first = next(iter(methods.values()))
+        rows.append([scene, str(first["vertices_by_level"][-1]), f"{best[1]}, {best[2]}" if best else "–", finest, build])
+    return table(["scene", "vertices", "best on rows", "iterations on the finest level", "build"], rows, [], "lr")[1:]
+
+
+def remedies():
+    """Newton iterations of each remedy that is a choice: three small scenes one by one, the sum of the large ones."""
+    small, large = {}, {}
+    for r in read("hard_remedies.json"):
+        scene, remedy = r["run"].split(", ", 1)
+        if r["sweep"] == "hard_remedies":
+            small.setdefault(remedy, {})[scene.removeprefix("hard_")] = r["iterations"]
+        else:
+            large[remedy] = large.get(remedy, 0) + r["iterations"]
+    scenes_of = list(next(iter(small.values())))
+    rows = [[remedy] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
+            for remedy, of_scene in small.items()]
+    # No comment for docs_figures: the sums stand in no record.
+    return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
+
+
+def interpolation():
+    rows = []
+    variants = [("midpoint", m, m) for m in METHODS] + [("refiner", "pcs_loop", "pcs_loop")] + [
+        (v, "pcs", "pcs, " + v.replace("_", " ")) for v in ("bending_by_the_refiner", "target_one_level_up")]
+    direct = runs("interpolation", "newton", "sphere", "midpoint")
+    for variant, method, name in variants:
+        r = runs("interpolation", method, "sphere", variant)
+        rows.append([name, ", ".join(figure(n) for n in iterations(r)), figure(iterations(r)[-1] / iterations(direct)[-1], 2),
+                     figure(of(r, "tflop") / of(direct, "tflop"), 2)]
+                    + [preview(r, m) for m in ("distance_rms", "silhouette_overlap", "energy_above_end")])
+    return table(["method", "iterations by level", "finest, of direct", "flops in all, of direct", "preview: RMS", "overlap",
+                  "energy above end [J]"], rows, ["interpolation.md"], "llrrrrr")
+
+
+def progressions():
+    """The whole of PCS's levels over the direct solve's finest level, in time; start by start."""
+    rows = []
+    for scene in ("pinned_square", "sphere"):
+        for variant in ("default", "early_refinement"):
+            pairs = {}
+            for method in ("pcs", "newton"):
+                for r in runs("progressions", method, scene, variant):
+                    pairs.setdefault(r["seed"], {})[method] = r
+            ratios = [p["pcs"]["seconds"] / p["newton"]["seconds"] for p in pairs.values() if len(p) == 2]
+            first = next(iter(pairs.values()))["pcs"]
+            rows.append([scene, str(first["vertices"]), variant.replace("_", " "),
+                         f"{figure(median(ratios), 2)} ({figure(min(ratios), 2)}–{figure(max(ratios), 2)})"])
+    # No comment for docs_figures: ratios start by start stand in no record.
+    return table(["scene", "vertices", "coarse levels", "PCS in all, of direct"], rows, [], "lrlr")[1:]
+
+
+def ratios():
+    rows = [[r["what"], r["against"], figure(r["ratio"], 2)] for r in read("ratios.json")["rows"]
+            if not r["what"].startswith("results/")]
+    return table(["what", "over", "ratio"], rows, ["ratios.json"], "llr")
+
+
+def changes():
+    rows = []
+    for r in read("changes.json")["rows"]:
+        cells = [r["change"].replace(" x ", " × ")]
+        for method in ("pcs", "newton"):
+            cells += [str(r[method]["newton_iterations"]), figure(r[method]["seconds"], 2)]
+        rows.append(cells)
+    return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, ["changes.json"], "lrrrr")
+
+
+def scale():
+    record = read("scale.json")
+    mean = lambda r: f"{figure(r['seconds'], 2)} ({figure(r['seconds_lowest'], 2)}–{figure(r['seconds_highest'], 2)})"  # noqa: E731
+    rows = [[str(r["vertices"]), figure(r["iterations"]), mean(r), figure(r["peak_bytes"] / 1e9, 2)] for r in record["rows"]]
+    million = record["million"]
+    if "stopped_by" not in million:
+        rows.append([str(million["vertices"]), figure(million["iterations"]), figure(million["seconds"], 2),
+                     figure(million["peak_bytes"] / 1e9, 2)])
+    exponents = record["exponents"]
+    rows.append(["exponent", "", figure(exponents["seconds"], 3), figure(exponents["peak_bytes"], 3)])
+    lines = table(["vertices", "iterations", "seconds an iteration", "peak memory [GB]"], rows, [], "rrrr")[1:]
+    if "stopped_by" in million:
+        lines += ["", f"A million vertices: {million['stopped_by']}."]
+    largest = record["rows"][-1]
+    phases = sorted(largest["by_phase"].items(), key=lambda p: -p[1])
+    rows = [[phase, figure(100 * s / largest["seconds"], 2), figure(exponents[phase], 3)] for phase, s in phases
+            if s > 0.005 * largest["seconds"]]
+    return lines + [""] + table([f"phase, at {largest['vertices']} vertices", "% of an iteration", "exponent"], rows, [], "lrr")[1:]
+
+
+STUDIES = [
+    ("[sphere to 98K](previews.md#the-sphere-to-98k-vertices)", "sphere.md"),
+    ("[progressions](speed.md#whole-progressions)", "progressions.md"),
+    ("[ratios](speed.md#ratios)", "ratios.json"),
+    ("[changes](speed.md#changes-of-a-parameter)", "changes.json"),
+    ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
+    ("[scale](speed.md#scale)", "scale.json"),
+    ("[six scenes to 5.9K](previews.md#six-scenes-five-starts)", "previews.md"),
+    ("[interpolation](previews.md#the-choice-of-interpolation)", "interpolation.md"),
+    ("[four levels](previews.md#four-levels)", "four_levels.md"),
+    ("[ablations](ablations.md)", "sweeps/sphere_ablation/report.html"),
+    ("[hard cases](hard-cases.md)", "hard.md"),
+    ("[remedies](hard-cases.md#remedies)", "hard_remedies.md"),
+    ("[Table 1](table1.md)", "table1.md"),
+    ("[Table 1, two levels](table1.md)", "table1_levels_2.md"),
+    ("[scenes](scenes.md)", "scenes.md"),
+    ("[scenes, three levels](scenes.md)", "scenes_levels_3.md"),
+    ("the paper's settings", "papers_settings.md"),
+    ("the dragon, by decrements", "dragon_decrements.md"),
+]
+
+
+def studies():
+    rows = []
+    for title, record in STUDIES:
+        known = (RESULTS / record).exists()
+        rows.append([title, f"[{record.rsplit('/')[-1]}](../../benchmarks/results/{record})" if known else "–", conditions(record)])
+    rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "each build"])
+    return table(["study", "record", "how it was measured"], rows, [])[1:]
+
+
+def solves(*names):
+    """Number of solves of studies, and of those with an intersection."""
+    records = [r for name in names for r in read(f"{name}.json")]
+    return len(records), sum(r["intersections"] > 0 for r in records)
+
+
+def row_count(name):
+    """Rows of a table of runs and how many pass; no state of them may be missing."""
+    rows = read(name)
+    return f"{sum(r['pass'] for r in rows)} of {len(rows)}"
+
+
+TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs / cascadic / direct",
+       "flops in all, of direct: pcs / cascadic", "final energy, less cascadic's [J]"]
+
+BLOCKS = {
+    "sphere": lambda: sphere(["iterations", "preview [s]", "in all [s]", "flops, of direct", "final energy [J]",
+                              "preview: RMS from its end [diagonals]", "overlap of outlines"]),
+    "sphere in full": lambda: sphere(["iterations", "preview [s]", "in all [s]", "flops, of direct", "final energy [J]",
+                                      "preview: RMS from its end [diagonals]", "overlap of outlines", "energy above end [J]",
+                                      "level 1: RMS"]),
+    "six scenes": lambda: scenes("previews", [TOP[0], "preview's time, of cascadic's", *TOP[2:]]),
+    "six scenes in full": lambda: scenes("previews", TOP),
+    "four levels": lambda: scenes("four_levels", [
+        "starts", TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "flops in all, of cascadic", TOP[-1]]),
+    "chosen scenes": chosen_scenes,
+    "table 1": table1,
+    "remedies": remedies,
+    "interpolation": interpolation,
+    "progressions": progressions,
+    "ratios": ratios,
+    "changes": changes,
+    "scale": scale,
+    "studies": studies,
+}
+
+VALUES = {
+    **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
+    **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
+        [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
+    "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
+    "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
+    "hard cases that pass": lambda: row_count("hard.json"),
+    "remedies that pass": lambda: row_count("hard_remedies.json"),
+    "preview of pcs_loop on the pinned square": lambda: preview(runs("interpolation", "pcs_loop", "pinned_square", "refiner"), "distance_rms"),
+    "preview of pcs on the pinned square": lambda: preview(runs("interpolation", "pcs", "pinned_square", "midpoint"), "distance_rms"),
+    "finest of pcs_loop on the pinned square": lambda: figure(iterations(runs("interpolation", "pcs_loop", "pinned_square", "refiner"))[-1]),
+    "finest of pcs on the pinned square": lambda: figure(iterations(runs("interpolation", "pcs", "pinned_square", "midpoint"))[-1]),
+}

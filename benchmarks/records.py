@@ -1,0 +1,79 @@
+"""Stored records, benchmarks/results/*, and the stamps that say how each was made (results/stamps.json)."""
+
+import json
+import statistics
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "benchmarks/results"
+CONVERGED = ["converged", "converged_to_rounding"]
+# One experiment under two names: the second is not run again, and shares the first one's record.
+TWINS = {"triangulation_1": "materials_2", "materials_3": "sphere_fine"}
+
+
+def figure(value, digits=3):
+    return "–" if value is None else f"{value:.{digits}g}".replace("e-0", "e-").replace("e+0", "e")
+
+
+def median(values):
+    known = [v for v in values if v is not None]
+    return statistics.median(known) if known else None
+
+
+def seconds_text(values):
+    """The median to two digits or to the second, with the range where there are several values."""
+    values = [v for v in values if v is not None]
+    if not values:
+        return "–"
+    text = lambda v: figure(v, 2) if v < 99.5 else f"{v:.0f}"  # noqa: E731
+    low, high = text(min(values)), text(max(values))
+    return text(median(values)) + (f" ({low}–{high})" if low != high else "")
+
+
+def read(name):
+    return json.loads((RESULTS / name).read_text())
+
+
+def write_json(path, value):
+    path.write_text(json.dumps(value, indent=1, ensure_ascii=False) + "\n")
+
+
+def stamps():
+    """{"build": the commit of the last `make results`, "records": {name: stamp}}."""
+    return read("stamps.json")
+
+
+def conditions(name):
+    """A record's stamp in words: "3 starts, 2 threads, Intel Xeon with 2 cores, commit 0123abc"."""
+    all_stamps = stamps()
+    stamp = all_stamps["records"].get(name)
+    if stamp is None:
+        return "no record yet"
+    count = lambda n, what: f"{n} {what}" + ("" if n == 1 else "s")  # noqa: E731
+    parts = [count(stamp["starts"], "start")] if stamp.get("starts") else []
+    parts += [count(stamp["threads"], "thread")] if stamp.get("threads") else []
+    if stamp.get("cpu"):
+        cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "")
+        parts.append(f"{cpu} with {count(stamp['cores'], 'core')}" if stamp.get("cores") else cpu)
+    if stamp.get("commit"):
+        parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", an earlier build"))
+    else:
+        parts.append(stamp.get("note", "build not recorded"))
+    if stamp.get("runs_at_a_time", 1) > 1:
+        parts.append(f"{stamp['runs_at_a_time']} runs at a time")
+    elif stamp.get("load_before") is not None and not idle(stamp):
+        parts.append(f"beside other work (load {figure(stamp['load_before'], 2)} before)")
+    elif stamp.get("busy"):
+        parts.append("beside other work")
+    return ", ".join(parts)
+
+
+def record_files():
+    """Every file in benchmarks/results that is a record, by its name in stamps.json."""
+    found = {str(f.relative_to(RESULTS)) for f in RESULTS.rglob("*") if f.is_file()}
+    return sorted(found - {"stamps.json"} - {name for name in found if name.endswith("/sweep.json")})
+
+
+def idle(stamp):
+    """Nothing else ran before, nor, but for the study's own threads, at its end."""
+    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["threads"] + 0.3

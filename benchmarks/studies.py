@@ -1,0 +1,72 @@
+"""The studies of `make results`, in the order in which they run.
+
+A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or
+only its iterations and flops (one thread a run, a run a core); `starts`; the commands that `run` it in {out}, which go on
+where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
+benchmarks/results; `meshes` of data/ that it needs; commands to `attempt`, whose refusal is what is recorded.
+"""
+
+MESHES = ["bunny.ply", "armadillo.ply"]
+ABLATIONS = ["methods_pinned_square", "methods_sphere", "methods_bunny", "sphere_ablation"]
+RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
+METHOD_COLUMNS = "run,method,outcome,vertices,iterations,seconds,energy,intersections"
+
+
+def sweep(name, out="{out}"):
+    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
+
+
+def previews(name, what, starts, timed=False, meshes=()):
+    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name)],
+            "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
+
+
+def table(name, what, starts, columns, timed=True, meshes=()):
+    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name)], "twins": True,
+            "gather": [[">{results}/" + name + ".md", "{drape}", "table", "{out}", "--columns", columns]],
+            "records": [f"{name}.md"]}
+
+
+def program(name, what):
+    return {"what": what, "timed": True, "run": [["{build}/bin/drape_bench_" + name, "{out}/" + name + ".json"]],
+            "gather": [["cp", "{out}/" + name + ".json", "{results}/"]], "records": [f"{name}.json"]}
+
+
+HARD = ["closing", "contact", "dragged", "folded", "friction", "material", "mesh", "pins", "remedies", "remedies_draped",
+        "same_shape", "sleeve", "steps", "time"]
+
+STUDIES = {
+    "sphere": previews("sphere", "the sphere to 98K vertices, three methods", 3, timed=True),
+    "progressions": previews("progressions", "whole progressions against direct solves", 3, timed=True),
+    "ratios": program("ratios", "parts of an iteration against each other"),
+    "changes": program("changes", "what a change of a parameter costs"),
+    "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices"),
+    "scale": {
+        "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
+        "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million")],
+        "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
+    "papers_settings": table("papers_settings", "PCS against direct, the paper's settings and ours", 3, METHOD_COLUMNS),
+    "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
+    "interpolation": previews("interpolation", "the choice of interpolation", 3),
+    "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
+    "ablations": {
+        "what": "one choice changed at a time", "timed": False, "starts": 3, "meshes": ["bunny.ply"],
+        "run": [sweep(name, "{out}/" + name) for name in ABLATIONS],
+        "gather": [command for name in ABLATIONS for command in (
+            ["{drape}", "report", "{out}/" + name], ["mkdir", "-p", "{results}/sweeps/" + name],
+            ["cp", "{out}/" + name + "/report.html", "{out}/" + name + "/sweep.json", "{results}/sweeps/" + name])],
+        "records": [f"sweeps/{name}/report.html" for name in ABLATIONS]},
+    "hard": {
+        "what": "the hard cases", "timed": False, "starts": 1,
+        "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
+        "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
+        "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
+    "table1": {
+        "what": "the supplement's Table 1", "timed": True, "starts": 1, "meshes": MESHES,
+        "run": [["benchmarks/table1", "--drape", "{drape}", "--out", "{out}"]],
+        "gather": [["cp", "{out}/table1.json", "{out}/table1.md", "{results}/"]], "records": ["table1.json", "table1.md"]},
+    "scenes": table("scenes", "every scene of the supplement's Table 2", 1, RUN_COLUMNS,
+                    meshes=[*MESHES, "bear.ply", "dragon.ply"]),
+    "dragon_decrements": table("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, METHOD_COLUMNS,
+                               meshes=["dragon.ply"]),
+}

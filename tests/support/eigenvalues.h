@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+// Eigen's solver for symmetric matrices of any size, compiled once for all tests (tests/eigenvalues.cpp):
+// each file that instantiates it takes seconds longer.
+
+/// Eigenvalues of a symmetric matrix, in ascending order.
+Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& symmetric);
+
+/// A symmetric matrix as vectors · diag(values) · vectorsᵀ, values in ascending order.
+struct Eigenpairs {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+Eigenpairs eigenpairs_of(const Eigen::MatrixXd& symmetric);
