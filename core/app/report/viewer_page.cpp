@@ -29,19 +29,20 @@ std::string viewer_page(const RunData& run) {
   return page(run.experiment, view.section, view.scripts);
 }
 
-std::string viewer_page(const std::string& title, const TriangleMesh& cloth,
+std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
                         const std::vector<TriangleMesh>& obstacles) {
-  const std::vector<Level> levels = {Level::of(0, cloth)};
+  std::vector<Level> levels = {level};
+  levels.front().index = 0;  // the only one of its document
   std::string blocks;
   ViewDocument document(
       levels, obstacles, false,
       [&](const std::string& name, const std::string& bytes) { blocks += block_element(name, bytes); });
-  const SurfaceFields fields = document.fields(0, cloth.vertices);
+  const SurfaceFields fields = document.fields(0, x);
   document.set_ranges({&fields});
   using Json = ViewDocument::Json;
-  const Json state = document.state("state", cloth.vertices, fields);
-  const Json level = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};
-  const Json method = {{"name", title}, {"levels", Json::array({level})}};
+  const Json state = document.state("state", x, fields);
+  const Json entry = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};
+  const Json method = {{"name", title}, {"levels", Json::array({entry})}};
   return page(title, std::string(Embedded::viewer_html()),
               document_element(document.document(title, Json::array({method}))) + blocks + viewer_scripts());
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/app/report/run_data.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/model/level.h"
 
 namespace drape {
 
@@ -12,8 +12,8 @@ namespace drape {
 /// std::runtime_error with the reason if the run has nothing to show.
 std::string viewer_page(const RunData& run);
 
-/// The same of one state: the cloth (positions n×3 [m] and triangles) and obstacles.
-std::string viewer_page(const std::string& title, const TriangleMesh& cloth,
+/// The same of one state x (n×3) [m] of a level, with obstacles.
+std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
                         const std::vector<TriangleMesh>& obstacles);
 
 }  // namespace drape

@@ -18,7 +18,7 @@ std::unique_ptr<SteeredSolve> SteeredSolve::begin(ConfigNode source, const std::
   if (chosen.size() != 1) throw std::runtime_error("name one method to iterate, not all");
   std::unique_ptr<SteeredSolve> s(new SteeredSolve);
   s->method_ = chosen.front();
-  s->experiment_ = std::make_unique<const Experiment>(std::move(*experiment));
+  s->experiment_ = std::make_shared<const Experiment>(std::move(*experiment));
   s->scene_ = build_scene(*s->experiment_, errors);
   if (!s->scene_) return nullptr;
   s->solve_ = std::make_unique<SteppedSolve>(s->experiment_->solver_of(s->method_), s->scene_->problem(),
@@ -37,7 +37,7 @@ bool SteeredSolve::set(const std::string& key, const std::string& value, ConfigE
   from.level = solve_->row().level;
   refuse_other_cloth(*experiment_, *changed, from.level, errors);
   if (!errors.empty()) return false;
-  auto experiment = std::make_unique<const Experiment>(std::move(*changed));
+  auto experiment = std::make_shared<const Experiment>(std::move(*changed));
   std::shared_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
   if (scene) warm_start_scene(*experiment, *scene, from.level, solve_->x(), errors);
   if (!errors.empty()) return false;

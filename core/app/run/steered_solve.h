@@ -22,7 +22,7 @@ class SteeredSolve {
 
   /// The solve since the last change of a parameter: its rows, state and levels.
   SteppedSolve& solve() { return *solve_; }
-  const Experiment& experiment() const { return *experiment_; }
+  const std::shared_ptr<const Experiment>& experiment() const { return experiment_; }
   const std::shared_ptr<const Scene>& scene() const { return scene_; }
   const std::string& method() const { return method_; }
 
@@ -36,7 +36,7 @@ class SteeredSolve {
   SteeredSolve() = default;
 
   std::string method_;
-  std::unique_ptr<const Experiment> experiment_;
+  std::shared_ptr<const Experiment> experiment_;
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<SteppedSolve> solve_;  // last: it refers to the others
 };
