@@ -5,6 +5,7 @@
 #               armadillo need `make data`); SCENES="sphere cube" LEVELS=3 choose some and fewer levels
 # make scenes   run every scene of configs, the supplement's Table 2, by PCS, or go on with it, and write one table of them (needs
 #               `make data`; to their finest levels many hours): LEVELS=2 goes to at most so many
+# make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
@@ -27,7 +28,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build demo table1 scenes test fuzz extremes data bench hard pictures format fix-format lint clean
+.PHONY: all setup configure build python demo table1 scenes test fuzz extremes data bench hard pictures format fix-format lint clean
 all: build
 
 setup:
@@ -37,6 +38,10 @@ configure: setup
 	@cmake --preset $(PRESET) --log-level=WARNING >/dev/null
 
 build: configure
+	@cmake --build $(BUILD) -j $(JOBS)
+
+python: configure
+	@cmake --preset $(PRESET) --log-level=WARNING -DDRAPE_PYTHON=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS)
 
 demo: build

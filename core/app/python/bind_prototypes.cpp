@@ -129,7 +129,7 @@ void bind_solver_problem(py::module_& m) {
           "iteration",
           [](SolverProblem& p, const py::object& values, std::optional<double> energy,
              std::optional<double> force_residual, double step_length) {
-            return p.iteration(positions_of(values, -1, "x"), energy, force_residual, step_length);
+            return p.iteration(positions_of(values, p.vertex_count(), "x"), energy, force_residual, step_length);
           },
           py::arg("x"), py::arg("energy") = py::none(), py::arg("force_residual") = py::none(),
           py::arg("step_length") = 1.0,
@@ -138,7 +138,7 @@ void bind_solver_problem(py::module_& m) {
       .def(
           "end",
           [](SolverProblem& p, const py::object& x, const std::string& status, const std::string& message) {
-            p.end(positions_of(x, -1, "x"), status, message);
+            p.end(positions_of(x, p.vertex_count(), "x"), status, message);
           },
           py::arg("x"), py::arg("status") = "converged", py::arg("message") = "", "End the level.");
 }

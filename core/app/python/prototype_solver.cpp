@@ -36,6 +36,11 @@ Positions SolverProblem::prolong(int level, const Positions& x) const {
   return problem().prolong(problem().hierarchy.linear[checked(level)], level, x);
 }
 
+int SolverProblem::vertex_count() const {
+  if (!under_way_) throw std::runtime_error("begin a level before its iterations and its end");
+  return problem().models[under_way_->level]->level().vertex_count();
+}
+
 void SolverProblem::begin(int level) {
   if (under_way_) throw std::runtime_error("end the level before beginning another");
   under_way_.emplace();
@@ -48,10 +53,8 @@ void SolverProblem::begin(int level) {
 
 bool SolverProblem::iteration(const Positions& x, std::optional<double> energy,
                               std::optional<double> force_residual, double step_length) {
-  const Problem& of = problem();
-  if (!under_way_) throw std::runtime_error("begin a level before its iterations");
+  const LevelModel& model = *problem().models[under_way_->level];
   const py::gil_scoped_release released;
-  const LevelModel& model = *of.models[under_way_->level];
   IterationRow row;
   row.level = under_way_->level;
   row.step = under_way_->steps = ++under_way_->iterations;
@@ -65,8 +68,6 @@ bool SolverProblem::iteration(const Positions& x, std::optional<double> energy,
 }
 
 void SolverProblem::end(const Positions& x, const std::string& status, const std::string& message) {
-  problem();
-  if (!under_way_) throw std::runtime_error("begin a level before its end");
   under_way_->outcome = outcome_of(status);
   under_way_->message = message;
   under_way_->x = x;

@@ -20,7 +20,9 @@ class SolverProblem {
   Positions prolong(int level, const Positions& x) const;
 
   void begin(int level);
-  /// Returns whether to go on: false after a request to stop.
+  /// Vertices of the level that has begun. Throws std::runtime_error without one.
+  int vertex_count() const;
+  /// x is vertex_count()×3. Returns whether to go on: false after a request to stop.
   bool iteration(const Positions& x, std::optional<double> energy, std::optional<double> force_residual,
                  double step_length);
   void end(const Positions& x, const std::string& status, const std::string& message);
