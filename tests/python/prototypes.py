@@ -106,8 +106,8 @@ class Midpoint(drape.Refiner):
         n, edges, t = level.vertex_count, level.edges, level.triangles
         a, b, c = (n + level.triangle_edges).T  # opposite the corners 0, 1, 2
         triangles = numpy.stack([
-            numpy.stack([t[:, 0], c, b], axis=1), numpy.stack([t[:, 1], a, c], axis=1),
-            numpy.stack([t[:, 2], b, a], axis=1), numpy.stack([a, b, c], axis=1)], axis=1).reshape(-1, 3)
+            numpy.stack([t[:, 0], c, b], axis=1), numpy.stack([c, t[:, 1], a], axis=1),
+            numpy.stack([b, a, t[:, 2]], axis=1), numpy.stack([a, b, c], axis=1)], axis=1).reshape(-1, 3)
         rows = numpy.repeat(numpy.arange(len(edges)), 2)
         half = scipy.sparse.csr_matrix((numpy.full(2 * len(edges), 0.5), (rows, edges.ravel())),
                                        shape=(len(edges), n))

@@ -6,15 +6,16 @@ namespace drape::python {
 
 namespace {
 
-/// An array of anything that numpy takes. Throws TypeError unless its kind is among `kinds` (numpy's letters).
+/// An array of anything that numpy takes. Throws TypeError unless its kind is among `kinds` (numpy's
+/// letters).
 py::array array_of_kind(const py::handle& values, const std::string& kinds, const std::string& name,
                         const std::string& wanted) {
   const py::array array = py::array::ensure(values);
   if (!array) PyErr_Clear();
   if (!array || kinds.find(array.dtype().kind()) == kinds.npos)
-    throw py::type_error(name + " must be an array of " + wanted + ", not " +
-                         (array ? "of " + std::string(py::str(array.dtype()))
-                                : std::string(py::str(py::type::of(values)))));
+    throw py::type_error(
+        name + " must be an array of " + wanted + ", not " +
+        (array ? "of " + std::string(py::str(array.dtype())) : std::string(py::str(py::type::of(values)))));
   return array;
 }
 

@@ -16,9 +16,8 @@ namespace py = pybind11;
 /// A numpy array over numbers that `owner` keeps alive, without a copy.
 template <class Number>
 py::array array_over(const Number* data, std::vector<py::ssize_t> shape, std::shared_ptr<const void> owner) {
-  const py::capsule base(new std::shared_ptr<const void>(std::move(owner)), [](void* held) {
-    delete static_cast<std::shared_ptr<const void>*>(held);
-  });
+  const py::capsule base(new std::shared_ptr<const void>(std::move(owner)),
+                         [](void* held) { delete static_cast<std::shared_ptr<const void>*>(held); });
   return py::array_t<Number>(std::move(shape), data, base);
 }
 

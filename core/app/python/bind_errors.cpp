@@ -1,6 +1,5 @@
 #include "core/app/python/module.h"
 #include "core/app/run/runner.h"
-#include "core/kernel/mesh/file.h"
 
 namespace drape::python {
 
@@ -11,8 +10,6 @@ void bind_errors(py::module_& m) {
   py::register_exception_translator([](std::exception_ptr error) {
     try {
       if (error) std::rethrow_exception(error);
-    } catch (const FileError& fault) {
-      PyErr_SetString(PyExc_OSError, fault.what());
     } catch (const std::logic_error& fault) {
       PyErr_SetString(PyExc_ValueError, fault.what());
     }

@@ -69,9 +69,9 @@ class ExperimentHandle {
 
 std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
                               const std::optional<std::vector<std::string>>& methods,
-                              const std::optional<std::filesystem::path>& out,
-                              const py::object& on_iteration, const py::object& on_level, bool progress,
-                              bool report, bool overwrite, bool allow_memory) {
+                              const std::optional<std::filesystem::path>& out, const py::object& on_iteration,
+                              const py::object& on_level, bool progress, bool report, bool overwrite,
+                              bool allow_memory) {
   Callbacks callbacks(on_iteration, on_level);
   const SceneHandle scene = handle.scene(allow_memory);
   const auto folder =
@@ -106,8 +106,7 @@ std::unique_ptr<SolveHandle> solver(const ExperimentHandle& handle, const std::s
   const Registry& plugins = registry();
   {
     const py::gil_scoped_release released;
-    solve = SteeredSolve::begin(handle.source(), method, plugins, errors,
-                                start ? *start : MethodState());
+    solve = SteeredSolve::begin(handle.source(), method, plugins, errors, start ? *start : MethodState());
   }
   throw_errors(errors);
   return std::make_unique<SolveHandle>(std::move(solve));
@@ -126,12 +125,14 @@ void bind_experiment(py::module_& m) {
            }),
            py::arg("source"))
       .def("set", &ExperimentHandle::set, py::arg("key"), py::arg("value"),
-           "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises ConfigError "
+           "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises "
+           "ConfigError "
            "if the path does not exist. The value itself is checked by `check` and `run`.")
       .def(
           "check", [](const ExperimentHandle& e, bool allow_memory) { e.scene(allow_memory); },
           py::arg("allow_memory") = false,
-          "Validate the experiment without running it. Raises ConfigError with every fault and its file, line "
+          "Validate the experiment without running it. Raises ConfigError with every fault and its file, "
+          "line "
           "and column.")
       .def_property_readonly(
           "resolved", [](const ExperimentHandle& e) { return value_of(e.read()->resolved); },
@@ -145,7 +146,8 @@ void bind_experiment(py::module_& m) {
       .def("scene", &ExperimentHandle::scene, py::arg("allow_memory") = false,
            "The levels, models and initial states. Raises ConfigError.")
       .def("solver", &solver, py::arg("method") = "", py::arg("start") = nullptr,
-           "A Solve of one method, to be advanced step by step; by default pcs, or the only method. `start` is "
+           "A Solve of one method, to be advanced step by step; by default pcs, or the only method. `start` "
+           "is "
            "a Checkpoint of the same experiment and method. Raises ConfigError.")
       .def("_run", &run, py::arg("methods"), py::arg("out"), py::arg("on_iteration"), py::arg("on_level"),
            py::arg("progress"), py::arg("report"), py::arg("overwrite"), py::arg("allow_memory"));

@@ -33,7 +33,8 @@ void bind_levels(py::module_& m) {
            py::arg("rest"), py::arg("triangles"),
            "A level of n×3 rest positions [m] and m×3 vertex indices, counter-clockwise. Raises ValueError "
            "with every fault of the mesh.")
-      .def_property_readonly("index", [](const LevelHandle& l) { return l.level->index; }, "0 is the coarsest.")
+      .def_property_readonly(
+          "index", [](const LevelHandle& l) { return l.level->index; }, "0 is the coarsest.")
       .def_property_readonly("vertex_count", [](const LevelHandle& l) { return l.level->vertex_count(); })
       .def_property_readonly("triangle_count", [](const LevelHandle& l) { return l.level->triangle_count(); })
       .def_property_readonly(
@@ -46,10 +47,12 @@ void bind_levels(py::module_& m) {
           "edges", [](const LevelHandle& l) { return view(l.level->topology.edges, l.level); },
           "e×2 end vertices, the smaller index first.")
       .def_property_readonly(
-          "triangle_edges", [](const LevelHandle& l) { return view(l.level->topology.triangle_edges, l.level); },
+          "triangle_edges",
+          [](const LevelHandle& l) { return view(l.level->topology.triangle_edges, l.level); },
           "m×3 edge indices; column k is the edge opposite vertex k.")
       .def_property_readonly(
-          "edge_triangles", [](const LevelHandle& l) { return view(l.level->topology.edge_triangles, l.level); },
+          "edge_triangles",
+          [](const LevelHandle& l) { return view(l.level->topology.edge_triangles, l.level); },
           "e×2 triangles of each edge; -1 in column 1 on the border.")
       .def_property_readonly(
           "hinges", [](const LevelHandle& l) { return view(l.level->hinges, l.level); },

@@ -133,7 +133,8 @@ void bind_structure(py::class_<ModelHandle>& type) {
 void bind_model(py::module_& m) {
   py::class_<ModelHandle> type(
       m, "Model",
-      "The plain model of one level: the sum E of its energies, strain limits and contacts, without friction. "
+      "The plain model of one level: the sum E of its energies, strain limits and contacts, without "
+      "friction. "
       "Immutable. Every x is n×3 [m]; another shape raises ValueError, another dtype TypeError.");
   bind_structure(type);
   type.def(
@@ -166,13 +167,15 @@ void bind_model(py::module_& m) {
             return number(h, x, [](const LevelModel& l, const Positions& p) { return l.force_residual(p); });
           },
           py::arg("x"), "‖∂E/∂x‖ over that of the load, on free vertices [1].")
-      .def("contacts", &contacts, py::arg("x"),
-           "The contacts closer than d̂ at x, one dict for each contact model: count, smallest_gap [m], energy "
-           "[J], vertices (c×k, -1 for an obstacle's), forces (n×3) [N].")
+      .def(
+          "contacts", &contacts, py::arg("x"),
+          "The contacts closer than d̂ at x, one dict for each contact model: count, smallest_gap [m], energy "
+          "[J], vertices (c×k, -1 for an obstacle's), forces (n×3) [N].")
       .def("intersections", &intersections, py::arg("x"),
            "Pairs of primitives that intersect at x, as (first, second, (x, y, z)) [m].")
       .def("max_step", &max_step, py::arg("x0"), py::arg("x1"),
-           "Largest step from x0 towards x1 without intersections and within the strain limits, and what limits "
+           "Largest step from x0 towards x1 without intersections and within the strain limits, and what "
+           "limits "
            "it: (fraction in [0, 1], name).");
 }
 

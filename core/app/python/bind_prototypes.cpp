@@ -85,7 +85,8 @@ py::dict check(const BoundEnergyHandle& h, const py::object& state, double step)
 void bind_bound_energy(py::module_& m) {
   py::class_<BoundEnergyHandle>(m, "BoundEnergy", "An energy on one level. x is n×3 [m].")
       .def(
-          "value", [](const BoundEnergyHandle& h, const py::object& x) { return h.energy->value(h.state(x)); },
+          "value",
+          [](const BoundEnergyHandle& h, const py::object& x) { return h.energy->value(h.state(x)); },
           py::arg("x"), "[J]")
       .def(
           "gradient",
@@ -98,14 +99,18 @@ void bind_bound_energy(py::module_& m) {
           py::arg("x"), "n×3 [N]")
       .def(
           "hessian",
-          [](const BoundEnergyHandle& h, const py::object& x) { return bsr_matrix(hessian_of(h, h.state(x))); },
+          [](const BoundEnergyHandle& h, const py::object& x) {
+            return bsr_matrix(hessian_of(h, h.state(x)));
+          },
           py::arg("x"), "3n×3n scipy.sparse.bsr_matrix [N/m], without projection.")
       .def("check", &check, py::arg("x"), py::arg("step") = 1e-5,
-           "The largest relative errors of gradient and Hessian against finite differences with this step [m], "
+           "The largest relative errors of gradient and Hessian against finite differences with this step "
+           "[m], "
            "and where they are.");
-  m.def("bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),
-        "An energy on a level: of a plugin's name, of {\"type\": name, parameter: value}, or of a drape.Energy "
-        "object. Raises ConfigError.");
+  m.def(
+      "bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),
+      "An energy on a level: of a plugin's name, of {\"type\": name, parameter: value}, or of a drape.Energy "
+      "object. Raises ConfigError.");
 }
 
 void bind_solver_problem(py::module_& m) {
@@ -129,7 +134,8 @@ void bind_solver_problem(py::module_& m) {
           "iteration",
           [](SolverProblem& p, const py::object& values, std::optional<double> energy,
              std::optional<double> force_residual, double step_length) {
-            return p.iteration(positions_of(values, p.vertex_count(), "x"), energy, force_residual, step_length);
+            return p.iteration(positions_of(values, p.vertex_count(), "x"), energy, force_residual,
+                               step_length);
           },
           py::arg("x"), py::arg("energy") = py::none(), py::arg("force_residual") = py::none(),
           py::arg("step_length") = 1.0,

@@ -61,7 +61,8 @@ void bind_scene(py::module_& m) {
           [](const SceneHandle& s, int level) { return view(s.scene->starts[s.checked(level)], s.scene); },
           py::arg("level"), "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
-          "prolongations", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.prolongations; },
+          "prolongations",
+          [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.prolongations; },
           "[l]: n_{l+1}×n_l weights of the refiner, scipy.sparse.csr_matrix.")
       .def_property_readonly(
           "midpoints", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.midpoints; },
@@ -77,7 +78,8 @@ void bind_scene(py::module_& m) {
                              })
       .def("metric", &evaluate_metric, py::arg("name"), py::arg("level"), py::arg("x"),
            py::arg("other") = py::none(),
-           "Values and fields of one of the experiment's metrics by name. x is n×3 [m]; `other`, the prolonged "
+           "Values and fields of one of the experiment's metrics by name. x is n×3 [m]; `other`, the "
+           "prolonged "
            "coarse state, is of pair metrics.")
       .def("page", &page, py::arg("x"), py::arg("level") = -1,
            "An HTML page with the 3D viewer of the state x (n×3) [m] and the obstacles.");

@@ -69,7 +69,8 @@ void bind_solve(py::module_& m) {
       m, "Solve",
       "One method of an experiment, advanced an iteration at a time: `for iteration in solver.iterate()`. "
       "Nothing is recorded.")
-      .def("iterate", [](py::object self) { return self; }, "An iterator over Iterations.")
+      .def(
+          "iterate", [](py::object self) { return self; }, "An iterator over Iterations.")
       .def("__iter__", [](py::object self) { return self; })
       .def("__next__",
            [](SolveHandle& s) {
@@ -82,7 +83,8 @@ void bind_solve(py::module_& m) {
       .def(
           "set",
           [](SolveHandle& s, const std::string& key, const py::object& value) {
-            s.set(key, py::isinstance<py::str>(value) ? value.cast<std::string>() : node_of(value).one_line());
+            s.set(key,
+                  py::isinstance<py::str>(value) ? value.cast<std::string>() : node_of(value).one_line());
           },
           py::arg("key"), py::arg("value"),
           "Change one value of the experiment, a material's or a pin's, and go on from the present state. "

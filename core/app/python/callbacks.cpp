@@ -40,7 +40,7 @@ void Callbacks::iteration(const IterationRow& row, const Positions& x) {
 void Callbacks::level_finished(const LevelResult& result) { call(on_level_, result); }
 
 bool Callbacks::stop_requested() {
-  if (!stop_) stop_ = interrupted();
+  if (!stop_) stop_ = has_remembered() || interrupted();
   return stop_;
 }
 

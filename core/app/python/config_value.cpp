@@ -36,8 +36,7 @@ ConfigNode node_of(const py::handle& value, int depth) {
     return node;
   }
   if (py::hasattr(value, "tolist")) return node_of(value.attr("tolist")(), depth + 1);  // numpy's
-  if (py::hasattr(value, "__fspath__"))
-    return ConfigNode::of(value.attr("__fspath__")().cast<std::string>());
+  if (py::hasattr(value, "__fspath__")) return ConfigNode::of(value.attr("__fspath__")().cast<std::string>());
   throw py::type_error("an experiment cannot hold " + std::string(py::repr(value)));
 }
 
@@ -54,8 +53,8 @@ void throw_errors(const ConfigErrors& errors) {
   const py::module_ types = py::module_::import("drape.errors");
   py::list faults;
   for (const ConfigError& error : errors)
-    faults.append(types.attr("ConfigFault")(error.message, error.where.file, error.where.line,
-                                            error.where.column));
+    faults.append(
+        types.attr("ConfigFault")(error.message, error.where.file, error.where.line, error.where.column));
   const py::object type = types.attr("ConfigError");
   PyErr_SetObject(type.ptr(), type(faults).ptr());
   throw py::error_already_set();

@@ -22,7 +22,7 @@ struct LevelHandle {
 /// A model with what must outlive it: the scene, or for a prototype's solver the solve under way.
 struct ModelHandle {
   std::shared_ptr<const LevelModel> shared;
-  std::shared_ptr<const void> owner;        ///< of the level; null if it is not known
+  std::shared_ptr<const void> owner;       ///< of the level; null if it is not known
   std::shared_ptr<const bool> alive = {};  ///< whether the level still exists; null if `owner` sees to that
 
   /// Throws RuntimeError once the solve that gave the model has ended.

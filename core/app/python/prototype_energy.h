@@ -5,8 +5,8 @@
 
 namespace drape::python {
 
-/// An energy whose elements a Python object evaluates, all at once: see drape.Energy. Summation, projection and
-/// scatter are here, in the order of the elements.
+/// An energy whose elements a Python object evaluates, all at once: see drape.Energy. Summation, projection
+/// and scatter are here, in the order of the elements.
 class PythonEnergy final : public Energy {
  public:
   /// Throws ValueError for a role that does not exist. Call with the GIL held.

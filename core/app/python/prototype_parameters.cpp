@@ -51,9 +51,8 @@ Schema schema_of_class(const py::object& type, const std::string& name) {
   ParameterValues defaults;
   for (const auto& [key, declared] : type.attr("parameters").cast<py::dict>()) {
     ConfigNode value;
-    schema.parameters.push_back(parameter_of(key.cast<std::string>(),
-                                             py::reinterpret_borrow<py::object>(declared), defaults.size(),
-                                             value));
+    schema.parameters.push_back(parameter_of(
+        key.cast<std::string>(), py::reinterpret_borrow<py::object>(declared), defaults.size(), value));
     defaults.push_back(std::move(value));
   }
   schema.fresh = [defaults] { return std::make_shared<ParameterValues>(defaults); };

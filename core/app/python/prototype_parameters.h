@@ -10,8 +10,8 @@ namespace drape::python {
 
 namespace py = pybind11;
 
-/// The parameters that a Python class declares in its dict `parameters`, from a name to a drape.Parameter or a
-/// plain default. Throws TypeError or ValueError, naming the parameter, for a declaration that is not one.
+/// The parameters that a Python class declares in its dict `parameters`, from a name to a drape.Parameter or
+/// a plain default. Throws TypeError or ValueError, naming the parameter, for a declaration that is not one.
 Schema schema_of_class(const py::object& type, const std::string& name);
 
 /// The values of a parameter struct with such a schema, as keyword arguments of the class.

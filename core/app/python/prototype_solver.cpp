@@ -11,7 +11,8 @@ Outcome outcome_of(const std::string& status) {
                                 Outcome::cancelled, Outcome::infeasible})
     if (status == to_string(outcome)) return outcome;
   throw py::value_error(
-      "status must be converged, max_steps_reached, stalled, cancelled or infeasible, not \"" + status + "\"");
+      "status must be converged, max_steps_reached, stalled, cancelled or infeasible, not \"" + status +
+      "\"");
 }
 
 }  // namespace
@@ -61,7 +62,8 @@ bool SolverProblem::iteration(const Positions& x, std::optional<double> energy,
   row.iteration = 1;
   row.seconds = clock_.seconds();
   row.energy = energy ? *energy : model.energy(x);
-  row.force_residual = under_way_->force_residual = force_residual ? *force_residual : model.force_residual(x);
+  row.force_residual = under_way_->force_residual =
+      force_residual ? *force_residual : model.force_residual(x);
   row.step_length = step_length;
   observer_->iteration(row, x);
   return !observer_->stop_requested();

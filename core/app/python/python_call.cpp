@@ -28,6 +28,8 @@ void remember(std::exception_ptr error) {
 
 void forget_remembered() { remembered = nullptr; }
 
+bool has_remembered() { return remembered != nullptr; }
+
 void rethrow_remembered() {
   if (remembered) std::rethrow_exception(std::exchange(remembered, nullptr));
 }

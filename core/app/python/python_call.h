@@ -17,6 +17,7 @@ SharedObject share(py::object object);
 void remember(std::exception_ptr error);
 /// Forgets it, before a call that may remember one.
 void forget_remembered();
+bool has_remembered();
 /// Throws it, if there is one. Call with the GIL held.
 void rethrow_remembered();
 

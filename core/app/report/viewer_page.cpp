@@ -15,8 +15,8 @@ std::string page(const std::string& title, const std::string& section, const std
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
          html::escape(title) + " – drape</title>\n<style>\n" + std::string(Embedded::page_css()) +
-         std::string(Embedded::viewer_css()) + "</style>\n</head>\n<body>\n<main>\n" + section +
-         "</main>\n" + scripts + "</body>\n</html>\n";
+         std::string(Embedded::viewer_css()) + "</style>\n</head>\n<body>\n<main>\n" + section + "</main>\n" +
+         scripts + "</body>\n</html>\n";
 }
 
 }  // namespace
@@ -34,9 +34,9 @@ std::string viewer_page(const std::string& title, const Level& level, const Posi
   std::vector<Level> levels = {level};
   levels.front().index = 0;  // the only one of its document
   std::string blocks;
-  ViewDocument document(
-      levels, obstacles, false,
-      [&](const std::string& name, const std::string& bytes) { blocks += block_element(name, bytes); });
+  ViewDocument document(levels, obstacles, false, [&](const std::string& name, const std::string& bytes) {
+    blocks += block_element(name, bytes);
+  });
   const SurfaceFields fields = document.fields(0, x);
   document.set_ranges({&fields});
   using Json = ViewDocument::Json;

@@ -17,9 +17,9 @@ struct DerivativeCheck {
   double asymmetry = 0;      ///< of the Hessian's diagonal blocks, relative to its largest entry [1]
 };
 
-/// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m]. Takes
-/// 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not finite
-/// near x.
+/// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
+/// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not
+/// finite near x.
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
 
 }  // namespace drape

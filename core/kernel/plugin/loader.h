@@ -11,8 +11,8 @@ namespace drape {
 /// the colon-separated DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
 std::vector<std::filesystem::path> plugin_directories();
 
-/// The same for a program that is not drape's own, such as a Python interpreter: <folder of libdrape>/drape in
-/// place of the folder beside the command.
+/// The same for a program that is not drape's own, such as a Python interpreter: <folder of libdrape>/drape
+/// in place of the folder beside the command.
 std::vector<std::filesystem::path> plugin_directories_beside_library();
 
 /// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
