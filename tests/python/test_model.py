@@ -68,7 +68,8 @@ def test_contacts():
     x = scene.start(0)
     (contacts,) = scene[0].contacts(x)
     assert contacts["smallest_gap"] == pytest.approx(5e-4)
-    assert contacts["vertices"].shape[0] > 0
+    assert contacts["gaps"].shape == contacts["vertices"].shape[:1] and len(contacts["gaps"]) > 0
+    assert contacts["gaps"].min() == contacts["smallest_gap"]
     assert contacts["forces"][24, 2] > 0  # the centre of 7×7
     assert contacts["energy"] == scene[0].energy_parts(x)["contact"]
     assert scene[0].intersections(x) == []

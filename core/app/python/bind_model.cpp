@@ -60,6 +60,11 @@ py::list contacts(const ModelHandle& m, const py::handle& values) {
     one["smallest_gap"] = collisions->smallest_gap();
     one["energy"] = energy;
     one["vertices"] = array_of(collisions->stencils());
+    if (const auto* known = dynamic_cast<const ElementGaps*>(collisions.get())) {
+      std::vector<double> gaps;
+      known->append_gaps(gaps);
+      one["gaps"] = py::array_t<double>(static_cast<py::ssize_t>(gaps.size()), gaps.data());
+    }
     one["forces"] = array_of(Positions(-g));
     all.append(one);
   }
@@ -170,7 +175,9 @@ void bind_model(py::module_& m) {
       .def(
           "contacts", &contacts, py::arg("x"),
           "The contacts closer than d̂ at x, one dict for each contact model: count, smallest_gap [m], energy "
-          "[J], vertices (c×k, -1 for an obstacle's), forces (n×3) [N].")
+          "[J], vertices (c×k, -1 for an obstacle's), gaps (c, the smallest of each row of vertices) [m], "
+          "forces (n×3) "
+          "[N]. Contact models that do not tell their gaps lack that key.")
       .def("intersections", &intersections, py::arg("x"),
            "Pairs of primitives that intersect at x, as (first, second, (x, y, z)) [m].")
       .def("max_step", &max_step, py::arg("x0"), py::arg("x1"),

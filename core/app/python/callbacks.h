@@ -14,7 +14,8 @@ struct Iteration {
 };
 
 /// Passes a run's events on to Python's functions, and Python's wishes to the run: an exception of a
-/// function or a prototype, Ctrl-C and a returned "stop" stop it, a returned "refine" ends the level. Used without the GIL.
+/// function or a prototype, Ctrl-C and a returned "stop" stop it, a returned "refine" ends the level. Used
+/// without the GIL.
 class Callbacks : public Observer {
  public:
   /// Functions of an Iteration and of a LevelResult; None for none.
