@@ -108,4 +108,4 @@ lint: setup
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
 
 clean:
-	rm -rf build build-debug build-clang build-asan build-tsan build-lint build-fuzz
+	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz

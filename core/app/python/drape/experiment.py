@@ -18,7 +18,7 @@ class Experiment(_core.ExperimentBase):
 
     def run(
         self,
-        methods: Optional[Sequence[str]] = None,
+        methods: Union[str, Sequence[str], None] = None,
         out: Optional[Union[str, os.PathLike]] = None,
         *,
         on_iteration: Optional[Callable[[_core.Iteration], Optional[str]]] = None,
@@ -41,6 +41,8 @@ class Experiment(_core.ExperimentBase):
         Raises ConfigError for a faulty experiment, RuntimeError for an unknown method or a folder that is not
         usable, RunAborted for a run that could not be finished, as on a full disk.
         """
+        if isinstance(methods, str):
+            methods = [methods]
         record = self._run(
             methods=None if methods is None else list(methods),
             out=out,
