@@ -187,3 +187,44 @@ def test_what_a_solver_keeps_is_not_used_after_its_end(small):
         problem.start(0)
     with pytest.raises(RuntimeError, match="has ended"):
         model.energy(x)
+
+
+def test_what_python_handles_is_not_raised(small):
+    class Picky(prototypes.Springs):
+        def value(self, x, rest):
+            if numpy.isnan(x).any():
+                raise ArithmeticError("not a number")
+            return super().value(x, rest)
+
+    drape.register("picky", Picky)
+    small["energies"][0] = "picky"
+
+    class Careful(prototypes.ProjectedNewton):
+        def solve(self, problem):
+            with pytest.raises(ArithmeticError):
+                problem.model(0).energy(numpy.nan * problem.start(0))
+            super().solve(problem)
+
+    drape.register("careful", Careful)
+    experiment = drape.Experiment({**small, "methods": {"careful": {}}, "reference": {}})
+    model, start = experiment.scene()[0], experiment.scene().start(0)
+
+    def ask(iteration):
+        with pytest.raises(ArithmeticError):
+            model.energy(numpy.nan * start)
+
+    assert experiment.run(on_iteration=ask, progress=False).complete
+
+
+def test_an_exception_keeps_its_type_through_solver_and_energy(small):
+    class Unlucky(prototypes.Springs):
+        def gradient(self, x, rest):
+            raise ArithmeticError("out of luck")
+
+    drape.register("unlucky", Unlucky)
+    small["energies"][0] = "unlucky"
+    experiment = drape.Experiment({**small, "methods": {"python_newton": {}}, "reference": {}})
+    with pytest.raises(ArithmeticError, match="out of luck"):
+        experiment.run(progress=False)
+    with pytest.raises(ArithmeticError, match="out of luck"):
+        next(experiment.solver("python_newton"))

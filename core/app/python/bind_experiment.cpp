@@ -84,7 +84,7 @@ std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
   options.report = report && out;
   options.stop = [&] { return callbacks.stop_requested(); };  // of solves that are not observed too
   options.observer = &callbacks;
-  forget_remembered();
+  forget_failure();
   std::exception_ptr error;
   {
     const py::gil_scoped_release released;
@@ -94,7 +94,9 @@ std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
       error = std::current_exception();
     }
   }
-  rethrow_remembered();  // of a callback, a prototype or a signal: the cause of what follows
+  // First the causes of what follows from them.
+  callbacks.raise_error();
+  raise_failure();
   if (error) std::rethrow_exception(error);
   return std::make_shared<RunStore>(folder);
 }

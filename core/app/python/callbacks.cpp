@@ -16,19 +16,21 @@ Callbacks::Callbacks(const py::object& on_iteration, const py::object& on_level)
 template <class Argument>
 void Callbacks::call(const SharedObject& function, Argument&& argument) {
   if (!function || stop_) return;
+  const py::gil_scoped_acquire gil;
+  const bool failed_before = has_failed();
   try {
-    with_python([&] {
-      const py::object answer = (*function)(std::forward<Argument>(argument));
-      if (answer.is_none()) return;
-      const std::string word = py::isinstance<py::str>(answer) ? answer.cast<std::string>() : "";
-      if (word != "stop" && word != "refine")
-        throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " +
-                              std::string(py::repr(answer)));
-      (word == "stop" ? stop_ : refine_) = true;
-    });
-  } catch (const std::exception&) {  // raised again at the end of the run, whose results are saved until then
+    const py::object answer = (*function)(std::forward<Argument>(argument));
+    const std::string word = py::isinstance<py::str>(answer) ? answer.cast<std::string>() : "";
+    if (word == "stop") stop_ = true;
+    if (word == "refine") refine_ = true;
+    if (!stop_ && !refine_ && !answer.is_none())
+      throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " +
+                            std::string(py::repr(answer)));
+  } catch (const std::exception&) {  // raised at the end of the run, whose results are saved until then
+    error_ = std::current_exception();
     stop_ = true;
   }
+  if (!failed_before) forget_failure();  // of what the function called: it has handled that, or raised it
 }
 
 void Callbacks::level_started(int) { refine_ = false; }
@@ -40,8 +42,17 @@ void Callbacks::iteration(const IterationRow& row, const Positions& x) {
 void Callbacks::level_finished(const LevelResult& result) { call(on_level_, result); }
 
 bool Callbacks::stop_requested() {
-  if (!stop_) stop_ = has_remembered() || interrupted();
-  return stop_;
+  if (has_failed()) stop_ = true;
+  if (stop_) return true;
+  const py::gil_scoped_acquire gil;
+  if (PyErr_CheckSignals() == 0) return false;
+  error_ = std::make_exception_ptr(py::error_already_set());  // takes KeyboardInterrupt or what else is set
+  stop_ = true;
+  return true;
+}
+
+void Callbacks::raise_error() {
+  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
 bool Callbacks::refine_requested() { return std::exchange(refine_, false); }

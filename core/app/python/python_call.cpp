@@ -1,12 +1,21 @@
 #include "core/app/python/python_call.h"
 
+#include <exception>
 #include <utility>
 
 namespace drape::python {
 
 namespace {
 
-thread_local std::exception_ptr remembered;
+// Of Python the exception itself: a py::error_already_set can be raised only once.
+thread_local SharedObject raised;
+thread_local std::exception_ptr thrown;
+
+SharedObject exception_of(const py::error_already_set& error) {
+  py::object value = error.value();
+  if (error.trace()) PyException_SetTraceback(value.ptr(), error.trace().ptr());
+  return share(std::move(value));
+}
 
 }  // namespace
 
@@ -22,27 +31,33 @@ SharedObject share(py::object object) {
           }};
 }
 
-void remember(std::exception_ptr error) {
-  if (!remembered) remembered = std::move(error);
+bool has_failed() { return raised || thrown; }
+
+void forget_failure() {
+  raised = nullptr;
+  thrown = nullptr;
 }
 
-void forget_remembered() { remembered = nullptr; }
-
-bool has_remembered() { return remembered != nullptr; }
-
-void rethrow_remembered() {
-  if (remembered) std::rethrow_exception(std::exchange(remembered, nullptr));
-}
-
-bool interrupted() {
-  const py::gil_scoped_acquire gil;
-  if (PyErr_CheckSignals() == 0) return false;
-  try {
+void raise_failure() {
+  if (const SharedObject exception = std::exchange(raised, nullptr)) {
+    PyErr_SetObject(py::type::of(*exception).ptr(), exception->ptr());
     throw py::error_already_set();
-  } catch (const py::error_already_set&) {
-    remember(std::current_exception());
   }
-  return true;
+  if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+}
+
+void remember_failure() {
+  if (has_failed()) return;
+  try {
+    throw;
+  } catch (const py::error_already_set& error) {
+    raised = exception_of(error);
+  } catch (const py::cast_error& error) {
+    thrown = std::make_exception_ptr(
+        py::type_error(std::string("a prototype returned a value of the wrong type: ") + error.what()));
+  } catch (...) {
+    thrown = std::current_exception();
+  }
 }
 
 }  // namespace drape::python

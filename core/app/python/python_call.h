@@ -2,8 +2,8 @@
 
 #include <pybind11/pybind11.h>
 
-#include <exception>
 #include <memory>
+#include <type_traits>
 
 namespace drape::python {
 
@@ -13,36 +13,35 @@ namespace py = pybind11;
 using SharedObject = std::shared_ptr<const py::object>;
 SharedObject share(py::object object);
 
-/// Remembers a Python exception of this thread, the first one, until rethrow_remembered.
-void remember(std::exception_ptr error);
-/// Forgets it, before a call that may remember one.
-void forget_remembered();
-bool has_remembered();
-/// Throws it, if there is one. Call with the GIL held.
-void rethrow_remembered();
+/// Whether a call of with_python in this thread has failed since forget_failure.
+bool has_failed();
+void forget_failure();
+/// Raises what the first call that failed raised. Call with the GIL held.
+void raise_failure();
 
-/// Calls `body`, which uses Python, from C++ that holds no GIL. A Python exception goes on through C++. A run
-/// turns it into the failure of a method; it is remembered too, so that the binding can raise it.
+/// Stores the exception in flight for raise_failure. Call with the GIL held, from a handler.
+void remember_failure();
+
+/// Calls `body`, which uses Python, from C++ that holds no GIL. An exception goes on through C++, where a run
+/// turns it into the failure of a method; it is stored too, so that the binding can raise it. What fails
+/// inside a body that ends well has been handled in Python, and is forgotten.
 template <class Body>
 auto with_python(const Body& body) {
   const py::gil_scoped_acquire gil;
+  const bool failed_before = has_failed();
   try {
-    return body();
-  } catch (const py::error_already_set&) {
-    remember(std::current_exception());
-    throw;
-  } catch (const py::cast_error& error) {
-    const auto message = std::string("a prototype returned a value of the wrong type: ") + error.what();
-    auto as_type_error = std::make_exception_ptr(py::type_error(message));
-    remember(as_type_error);
-    std::rethrow_exception(as_type_error);
-  } catch (const std::exception&) {  // what the binding says of a value that Python returned
-    remember(std::current_exception());
+    if constexpr (std::is_void_v<decltype(body())>) {
+      body();
+      if (!failed_before) forget_failure();
+    } else {
+      auto result = body();
+      if (!failed_before) forget_failure();
+      return result;
+    }
+  } catch (...) {
+    remember_failure();
     throw;
   }
 }
-
-/// Whether a signal's handler has raised an exception, such as KeyboardInterrupt; it is then remembered.
-bool interrupted();
 
 }  // namespace drape::python
