@@ -16,8 +16,7 @@ Callbacks::Callbacks(const py::object& on_iteration, const py::object& on_level)
 template <class Argument>
 void Callbacks::call(const SharedObject& function, Argument&& argument) {
   if (!function || stop_) return;
-  const py::gil_scoped_acquire gil;
-  const bool failed_before = has_failed();
+  const PythonCall nesting;  // what the function itself calls may fail, and be handled there
   try {
     const py::object answer = (*function)(std::forward<Argument>(argument));
     const std::string word = py::isinstance<py::str>(answer) ? answer.cast<std::string>() : "";
@@ -30,7 +29,6 @@ void Callbacks::call(const SharedObject& function, Argument&& argument) {
     error_ = std::current_exception();
     stop_ = true;
   }
-  if (!failed_before) forget_failure();  // of what the function called: it has handled that, or raised it
 }
 
 void Callbacks::level_started(int) { refine_ = false; }

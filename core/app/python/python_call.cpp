@@ -1,6 +1,7 @@
 #include "core/app/python/python_call.h"
 
 #include <exception>
+#include <string>
 #include <utility>
 
 namespace drape::python {
@@ -10,6 +11,8 @@ namespace {
 // Of Python the exception itself: a py::error_already_set can be raised only once.
 thread_local SharedObject raised;
 thread_local std::exception_ptr thrown;
+
+thread_local int depth = 0;  // of calls
 
 SharedObject exception_of(const py::error_already_set& error) {
   py::object value = error.value();
@@ -46,8 +49,11 @@ void raise_failure() {
   if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
 }
 
-void remember_failure() {
-  if (has_failed()) return;
+PythonCall::PythonCall() { ++depth; }
+PythonCall::~PythonCall() { --depth; }
+
+void PythonCall::remember_failure() const {
+  if (depth > 1 || has_failed()) return;
   try {
     throw;
   } catch (const py::error_already_set& error) {

@@ -3,7 +3,6 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <type_traits>
 
 namespace drape::python {
 
@@ -13,33 +12,38 @@ namespace py = pybind11;
 using SharedObject = std::shared_ptr<const py::object>;
 SharedObject share(py::object object);
 
-/// Whether a call of with_python in this thread has failed since forget_failure.
+/// A call from C++ into Python, for as long as the object lives. Calls nest, where Python calls C++ that
+/// calls Python.
+class PythonCall {
+ public:
+  PythonCall();
+  ~PythonCall();
+  PythonCall(const PythonCall&) = delete;
+  PythonCall& operator=(const PythonCall&) = delete;
+
+  /// Stores the exception in flight, of this thread, unless an earlier one is stored or the call is nested:
+  /// then Python may yet handle it. For use in a handler.
+  void remember_failure() const;
+
+ private:
+  py::gil_scoped_acquire gil_;
+};
+
+/// Whether an exception is stored in this thread.
 bool has_failed();
 void forget_failure();
-/// Raises what the first call that failed raised. Call with the GIL held.
+/// Raises the exception that is stored, if any. Call with the GIL held.
 void raise_failure();
 
-/// Stores the exception in flight for raise_failure. Call with the GIL held, from a handler.
-void remember_failure();
-
 /// Calls `body`, which uses Python, from C++ that holds no GIL. An exception goes on through C++, where a run
-/// turns it into the failure of a method; it is stored too, so that the binding can raise it. What fails
-/// inside a body that ends well has been handled in Python, and is forgotten.
+/// turns it into the failure of a method; it is stored too, so that the binding can raise it.
 template <class Body>
 auto with_python(const Body& body) {
-  const py::gil_scoped_acquire gil;
-  const bool failed_before = has_failed();
+  const PythonCall call;
   try {
-    if constexpr (std::is_void_v<decltype(body())>) {
-      body();
-      if (!failed_before) forget_failure();
-    } else {
-      auto result = body();
-      if (!failed_before) forget_failure();
-      return result;
-    }
+    return body();
   } catch (...) {
-    remember_failure();
+    call.remember_failure();
     throw;
   }
 }
