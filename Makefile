@@ -8,6 +8,7 @@
 #               choose some scenes and fewer levels, and write no record
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record
+# make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
@@ -30,7 +31,7 @@ LINT ?= (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks demo table1 scenes test fuzz extremes data bench hard results figures \
+.PHONY: all setup configure build build-tests benchmarks python demo table1 scenes test fuzz extremes data bench hard results figures \
         pictures format fix-format lint clean
 all: build
 
@@ -56,6 +57,11 @@ build-tests: setup
 benchmarks: setup
 	@$(CONFIGURE) -D DRAPE_BENCHMARKS=ON >/dev/null
 	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_benchmarks
+
+python: configure
+	@third_party/setup use-python
+	@$(CONFIGURE) -D DRAPE_PYTHON=ON >/dev/null
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_python drape_python_files
 
 demo: build
 	@configs/demo $(BUILD)/bin/drape
@@ -124,4 +130,4 @@ lint: setup
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
 
 clean:
-	rm -rf build build-debug build-clang build-asan build-tsan build-lint build-fuzz
+	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz

@@ -261,3 +261,11 @@ TEST_CASE("DRAPE_PLUGIN_PATH lists folders, which must exist") {
   const PluginPath path("/nowhere/at/all");
   CHECK_THROWS_WITH(plugin_directories(), "DRAPE_PLUGIN_PATH names /nowhere/at/all, which is not a folder");
 }
+
+TEST_CASE("another program finds the plugins beside libdrape") {
+  const auto directories = plugin_directories_beside_library();
+  REQUIRE(directories.size() == 1);
+  CHECK(fs::equivalent(directories[0], folders::plugins()));
+  const PluginPath path((plugins / "good").string());
+  CHECK(plugin_directories_beside_library().size() == 2);
+}

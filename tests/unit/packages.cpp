@@ -34,12 +34,13 @@ std::vector<std::string> found(const std::string& text, const char* pattern) {
 
 }  // namespace
 
-TEST_CASE("each package is in one of the two lists, once") {
-  const auto to_run = packages_of("packages-to-run.txt"), to_test = packages_of("packages-to-test.txt");
+TEST_CASE("each package is in one of the lists, once") {
+  const auto to_run = packages_of("packages-to-run.txt"), to_test = packages_of("packages-to-test.txt"),
+             to_use_python = packages_of("packages-to-use-python.txt");
   CHECK(to_run.size() > 10);
   CHECK(to_test.size() > 5);
   std::set<std::string> all;
-  for (const auto* list : {&to_run, &to_test})
+  for (const auto* list : {&to_run, &to_test, &to_use_python})
     for (const std::string& package : *list) {
       INFO(package);
       CHECK(std::regex_match(package, std::regex("[a-z0-9][a-z0-9.+-]+")));
@@ -54,7 +55,7 @@ TEST_CASE("Makefile, Dockerfile and CI install packages by the lists alone") {
   for (const char* name : {"Makefile", "Dockerfile", ".ci/run"}) {
     INFO(name);
     const std::string text = text_of(name);
-    for (const std::string& lists : found(text, "third_party/setup((?: (?:run|test))*)(?: |\n)")) {
+    for (const std::string& lists : found(text, "third_party/setup((?: (?:run|test|use-python))*)(?: |\n)")) {
       std::istringstream words(lists);
       int count = 0;
       for (std::string list; words >> list; ++count)

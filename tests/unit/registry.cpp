@@ -218,3 +218,17 @@ TEST_CASE("an object is made from the one before, if its plugin knows how to") {
   REQUIRE(other);
   CHECK(other->refine(Level()).weights.rows() == 45);
 }
+
+TEST_CASE("an entry that is removed leaves its name free, and stays usable") {
+  Registry registry;
+  registry.add<Refiner, Loop>("loop", "One.");
+  CHECK(registry.remove("energy", "loop") == nullptr);
+  std::unique_ptr<RegistryEntry> entry = registry.remove("refiner", "loop");
+  REQUIRE(entry);
+  CHECK(registry.find("refiner", "loop") == nullptr);
+  CHECK(registry.of_kind("refiner").empty());
+  CHECK(entry->make(entry->make_parameters().get(), nullptr) != nullptr);
+  entry->summary = "Another.";
+  registry.add_entry(std::move(entry));
+  CHECK(registry.find("refiner", "loop")->summary == "Another.");
+}

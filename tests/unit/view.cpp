@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/app/report/viewer_page.h"
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
@@ -150,4 +151,13 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
   CHECK(blocks.at(state["x"]).size() == 24 + 6 * 25);
   CHECK(blocks.at(state["fields"]["stretch"]).size() == 8 + 25);
   CHECK(blocks.at(document["levels"][0]["block"]).size() == 12 * 32);
+}
+
+TEST_CASE("a page of one state holds its blocks and names no other file") {
+  const Level level = sheet(3);
+  const std::string page = viewer_page("a <state>", level, 1.1 * level.rest.vertices, {sheet(1).rest});
+  for (const char* part : {"<title>a &lt;state&gt;", "id=\"viewer-data\"", "id=\"viewer-state\"",
+                           "id=\"viewer-l0\"", "id=\"viewer-obstacle0\"", "id=\"viewer-canvas\""})
+    CHECK(page.find(part) != std::string::npos);
+  CHECK(page.find("<script src") == std::string::npos);
 }

@@ -7,8 +7,6 @@
 
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/embedded.h"
-#include "core/app/view/html.h"
-#include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
@@ -64,17 +62,14 @@ class ReportViewMaker {
     for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
     document_.emplace(
         levels_, obstacles_, run_.has_contact(),
-        [this](const std::string& name, const std::string& bytes) { embed(name, bytes); }, differences_);
+        [this](const std::string& name, const std::string& bytes) { blocks_ += block_element(name, bytes); },
+        differences_);
     read_states();
     if (states_.empty()) return {};
     Json methods = Json::array();
     for (std::size_t m = 0; m < run_.methods.size(); ++m) methods.push_back(method_entry(m));
-    std::string json =
-        document_->document(run_.experiment, methods).dump(-1, ' ', true, Json::error_handler_t::replace);
-    for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
     return {section_open + std::string(Embedded::viewer_html()) + "</section>\n\n",
-            "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n" + blocks_ +
-                viewer_scripts(),
+            document_element(document_->document(run_.experiment, methods)) + blocks_ + viewer_scripts(),
             notes_};
   }
 
@@ -83,11 +78,6 @@ class ReportViewMaker {
     Positions x;
     SurfaceFields fields;
   };
-
-  void embed(const std::string& name, const std::string& bytes) {
-    blocks_ += "<script type=\"application/octet-stream\" id=\"viewer-" + html::escape(name) + "\">" +
-               html::base64(deflated(bytes)) + "</script>\n";
-  }
 
   void read_states() {
     std::vector<const SurfaceFields*> shown;

@@ -25,9 +25,14 @@ namespace {
 /// Passes everything on to the recorder, the checkpoints, the progress bar and the live view.
 class RunObserver : public Observer {
  public:
-  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress, LiveView* view,
-              const std::function<bool()>& stop)
-      : recorder_(recorder), checkpoints_(checkpoints), progress_(progress), view_(view), stop_(stop) {}
+  RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress,
+              const RunOptions& options)
+      : recorder_(recorder),
+        checkpoints_(checkpoints),
+        progress_(progress),
+        view_(options.view),
+        further_(options.observer),
+        stop_(options.stop) {}
 
   void method_started(const std::string& name, bool resumable, const MethodState& state) {
     resumable_ = resumable;
@@ -53,14 +58,17 @@ class RunObserver : public Observer {
     recorder_.level_started(level);
     progress_.level_started(level);
     if (view_) view_->level_started(level);
+    if (further_) further_->level_started(level);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
     recorder_.iteration(row, x);
     progress_.iteration(row, x);
     if (view_) view_->iteration(row, x);
+    if (further_) further_->iteration(row, x);
   }
   void increment_finished(const IncrementRow& row, const Positions& x) override {
     recorder_.increment_finished(row, x);
+    if (further_) further_->increment_finished(row, x);
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
@@ -68,17 +76,24 @@ class RunObserver : public Observer {
     if (resumable_) checkpoints_.level_finished(result);
     progress_.level_finished(result);
     if (view_) view_->level_finished(result);
+    if (further_) further_->level_finished(result);
   }
   bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
   void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
-  bool stop_requested() override { return (stop_ && stop_()) || (view_ && view_->stop_requested()); }
-  bool refine_requested() override { return view_ && view_->refine_requested(); }
+  bool stop_requested() override {
+    return (stop_ && stop_()) || (view_ && view_->stop_requested()) ||
+           (further_ && further_->stop_requested());
+  }
+  bool refine_requested() override {
+    return (view_ && view_->refine_requested()) || (further_ && further_->refine_requested());
+  }
 
  private:
   Recorder& recorder_;
   CheckpointManager& checkpoints_;
   Progress& progress_;
   LiveView* view_;
+  Observer* further_;
   bool resumable_ = false;
   int level_ = 0;
   std::vector<LevelResult> finished_;
@@ -178,7 +193,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.verbosity, problem.load_stepping, changing);
-  RunObserver observer(recorder, checkpoints, progress, options.view, options.stop);
+  RunObserver observer(recorder, checkpoints, progress, options);
 
   bool all_converged = begun.all_converged, cancelled = false;
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {

@@ -24,6 +24,7 @@ struct RunOptions {
   int first_level = 0;                        ///< first level of every method
   std::string warm_started_from;              ///< origin of a warm start, in words; empty without one
   std::function<bool()> stop;                 ///< polled after every step; may be empty
+  Observer* observer = nullptr;               ///< sees every event after it is recorded; may be null
   LiveView* view = nullptr;                   ///< shows the run and may stop it; may be null
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/app/view/embedded.h"
+#include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
 
 namespace drape {
@@ -94,6 +95,17 @@ ViewDocument::Json ViewDocument::document(const std::string& title, Json methods
   }
   return {{"title", title},   {"levels", level_entries_}, {"obstacles", obstacle_entries_},
           {"fields", fields}, {"rounding", rounding_},    {"methods", std::move(methods)}};
+}
+
+std::string block_element(const std::string& name, const std::string& bytes) {
+  return "<script type=\"application/octet-stream\" id=\"viewer-" + html::escape(name) + "\">" +
+         html::base64(deflated(bytes)) + "</script>\n";
+}
+
+std::string document_element(const ViewDocument::Json& document) {
+  std::string json = document.dump(-1, ' ', true, ViewDocument::Json::error_handler_t::replace);
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
+  return "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n";
 }
 
 std::string viewer_scripts() {

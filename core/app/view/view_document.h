@@ -45,6 +45,10 @@ class ViewDocument {
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
 
+/// A named block and the document as <script> elements, for pages that embed them.
+std::string block_element(const std::string& name, const std::string& bytes);
+std::string document_element(const ViewDocument::Json& document);
+
 /// three.js and the viewer's own scripts, as <script> elements.
 std::string viewer_scripts();
 

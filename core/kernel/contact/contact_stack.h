@@ -13,7 +13,7 @@ namespace drape {
 
 /// The sum of several collisions of one contact model, with their elements concatenated. All stencils must
 /// have four columns, all friction contacts one smoothing distance.
-class CollisionStack final : public Collisions, public FrictionalCollisions {
+class CollisionStack final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
   explicit CollisionStack(std::vector<std::unique_ptr<Collisions>> parts) : parts_(std::move(parts)) {}
 
@@ -57,6 +57,11 @@ class CollisionStack final : public Collisions, public FrictionalCollisions {
     double gap = std::numeric_limits<double>::infinity();
     for (const auto& part : parts_) gap = std::min(gap, part->smallest_gap());
     return gap;
+  }
+
+  /// For parts that all know their gaps, as those of core/kernel/contact do.
+  void append_gaps(std::vector<double>& gaps) const override {
+    for (const auto& part : parts_) dynamic_cast<const ElementGaps&>(*part).append_gaps(gaps);
   }
 
   void append_friction_contacts(FrictionContacts& groups) const override {

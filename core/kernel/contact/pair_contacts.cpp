@@ -13,7 +13,7 @@ namespace {
 constexpr int grain = 128;  // contacts per task
 constexpr int run = 1024;   // contacts whose blocks are computed before they are added
 
-class PairCollisions final : public Collisions, public FrictionalCollisions {
+class PairCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
   PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
                  const BarrierParameters& parameters)
@@ -28,6 +28,9 @@ class PairCollisions final : public Collisions, public FrictionalCollisions {
 
   int contact_count() const override { return count_; }
   double smallest_gap() const override { return smallest_gap_; }
+  void append_gaps(std::vector<double>& gaps) const override {
+    for (int i = 0; i < count_; ++i) gaps.push_back(contacts_[i].gap());
+  }
   double value(const Positions&) const override { return value_; }
 
   double add_gradient(const Positions&, Positions& g) const override {

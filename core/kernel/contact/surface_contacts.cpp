@@ -22,7 +22,7 @@ Matrix3d projected(const Matrix3d& h, Projection projection) {
   return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
-class SurfaceCollisions final : public Collisions, public FrictionalCollisions {
+class SurfaceCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
   SurfaceCollisions(SurfaceContacts all, const BarrierParameters& parameters)
       : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {
@@ -42,6 +42,13 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions {
 
   int contact_count() const override { return static_cast<int>(all_.features.size()); }
   double smallest_gap() const override { return smallest_gap_; }
+  void append_gaps(std::vector<double>& gaps) const override {
+    for (const SurfaceContact& contact : all_.contacts) {
+      double gap = std::numeric_limits<double>::infinity();
+      for (int i = contact.first; i < contact.last; ++i) gap = std::min(gap, all_.features[i].distance);
+      gaps.push_back(gap);
+    }
+  }
   double value(const Positions&) const override { return value_; }
 
   double add_gradient(const Positions&, Positions& g) const override {

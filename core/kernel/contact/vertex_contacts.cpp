@@ -15,7 +15,7 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector3d;
 constexpr int grain = 1024;
 
-class VertexCollisions final : public Collisions, public FrictionalCollisions {
+class VertexCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
   VertexCollisions(std::vector<VertexContact> contacts, const BarrierParameters& parameters)
       : contacts_(std::move(contacts)), barriers_(contacts_.size()), p_(parameters) {
@@ -30,6 +30,10 @@ class VertexCollisions final : public Collisions, public FrictionalCollisions {
     double gap = std::numeric_limits<double>::infinity();
     for (const VertexContact& c : contacts_) gap = std::min(gap, c.nearest.distance);
     return gap;
+  }
+
+  void append_gaps(std::vector<double>& gaps) const override {
+    for (const VertexContact& c : contacts_) gaps.push_back(c.nearest.distance);
   }
 
   double value(const Positions&) const override {

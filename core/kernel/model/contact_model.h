@@ -29,6 +29,14 @@ class Collisions : public BoundEnergy {
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
 };
 
+/// Optional interface of Collisions that knows the gap of each element, for programs that look at contacts.
+class ElementGaps {
+ public:
+  virtual ~ElementGaps() = default;
+  /// Appends the smallest gap [m] of every element, in the order of stencils().
+  virtual void append_gaps(std::vector<double>& gaps) const = 0;
+};
+
 /// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them.
 class CollisionCandidates {
  public:

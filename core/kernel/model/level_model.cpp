@@ -227,10 +227,7 @@ double LevelModel::residual_scale(const Positions& x, const Positions& gradient)
 
 double LevelModel::force_residual(const Positions& x) const {
   Positions g;
-  gradient(x, g);
-  for (const BoundEnergy* limit : limits_) limit->add_gradient(x, g);
-  for (const auto& contact : contacts_)
-    contact->build_candidates(x, x)->build_collisions(x)->add_gradient(x, g);
+  energy_gradient(x, g);
   return free_norm(g, fixed_) / residual_scale(x, g);
 }
 

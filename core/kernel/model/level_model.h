@@ -74,6 +74,11 @@ class LevelModel {
   double energy_without_contact(const Positions& x) const;
   /// All of E_l: energies, limits and the contacts' barrier, without friction [J].
   double energy(const Positions& x) const;
+  /// Overwrites g (n×3) with the gradient of energy(x) [N], fixed vertices included, and returns energy(x).
+  double energy_gradient(const Positions& x, Positions& g) const;
+  /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
+  /// builds it anew: solvers take an Objective.
+  BlockMatrix energy_hessian(const Positions& x, Projection projection) const;
   /// The parts of energy(x): each term in the order given, and the contacts if there are any [J].
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
   /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance

@@ -74,9 +74,11 @@ void load(Registry& registry, const fs::path& library) {
 
 }  // namespace
 
-std::vector<fs::path> plugin_directories() {
+namespace {
+
+/// `beside`, if it is a folder, then those of DRAPE_PLUGIN_PATH.
+std::vector<fs::path> search_path(const fs::path& beside) {
   std::vector<fs::path> directories;
-  const fs::path beside = fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "drape";
   if (fs::is_directory(beside)) directories.push_back(beside);
   const char* variable = std::getenv("DRAPE_PLUGIN_PATH");
   std::istringstream list(variable ? variable : "");
@@ -87,6 +89,19 @@ std::vector<fs::path> plugin_directories() {
     directories.push_back(directory);
   }
   return directories;
+}
+
+}  // namespace
+
+std::vector<fs::path> plugin_directories() {
+  return search_path(fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "drape");
+}
+
+std::vector<fs::path> plugin_directories_beside_library() {
+  Dl_info library;
+  if (!dladdr(reinterpret_cast<const void*>(&load_plugins), &library) || !library.dli_fname)
+    throw std::runtime_error("the path of libdrape cannot be found; name its plugins in DRAPE_PLUGIN_PATH");
+  return search_path(fs::canonical(library.dli_fname).parent_path() / "drape");
 }
 
 void load_plugins(Registry& registry, const std::vector<fs::path>& directories) {

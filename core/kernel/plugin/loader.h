@@ -11,6 +11,10 @@ namespace drape {
 /// the colon-separated DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
 std::vector<std::filesystem::path> plugin_directories();
 
+/// The same for a program that is not drape's own, such as a Python interpreter: <folder of libdrape>/drape
+/// in place of the folder beside the command.
+std::vector<std::filesystem::path> plugin_directories_beside_library();
+
 /// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
 /// with the library's path, for a library that cannot be loaded, is no plugin, is not compatible with this
 /// build (before any of its C++ is called) or repeats a name. Libraries are never unloaded.

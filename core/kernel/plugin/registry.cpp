@@ -48,6 +48,16 @@ void Registry::add_entry(std::unique_ptr<RegistryEntry> entry) {
   entries_.push_back(std::move(entry));
 }
 
+std::unique_ptr<RegistryEntry> Registry::remove(const std::string& kind, const std::string& name) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& entry) {
+    return entry->kind == kind && entry->name == name;
+  });
+  if (found == entries_.end()) return nullptr;
+  std::unique_ptr<RegistryEntry> entry = std::move(*found);
+  entries_.erase(found);
+  return entry;
+}
+
 const RegistryEntry* find_plugin(const Registry& registry, const std::string& kind, const ConfigNode& node,
                                  ConfigErrors& errors) {
   const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;

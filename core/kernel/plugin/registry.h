@@ -39,6 +39,13 @@ class Registry {
   template <class Interface, class Implementation>
   void add(const std::string& name, const std::string& summary);
 
+  /// Registers an entry that was made without a class of its own, such as a prototype in Python. Throws as
+  /// above.
+  void add_entry(std::unique_ptr<RegistryEntry> entry);
+  /// Takes an entry out, so that its name is free again; null if there is none. Experiments refer to their
+  /// entries: the caller keeps the entry as long as they live.
+  std::unique_ptr<RegistryEntry> remove(const std::string& kind, const std::string& name);
+
   const RegistryEntry* find(const std::string& kind, const std::string& name) const;
   std::vector<const RegistryEntry*> of_kind(const std::string& kind) const;
   const std::vector<std::unique_ptr<RegistryEntry>>& entries() const { return entries_; }
@@ -47,7 +54,6 @@ class Registry {
   std::string current_library;
 
  private:
-  void add_entry(std::unique_ptr<RegistryEntry> entry);
   std::vector<std::unique_ptr<RegistryEntry>> entries_;
 };
 

@@ -1,0 +1,19 @@
+#include "core/app/python/module.h"
+#include "core/app/run/runner.h"
+
+namespace drape::python {
+
+void bind_errors(py::module_& m) {
+  // Errors of a config are raised by throw_errors. The last registered translator is asked first.
+  py::register_exception<RunAborted>(m, "RunAborted", PyExc_RuntimeError).attr("__doc__") =
+      "A run was aborted after it had begun, as on a full disk; its message says what to do.";
+  py::register_exception_translator([](std::exception_ptr error) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const std::logic_error& fault) {
+      PyErr_SetString(PyExc_ValueError, fault.what());
+    }
+  });
+}
+
+}  // namespace drape::python

@@ -1,0 +1,126 @@
+"""Prototypes: energies, metrics, refiners and solvers in Python, chosen by name as plugins are.
+
+A prototype is made for every experiment that names it, with the experiment's parameters as keyword arguments.
+Evaluation must depend on the arguments alone: the solvers rely on that. What it raises is raised from `run`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy
+
+from . import _core
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a prototype: its default (bool, int, float or str), unit (SI), bounds, description."""
+
+    default: Union[bool, int, float, str]
+    unit: str = ""
+    minimum: Optional[float] = None
+    maximum: Optional[float] = None
+    description: str = ""
+    source: str = ""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A value of a metric: unit ("1" if dimensionless), which way is better (lower, higher, neither), and the
+    name that errors.csv has it under, for pair metrics; empty for none."""
+
+    unit: str = "1"
+    better: str = "lower"
+    label: Optional[str] = None
+    error: str = ""
+
+
+class _Prototype:
+    parameters: dict = {}
+    """From a name to a Parameter or a plain default."""
+
+    def __init__(self, **parameters: Any):
+        for name, declared in self.parameters.items():
+            setattr(self, name, declared.default if isinstance(declared, Parameter) else declared)
+        for name, value in parameters.items():
+            if name not in self.parameters:
+                raise TypeError(f"{type(self).__name__} has no parameter \"{name}\"")
+            setattr(self, name, value)
+
+
+class Energy(_Prototype):
+    """An energy that is a sum over elements; all of a level are evaluated at once.
+
+    m elements of k vertices; x is m×k×3 [m], the elements' corners.
+    """
+
+    role = "membrane"
+    """membrane, bending, external (the load, which scales the force residual) or position."""
+    midpoint_factor: Optional[float] = None
+    """Factor on the energy if every triangle is split into four at its midpoints; None if there is none."""
+
+    def elements(self, level: _core.Level) -> numpy.ndarray:
+        """m×k vertex indices, such as level.triangles, level.edges or level.hinges."""
+        raise NotImplementedError
+
+    def rest(self, level: _core.Level, material: _core.Material) -> Any:
+        """What the evaluation needs beside x: computed once for a level, passed to each call."""
+        return None
+
+    def value(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
+        """m energies [J]; inf outside the domain."""
+        raise NotImplementedError
+
+    def gradient(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
+        """m×k×3 derivatives [N]."""
+        raise NotImplementedError
+
+    def hessian(self, x: numpy.ndarray, rest: Any) -> numpy.ndarray:
+        """m×3k×3k second derivatives [N/m], symmetric, not projected: drape does that."""
+        raise NotImplementedError
+
+
+class Metric(_Prototype):
+    """A measure of a state, or of a pair of states on one level."""
+
+    scope = "state"
+    """state, or pair: a coarse state, prolonged, against a fine one."""
+    columns: dict = {}
+    """From the name of each value to its Column."""
+
+    def measure(self, level: _core.Level, x: numpy.ndarray, other: Optional[numpy.ndarray]) -> dict:
+        """Values by name. x is n×3 [m], of a pair the fine state; `other` is the coarse one."""
+        raise NotImplementedError
+
+
+class Refiner(_Prototype):
+    """A 1→4 subdivision that depends on the rest shape alone."""
+
+    def refine(self, level: _core.Level) -> tuple:
+        """(triangles, weights): 4m×3 indices, triangle t becoming 4t … 4t + 3, and a sparse (n + e)×n matrix
+        whose rows sum to 1: children of the vertices first, then one vertex for each of level.edges."""
+        raise NotImplementedError
+
+
+class Solver(_Prototype):
+    """A method: what it does on the levels of a problem, in order."""
+
+    def solve(self, problem: _core.Problem) -> None:
+        """For each level: problem.begin(l), problem.iteration(x) as it goes, problem.end(x, status)."""
+        raise NotImplementedError
+
+
+def register(name: str, prototype: type) -> type:
+    """Register a prototype under the name that experiments use; it replaces an earlier one of that name.
+
+    Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver, RuntimeError if a
+    plugin's library has the name. Call it while no experiment is being read in another thread.
+    """
+    for kind, add in ((Energy, _core._register_energy), (Metric, _core._register_metric),
+                      (Refiner, _core._register_refiner), (Solver, _core._register_solver)):
+        if isinstance(prototype, type) and issubclass(prototype, kind):
+            add(name, prototype)
+            return prototype
+    raise TypeError(f"{prototype!r} is not a class derived from Energy, Metric, Refiner or Solver")

@@ -1,0 +1,82 @@
+#include "core/app/python/prototype_parameters.h"
+
+#include <cmath>
+
+#include "core/app/python/config_value.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape::python {
+
+namespace {
+
+/// The parameter struct of a prototype: a node for each parameter of the schema.
+using ParameterValues = std::vector<ConfigNode>;
+
+std::string type_of(const py::object& value, const std::string& name) {
+  if (py::isinstance<py::bool_>(value)) return "boolean";
+  if (py::isinstance<py::int_>(value)) return "integer";
+  if (py::isinstance<py::float_>(value)) return "number";
+  if (py::isinstance<py::str>(value)) return "text";
+  throw py::type_error("the parameter " + name + " must default to a bool, int, float or str, not " +
+                       std::string(py::repr(value)));
+}
+
+Parameter parameter_of(const std::string& name, const py::object& declared, std::size_t index,
+                       ConfigNode& value) {
+  const bool plain = !py::hasattr(declared, "default");
+  const py::object initial = plain ? declared : py::object(declared.attr("default"));
+  Parameter p;
+  p.name = name;
+  p.type = type_of(initial, name);
+  value = node_of(initial);
+  if (!plain) {
+    p.description = declared.attr("description").cast<std::string>();
+    p.unit = declared.attr("unit").cast<std::string>();
+    p.source = declared.attr("source").cast<std::string>();
+    if (!declared.attr("minimum").is_none()) p.minimum = declared.attr("minimum").cast<double>();
+    if (!declared.attr("maximum").is_none()) p.maximum = declared.attr("maximum").cast<double>();
+  }
+  p.read = [index](void* values, const ConfigNode& node, ConfigErrors&) {
+    static_cast<ParameterValues*>(values)->at(index) = node;
+  };
+  p.write = [index](const void* values) { return static_cast<const ParameterValues*>(values)->at(index); };
+  return p;
+}
+
+}  // namespace
+
+Schema schema_of_class(const py::object& type, const std::string& name) {
+  Schema schema;
+  schema.name = name;
+  ParameterValues defaults;
+  for (const auto& [key, declared] : type.attr("parameters").cast<py::dict>()) {
+    ConfigNode value;
+    schema.parameters.push_back(parameter_of(
+        key.cast<std::string>(), py::reinterpret_borrow<py::object>(declared), defaults.size(), value));
+    defaults.push_back(std::move(value));
+  }
+  schema.fresh = [defaults] { return std::make_shared<ParameterValues>(defaults); };
+  schema.copy = [](const void* values) {
+    return std::make_shared<ParameterValues>(*static_cast<const ParameterValues*>(values));
+  };
+  return schema;
+}
+
+py::dict keyword_arguments(const Schema& schema, const void* values) {
+  py::dict all;
+  for (const Parameter& p : schema.parameters) {
+    const ConfigNode node = p.write(values);
+    const py::str name(p.name);
+    if (p.type == "boolean")
+      all[name] = node.scalar == "true";
+    else if (p.type == "integer")
+      all[name] = parse_integer(node.scalar).value();
+    else if (p.type == "number")
+      all[name] = parse_number(node.scalar).value();
+    else
+      all[name] = node.scalar;
+  }
+  return all;
+}
+
+}  // namespace drape::python

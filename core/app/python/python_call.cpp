@@ -1,0 +1,69 @@
+#include "core/app/python/python_call.h"
+
+#include <exception>
+#include <string>
+#include <utility>
+
+namespace drape::python {
+
+namespace {
+
+// Of Python the exception itself: a py::error_already_set can be raised only once.
+thread_local SharedObject raised;
+thread_local std::exception_ptr thrown;
+
+thread_local int depth = 0;  // of calls
+
+SharedObject exception_of(const py::error_already_set& error) {
+  py::object value = error.value();
+  if (error.trace()) PyException_SetTraceback(value.ptr(), error.trace().ptr());
+  return share(std::move(value));
+}
+
+}  // namespace
+
+SharedObject share(py::object object) {
+  return {new py::object(std::move(object)), [](py::object* held) {
+            if (!Py_IsInitialized()) {
+              held->release();  // the interpreter and all its objects are gone
+            } else {
+              const py::gil_scoped_acquire gil;
+              *held = py::object();
+            }
+            delete held;
+          }};
+}
+
+bool has_failed() { return raised || thrown; }
+
+void forget_failure() {
+  raised = nullptr;
+  thrown = nullptr;
+}
+
+void raise_failure() {
+  if (const SharedObject exception = std::exchange(raised, nullptr)) {
+    PyErr_SetObject(py::type::of(*exception).ptr(), exception->ptr());
+    throw py::error_already_set();
+  }
+  if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+}
+
+PythonCall::PythonCall() { ++depth; }
+PythonCall::~PythonCall() { --depth; }
+
+void PythonCall::remember_failure() const {
+  if (depth > 1 || has_failed()) return;
+  try {
+    throw;
+  } catch (const py::error_already_set& error) {
+    raised = exception_of(error);
+  } catch (const py::cast_error& error) {
+    thrown = std::make_exception_ptr(
+        py::type_error(std::string("a prototype returned a value of the wrong type: ") + error.what()));
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+}
+
+}  // namespace drape::python

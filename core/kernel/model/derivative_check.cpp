@@ -1,0 +1,81 @@
+#include "core/kernel/model/derivative_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace drape {
+
+namespace {
+
+/// Σ_k weight_k f(x + offset_k h) / (12 h), for central differences of fourth order.
+constexpr double offsets[] = {-2, -1, 1, 2}, weights[] = {1, -8, 8, -1};
+
+Eigen::MatrixXd dense_hessian(const BoundEnergy& energy, const Positions& x, double& asymmetry) {
+  const auto size = static_cast<int>(x.size());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+  const Stencils stencils = energy.stencils();
+  if (stencils.rows() == 0) return dense;
+  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
+  matrix.set_zero();
+  const BlockSlots slots(*matrix.pattern, stencils);
+  BlockSink sink(slots, matrix);
+  energy.add_hessian(x, Projection::none, sink);
+  for (int i = 0; i < matrix.pattern->rows(); ++i)
+    for (int b = matrix.pattern->row_start[i]; b < matrix.pattern->row_start[i + 1]; ++b) {
+      const int j = matrix.pattern->columns[b];
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(matrix.block(b));
+      dense.block<3, 3>(3 * i, 3 * j) = block;
+      if (i == j)
+        asymmetry = std::max(asymmetry, (block - block.transpose()).cwiseAbs().maxCoeff());
+      else
+        dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
+    }
+  return dense;
+}
+
+void require_finite(bool finite, Eigen::Index coordinate) {
+  if (!finite)
+    throw std::runtime_error("the energy is not finite near x, where vertex " +
+                             std::to_string(coordinate / 3) + " moves; take another state or a smaller step");
+}
+
+/// The largest entry of |a - b| over that of |b|; |a - b| itself where b is zero.
+DerivativeError largest_error(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::Index row = 0, column = 0;
+  const double error = (a - b).cwiseAbs().maxCoeff(&row, &column), scale = b.cwiseAbs().maxCoeff();
+  return {scale > 0 ? error / scale : error, static_cast<int>(row), static_cast<int>(column)};
+}
+
+}  // namespace
+
+DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h) {
+  if (x.size() == 0 || !(h > 0)) throw std::runtime_error("a check needs vertices and a step above 0");
+  DerivativeCheck check;
+  Positions g = Positions::Zero(x.rows(), 3);
+  energy.add_gradient(x, g);
+  const Eigen::MatrixXd hessian = dense_hessian(energy, x, check.asymmetry);
+  Eigen::VectorXd by_value = Eigen::VectorXd::Zero(x.size());
+  Eigen::MatrixXd by_gradient = Eigen::MatrixXd::Zero(x.size(), x.size());
+  Positions y = x, moved(x.rows(), 3);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      y.data()[i] = x.data()[i] + offsets[k] * h;
+      moved.setZero();
+      energy.add_gradient(y, moved);
+      const double value = energy.value(y);
+      require_finite(std::isfinite(value) && moved.allFinite(), i);
+      by_value[i] += weights[k] * value / (12 * h);
+      by_gradient.col(i) +=
+          weights[k] / (12 * h) * Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size());
+    }
+    y.data()[i] = x.data()[i];
+  }
+  check.gradient = largest_error(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()), by_value);
+  check.hessian = largest_error(hessian, by_gradient);
+  if (const double scale = hessian.cwiseAbs().maxCoeff(); scale > 0) check.asymmetry /= scale;
+  return check;
+}
+
+}  // namespace drape

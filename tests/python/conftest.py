@@ -1,0 +1,52 @@
+"""What the tests of the Python module share. PYTHONPATH names the module's folder, DRAPE_BIN that of the command."""
+
+import copy
+import os
+import pathlib
+import sys
+
+import pytest
+
+import drape
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+
+# A square of 6×6 vertices on two corners, two levels: solved in milliseconds.
+SMALL = {
+    "name": "small",
+    "cloth": {"shape": "square", "side": 1, "columns": 6, "rows": 6},
+    "levels": 2,
+    "start": {"scale": [0.9, 0.9, 1], "perturbation": 1e-3},
+    "pins": [{"region": "nearest", "point": [0, 0, 0]}, {"region": "nearest", "point": [1, 0, 0]}],
+    "energies": ["neo_hookean", "hinge", "gravity"],
+    "newton": {"force_tolerance": 1e-2},
+    "methods": {"pcs": {}, "cascadic": {}, "newton": {}},
+    "reference": "newton",
+}
+
+
+@pytest.fixture
+def small():
+    """The experiment of tests/configs/data/small.yaml as a dict, to be changed at will."""
+    return copy.deepcopy(SMALL)
+
+
+@pytest.fixture
+def experiment(small):
+    return drape.Experiment(small)
+
+
+@pytest.fixture
+def scene(experiment):
+    return experiment.scene()
+
+
+@pytest.fixture
+def small_file():
+    return SOURCE / "tests/configs/data/small.yaml"
+
+
+@pytest.fixture
+def command():
+    return pathlib.Path(os.environ["DRAPE_BIN"]) / "drape"

@@ -1,0 +1,176 @@
+"""Experiments and their results: the same as the command's."""
+
+import gc
+import os
+import pathlib
+import subprocess
+
+import numpy
+import pytest
+
+import drape
+
+
+def test_version(command):
+    said = subprocess.run([command, "--version"], capture_output=True, text=True, check=True).stdout
+    assert said == f"drape {drape.__version__} ({drape.__commit__})\n"
+
+
+def test_a_run_has_the_bits_of_the_command(small_file, command, tmp_path):
+    subprocess.run([command, "run", small_file, "--method", "all", "-o", tmp_path / "command", "--no-report",
+                    "-q"], check=True)
+    theirs = drape.read_run(tmp_path / "command")
+    seen = []
+    ours = drape.Experiment(small_file).run(
+        methods=["all"], progress=False, on_iteration=lambda i: seen.append(i.force_residual))
+    assert ours.methods == theirs.methods == ["pcs", "cascadic", "newton"]
+    for method in theirs.methods:
+        assert ours[method].status == theirs[method].status
+        assert len(ours[method].levels) == 2
+        for own, other in zip(ours[method].levels, theirs[method].levels):
+            assert own.x.tobytes() == other.x.tobytes()
+            assert own.energy == other.energy
+            assert own.iterations == other.iterations
+            assert own.metrics == other.metrics
+    assert numpy.array_equal(ours.iterations["energy"], theirs.iterations["energy"])
+    assert len(seen) == ours.iterations.row_count > 10
+
+
+def test_a_dict_is_the_same_experiment_as_its_file(small, small_file):
+    of_dict = drape.Experiment(small).run(progress=False)
+    of_file = drape.Experiment(str(small_file)).run(progress=False)
+    assert of_dict.methods == of_file.methods == ["pcs"]  # the command's default
+    assert of_dict["pcs"].levels[-1].x.tobytes() == of_file["pcs"].levels[-1].x.tobytes()
+
+
+def test_set_is_the_commands(small_file, command, tmp_path):
+    subprocess.run([command, "run", small_file, "-o", tmp_path / "r", "--no-report", "-q", "--set",
+                    "energies.gravity.acceleration=[0, 0, -4]", "--set", "levels=1"], check=True)
+    experiment = drape.Experiment(small_file)
+    experiment.set("energies.gravity.acceleration", [0, 0, -4])
+    experiment.set("levels", "1")
+    assert experiment.resolved["levels"] == 1
+    ours, theirs = experiment.run(progress=False)["pcs"], drape.read_run(tmp_path / "r")["pcs"]
+    assert len(ours.levels) == 1
+    assert ours.levels[0].x.tobytes() == theirs.levels[0].x.tobytes()
+
+
+def test_every_fault_is_listed_with_its_place(tmp_path):
+    file = tmp_path / "faulty.yaml"
+    file.write_text("name: faulty\nlevls: 2\nmaterial: {density: -1}\nenergies: [gravity]\nmethods: {pcs: {}}\n")
+    experiment = drape.Experiment(file)
+    with pytest.raises(drape.ConfigError) as raised:
+        experiment.check()
+    faults = raised.value.faults
+    assert [(f.file, f.line) for f in faults] == [(str(file), 2), (str(file), 3)]
+    assert faults[0].column == 1 and "levels" in faults[0].message
+    assert "density" in faults[1].message
+    assert str(raised.value).count("\n") == 1
+    with pytest.raises(drape.ConfigError):
+        experiment.run(progress=False)
+
+
+def test_what_is_no_experiment_is_refused(small, tmp_path):
+    with pytest.raises(drape.ConfigError):
+        drape.Experiment(tmp_path / "none.yaml")
+    with pytest.raises(TypeError, match="a YAML file or a dict"):
+        drape.Experiment(7)
+    with pytest.raises(TypeError, match="cannot hold"):
+        drape.Experiment({"name": object()})
+    endless = {"name": "a"}
+    endless["material"] = endless
+    with pytest.raises(ValueError, match="too deeply"):
+        drape.Experiment(endless)
+    experiment = drape.Experiment(small)
+    with pytest.raises(drape.ConfigError, match="--set pins.9"):
+        experiment.set("pins.9.point", [0, 0, 0])
+    experiment.check()  # nothing has changed
+    with pytest.raises(RuntimeError, match="nothing_such"):
+        experiment.run(methods=["nothing_such"], progress=False)
+
+
+def test_results_in_a_folder_are_kept_and_not_overwritten(experiment, tmp_path):
+    folder = tmp_path / "r"
+    result = experiment.run(out=folder, report=False, progress=False)
+    assert result.folder == str(folder) and result.complete
+    with pytest.raises(RuntimeError):
+        experiment.run(out=folder, report=False, progress=False)
+    experiment.run(out=folder, report=False, progress=False, overwrite=True)
+    del result
+    gc.collect()
+    assert (folder / "results.json").exists()
+    with pytest.raises(RuntimeError):
+        drape.read_run(tmp_path / "none")
+
+
+def test_a_temporary_folder_goes_away_and_its_arrays_stay(experiment):
+    result = experiment.run(progress=False)
+    folder, x = pathlib.Path(result.folder), result["pcs"].levels[-1].x
+    level = result["pcs"].levels[0]
+    copy = numpy.array(x)
+    assert folder.exists() and not x.flags.writeable
+    del result
+    gc.collect()
+    assert folder.exists()  # a level may be asked for its state yet
+    assert level.x.shape == (36, 3)
+    del level
+    gc.collect()
+    assert not folder.exists()
+    assert numpy.array_equal(x, copy)
+
+
+def test_tables(experiment):
+    result = experiment.run(methods=["all"], progress=False)
+    assert list(result.levels["method"]) == [m for m in ("pcs", "cascadic", "newton") for _ in range(2)]
+    assert list(result.levels["level"]) == [0, 1] * 3
+    assert numpy.all(numpy.isfinite(result.levels["energy"]))
+    parts = sum(result.levels[c] for c in result.levels if c.startswith("energy."))
+    assert numpy.allclose(parts, result.levels["energy"], rtol=1e-12)
+    assert result.iterations.row_count == sum(result.levels["iterations"])
+    assert result.consistency.row_count == 3 and "d_H_fit" in result.consistency
+    assert any(c.startswith("reference.") for c in result.errors)
+    assert "<table>" in result.levels._repr_html_()
+    pandas = pytest.importorskip("pandas")
+    assert isinstance(result.levels.to_pandas(), pandas.DataFrame)
+
+
+def test_a_result_shows_itself(experiment, monkeypatch, tmp_path):
+    result = experiment.run(progress=False)
+    shown = result._repr_html_()
+    assert shown.startswith("<iframe srcdoc=") and "viewer-data" in shown
+    opened = []
+    monkeypatch.setattr("webbrowser.open", opened.append)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    result.show()
+    assert len(opened) == 1 and opened[0].startswith("file://")
+    page = drape.show(experiment.scene(), result["pcs"].levels[-1].x)
+    assert "viewer-canvas" in page.text
+
+
+def test_plots(experiment):
+    pytest.importorskip("matplotlib").use("Agg")
+    result = experiment.run(methods=["all"], progress=False)
+    assert len(result.plot_errors().lines) == 3
+    assert len(result.plot_convergence().lines) == 6
+    with pytest.raises(ValueError, match="choose a measure"):
+        result.plot_errors(measure="nothing_such")
+
+
+def test_threads_do_not_change_the_bits(experiment):
+    states = []
+    for count in (1, 2):
+        drape.set_threads(count)
+        states.append(experiment.run(progress=False)["pcs"].levels[-1].x.tobytes())
+    drape.set_threads(0)
+    assert states[0] == states[1]
+
+
+@pytest.mark.skipif("DRAPE_TEST_PLUGINS" not in os.environ, reason="the tests' plugins are not built")
+def test_a_plugin_of_another_abi_is_refused():
+    import sys
+
+    path = pathlib.Path(os.environ["DRAPE_TEST_PLUGINS"]) / "wrong_abi"
+    ended = subprocess.run([sys.executable, "-c", "import drape; drape.plugins('energy')"], capture_output=True,
+                           text=True, env={**os.environ, "DRAPE_PLUGIN_PATH": str(path)})
+    assert ended.returncode == 1
+    assert "RuntimeError" in ended.stderr and "does not fit this drape" in ended.stderr

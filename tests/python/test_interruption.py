@@ -1,0 +1,88 @@
+"""Runs that are stopped: by a callback, an exception, Ctrl-C; and runs side by side."""
+
+import os
+import signal
+import subprocess
+import threading
+
+import pytest
+
+import drape
+
+
+class Luck(Exception):
+    pass
+
+
+def test_a_callback_stops_and_refines(experiment):
+    stopped = experiment.run(on_iteration=lambda i: "stop", progress=False)
+    assert stopped.iterations.row_count == 1 and not stopped.complete
+    assert stopped["pcs"].levels[0].status == "cancelled"
+    refined = experiment.run(on_iteration=lambda i: "refine" if i.level == 0 else None, progress=False)
+    assert [level.status for level in refined["pcs"].levels] == ["refined_early_on_request", "converged"]
+    assert refined["pcs"].levels[0].iterations == 1
+
+
+def test_callbacks_see_levels(experiment):
+    levels = []
+    experiment.run(on_level=levels.append, progress=False)
+    assert [(level.level, level.status) for level in levels] == [(0, "converged"), (1, "converged")]
+    assert levels[1].x.shape == (121, 3) and levels[1].iterations > 0
+
+
+def test_states_of_callbacks_may_be_kept(experiment):
+    kept = []
+    result = experiment.run(on_iteration=lambda i: kept.append(i.x), progress=False)
+    assert kept[-1].tobytes() == result["pcs"].levels[-1].x.tobytes()
+    assert kept[0].tobytes() != kept[1].tobytes()
+
+
+@pytest.mark.parametrize("where", ["on_iteration", "on_level"])
+def test_an_exception_in_a_callback_is_raised(experiment, where, tmp_path, command):
+    def fail(_):
+        raise Luck("out of luck")
+
+    with pytest.raises(Luck, match="out of luck"):
+        experiment.run(out=tmp_path / "r", report=False, progress=False, **{where: fail})
+    ended = subprocess.run([command, "run", "--resume", tmp_path / "r", "-q", "--no-report"])
+    assert ended.returncode == 0
+    plain = experiment.run(progress=False)["pcs"].levels[-1].x
+    assert drape.read_run(tmp_path / "r")["pcs"].levels[-1].x.tobytes() == plain.tobytes()
+
+
+def test_what_a_callback_may_not_be_or_return(experiment):
+    with pytest.raises(TypeError, match="on_iteration must be a function"):
+        experiment.run(on_iteration=7, progress=False)
+    with pytest.raises(ValueError, match="must return None"):
+        experiment.run(on_iteration=lambda i: "on", progress=False)
+
+
+def test_ctrl_c_raises_keyboard_interrupt(small):
+    small["cloth"].update(columns=20, rows=20)
+    small["levels"] = 3
+    small["newton"] = {"force_tolerance": 1e-13, "max_steps": 100000}  # never ends by itself
+    experiment = drape.Experiment(small)
+    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        while True:  # a run that happens to end is begun again
+            experiment.run(progress=False)
+    timer.join()
+    drape.Experiment(small).check()
+
+
+def test_two_runs_in_two_threads(small):
+    alone = drape.Experiment(small).run(methods=["all"], progress=False)
+    results = [None, None]
+
+    def run(k):
+        results[k] = drape.Experiment(small).run(methods=["all"], progress=False, on_iteration=lambda i: None)
+
+    threads = [threading.Thread(target=run, args=(k,)) for k in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for result in results:
+        for method in alone.methods:
+            assert result[method].levels[-1].x.tobytes() == alone[method].levels[-1].x.tobytes()

@@ -1,0 +1,166 @@
+"""The model under an experiment: derivatives, prolongations, metrics; another method in Python."""
+
+import gc
+
+import numpy
+import pytest
+import scipy.sparse
+import scipy.sparse.linalg
+
+import drape
+
+CONTACT = {
+    "name": "contact",
+    "cloth": {"shape": "square", "side": 0.4, "columns": 7, "rows": 7},
+    "levels": 1,
+    "start": {"translate": [-0.2, -0.2, 0.1005]},
+    "energies": ["stvk", "hinge", {"type": "strain_limit", "limit": 1.1}, "gravity"],
+    "contact": {"type": "shapes", "dhat": 2e-3, "shapes": [{"name": "ball", "shape": "sphere", "radius": 0.1}]},
+    "methods": {"newton": {}},
+}
+
+
+def test_the_scene_is_the_experiments(scene):
+    assert len(scene) == len(scene.levels) == 2
+    coarse, fine = scene.levels
+    assert (coarse.vertex_count, fine.vertex_count) == (36, 121)
+    assert coarse.rest.shape == (36, 3) and coarse.triangles.shape == (50, 3)
+    assert numpy.array_equal(fine.triangles.shape, (200, 3))
+    assert numpy.all(coarse.edges[:, 0] < coarse.edges[:, 1])
+    assert coarse.vertex_area.sum() == pytest.approx(1)
+    assert scene[-1].level.index == 1
+    with pytest.raises(IndexError):
+        scene[2]
+    assert scene[0].fixed.sum() == 2
+    assert numpy.allclose(scene[0].masses, scene[0].material.area_density * coarse.vertex_area)
+
+
+def test_prolongations(scene):
+    for weights in (scene.prolongations[0], scene.midpoints[0], scene.linear[0]):
+        assert scipy.sparse.issparse(weights) and weights.shape == (121, 36)
+        assert numpy.allclose(weights.sum(axis=1), 1)
+    assert numpy.allclose(scene.prolongations[0] @ scene.levels[0].rest, scene.levels[1].rest)
+
+
+@pytest.mark.parametrize("source", ["small", "contact"])
+def test_derivatives(source, small):
+    model = drape.Experiment(small if source == "small" else CONTACT).scene()[0]
+    x = numpy.array(drape.Experiment(small if source == "small" else CONTACT).scene().start(0))
+    rng = numpy.random.default_rng(1)
+    x += 1e-4 * rng.standard_normal(x.shape)
+    if source == "contact":
+        assert model.contacts(x)[0]["count"] > 0
+    d, h = rng.standard_normal(x.shape), 1e-7
+    slope = (model.energy(x + h * d) - model.energy(x - h * d)) / (2 * h)
+    assert numpy.vdot(model.gradient(x), d) == pytest.approx(slope, rel=1e-4)
+    change = (model.gradient(x + h * d) - model.gradient(x - h * d)).ravel() / (2 * h)
+    hessian = model.hessian(x)
+    assert isinstance(hessian, scipy.sparse.bsr_matrix) and hessian.has_sorted_indices
+    assert numpy.linalg.norm(hessian @ d.ravel() - change) < 1e-4 * numpy.linalg.norm(change)
+    assert abs(hessian - hessian.T).max() < 1e-12 * abs(hessian).max()
+    projected = numpy.linalg.eigvalsh(model.hessian(x, "clamp").toarray())
+    assert projected[0] > -1e-10 * projected[-1]
+    assert sum(model.energy_parts(x).values()) == pytest.approx(model.energy(x), rel=1e-12)
+
+
+def test_contacts():
+    scene = drape.Experiment(CONTACT).scene()
+    x = scene.start(0)
+    (contacts,) = scene[0].contacts(x)
+    assert contacts["smallest_gap"] == pytest.approx(5e-4)
+    assert contacts["gaps"].shape == contacts["vertices"].shape[:1] and len(contacts["gaps"]) > 0
+    assert contacts["gaps"].min() == contacts["smallest_gap"]
+    assert contacts["forces"][24, 2] > 0  # the centre of 7×7
+    assert contacts["energy"] == scene[0].energy_parts(x)["contact"]
+    assert scene[0].intersections(x) == []
+    down = x - [0, 0, 0.01]
+    fraction, by = scene[0].max_step(x, down)
+    assert 0 < fraction < 0.06 and "ball" in by
+    first, second, where = scene[0].intersections(down)[0]
+    assert "ball" in first + second and len(where) == 3
+
+
+def test_metrics(scene, experiment):
+    result = experiment.run(progress=False)
+    level = result["pcs"].levels[0]
+    values = scene.metric("stretch", 0, level.x)
+    assert values["largest_stretch"] == level.metrics["largest_stretch"]
+    with pytest.raises(KeyError):
+        scene.metric("nothing_such", 0, level.x)
+    with pytest.raises(RuntimeError):
+        scene.metric("distance", 0, level.x)  # of pairs
+
+
+def test_arrays_outlive_their_owners(experiment):
+    scene = experiment.scene()
+    rest, masses, start = scene.levels[1].rest, scene[1].masses, scene.start(1)
+    model = scene[0]
+    copies = [numpy.array(a) for a in (rest, masses, start)]
+    energy = model.energy(scene.start(0))
+    x = numpy.array(scene.start(0))
+    del scene
+    gc.collect()
+    for array, copy in zip((rest, masses, start), copies):
+        assert numpy.array_equal(array, copy)
+    assert model.energy(x) == energy
+    with pytest.raises(ValueError):
+        rest[0, 0] = 1
+
+
+def test_wrong_shapes_and_types(scene):
+    model = scene[0]
+    x = numpy.array(scene.start(0))
+    for wrong in (x[:-1], x.T, x.ravel(), numpy.zeros((36, 4)), 7.0):
+        with pytest.raises(ValueError, match="shape"):
+            model.energy(wrong)
+    for wrong in (x.astype(complex), x.astype(str), x.astype(object), None):
+        with pytest.raises(TypeError, match="real numbers"):
+            model.gradient(wrong)
+    assert model.energy(x.tolist()) == model.energy(x)
+    assert model.energy(numpy.asfortranarray(x)) == model.energy(x)
+    assert model.energy(x.astype(numpy.float32)) == pytest.approx(model.energy(x), rel=1e-3)
+    with pytest.raises(ValueError, match="projection must be"):
+        model.hessian(x, "all")
+    with pytest.raises(ValueError, match="blend"):
+        model.hessian(x, "clamp", 2)
+
+
+def newton(model, x, tolerance):
+    """Projected Newton with backtracking, on free vertices."""
+    free = numpy.flatnonzero(numpy.repeat(~model.fixed, 3))
+    for _ in range(500):
+        if model.force_residual(x) < tolerance:
+            return x
+        g = model.gradient(x).ravel()
+        h = scipy.sparse.csc_matrix(model.hessian(x, "clamp"))[free][:, free]
+        p = numpy.zeros_like(g)
+        p[free] = -scipy.sparse.linalg.spsolve(h + 1e-9 * scipy.sparse.identity(len(free)), g[free])
+        energy, length = model.energy(x), 1.0
+        while model.energy(x + length * p.reshape(-1, 3)) > energy + 1e-4 * length * (g @ p):
+            length /= 2
+        x = x + length * p.reshape(-1, 3)
+    raise AssertionError("Newton does not converge")
+
+
+def test_another_newton_ends_at_the_same_energy(small):
+    small["newton"] = {"force_tolerance": 1e-6}
+    small["levels"] = 1
+    experiment = drape.Experiment(small)
+    scene = experiment.scene()
+    result = experiment.run(methods=["newton"], progress=False)["newton"].levels[0]
+    # From a state near the end: which folds a drape from afar takes is the method's own.
+    rng = numpy.random.default_rng(2)
+    x = scene[0].set_dirichlet(result.x + 1e-5 * rng.standard_normal(result.x.shape))
+    own = newton(scene[0], x, 1e-6)
+    assert scene[0].energy(own) == pytest.approx(result.energy, rel=1e-8)
+
+
+def test_a_level_of_ones_own():
+    level = drape.Level([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert level.edges.shape == (3, 2) and level.hinges.shape == (0, 4)
+    with pytest.raises(ValueError):
+        drape.Level([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])
+    with pytest.raises(ValueError, match="shape"):
+        drape.Level([[0, 0, 0]], [0, 1, 2])
+    with pytest.raises(TypeError, match="integers"):
+        drape.Level([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0.0, 1.0, 2.0]])

@@ -1,0 +1,230 @@
+"""Energies, metrics, refiners and solvers in Python."""
+
+import gc
+
+import numpy
+import pytest
+import scipy.sparse
+
+import drape
+import prototypes
+
+
+@pytest.fixture(autouse=True)
+def registered():
+    for name, prototype in (("numpy_stvk", prototypes.NumpyStvk), ("springs", prototypes.Springs),
+                            ("height", prototypes.Height), ("python_midpoint", prototypes.Midpoint),
+                            ("python_newton", prototypes.ProjectedNewton)):
+        assert drape.register(name, prototype) is prototype
+
+
+def deformed(level, size=0.05):
+    rng = numpy.random.default_rng(3)
+    return level.rest @ numpy.array([[1.2, 0.1, 0.3], [-0.2, 0.9, 0.1], [0, 0, 1]]) + size * \
+        rng.standard_normal(level.rest.shape)
+
+
+def test_a_numpy_membrane_is_its_twin(scene):
+    level = scene.levels[1]
+    material = drape.Material()
+    twin = drape.bind_energy("stvk", level, material)
+    own = drape.bind_energy(prototypes.NumpyStvk(), level, material)
+    x = deformed(level)
+    assert own.value(x) == pytest.approx(twin.value(x), rel=1e-12)
+    g, expected = own.gradient(x), twin.gradient(x)
+    assert numpy.linalg.norm(g - expected) <= 1e-12 * numpy.linalg.norm(expected)
+    h, expected = own.hessian(x), twin.hessian(x)
+    assert abs(h - expected).max() <= 1e-12 * abs(expected).max()
+
+
+def test_check_energy(capsys):
+    assert drape.check_energy(prototypes.NumpyStvk())
+    assert drape.check_energy(prototypes.Springs(stiffness=3.0))
+    assert drape.check_energy("neo_hookean")
+    assert "gradient: largest error" in capsys.readouterr().out
+
+    class Wrong(prototypes.Springs):
+        def gradient(self, x, rest):
+            g = super().gradient(x, rest)
+            g[0, 1, 2] *= 1.5
+            return g
+
+    assert not drape.check_energy(Wrong())
+
+
+def test_an_experiment_uses_a_prototype_by_name(small):
+    results = {}
+    for membrane in ("stvk", "numpy_stvk"):
+        small["energies"][0] = membrane
+        results[membrane] = drape.Experiment(small).run(methods=["pcs", "newton"], progress=False)
+    for method in ("pcs", "newton"):
+        own, twin = (results[name][method] for name in ("numpy_stvk", "stvk"))
+        assert [level.status for level in own.levels] == [level.status for level in twin.levels]
+        assert own.levels[-1].energy == pytest.approx(twin.levels[-1].energy, rel=1e-5)
+        assert "numpy_stvk" in own.levels[-1].energy_parts
+
+
+def test_parameters_are_checked_like_a_plugins(small):
+    small["energies"][0] = {"type": "springs", "stiffness": 20}
+    experiment = drape.Experiment(small)
+    assert experiment.resolved["energies"][0] == {"type": "springs", "stiffness": 20}
+    for key, value in (("stiffness", -1), ("stiffness", "much"), ("stifness", 1)):
+        small["energies"][0] = {"type": "springs", key: value}
+        with pytest.raises(drape.ConfigError, match="stiffness"):
+            drape.Experiment(small).check()
+    assert "springs" in dict(drape.plugins("energy"))
+    assert dict(drape.plugins("energy"))["springs"] == "Springs along the edges."
+
+
+def test_metrics_refiners_and_solvers(small):
+    small["metrics"] = ["height", "stretch"]
+    small["refiner"] = "python_midpoint"
+    small["methods"] = {"newton": {}, "python_newton": {"tolerance": 1e-2}}
+    result = drape.Experiment(small).run(methods=["all"], progress=False)
+    x = result["newton"].levels[1].x
+    assert result["newton"].levels[1].metrics["lowest_z"] == x[:, 2].min()
+    small["refiner"] = "midpoint"
+    same = drape.Experiment(small).run(methods=["newton"], progress=False)
+    assert same["newton"].levels[1].x.tobytes() == x.tobytes()
+    own = result["python_newton"]
+    assert [level.status for level in own.levels] == ["converged", "converged"]
+    assert own.levels[1].force_residual < 1e-2
+    assert own.levels[1].iterations > 0
+
+
+def test_a_solver_steps_and_stops(small):
+    small["methods"] = {"python_newton": {}}
+    experiment = drape.Experiment(small)
+    solver = experiment.solver("python_newton")
+    first = next(solver)
+    assert first.level == 0 and first.step == 1
+    solver.stop()
+    assert list(solver) == []
+    assert solver.levels[0].status == "cancelled"
+    with pytest.raises(RuntimeError, match="cannot go on from a state"):
+        again = experiment.solver("python_newton")
+        next(again)
+        again.set("material.density", 900)
+
+
+def test_a_prototype_is_replaced_and_earlier_experiments_stay(small):
+    class Unlucky(prototypes.Springs):
+        def value(self, x, rest):
+            raise ArithmeticError("out of luck")
+
+    small["energies"][0] = "springs"
+    before = drape.Experiment(small).scene()
+    drape.register("springs", Unlucky)
+    gc.collect()
+    x = before.start(0)
+    assert numpy.isfinite(before[0].energy(x))
+    with pytest.raises(ArithmeticError, match="out of luck"):
+        drape.Experiment(small).scene()[0].energy(x)
+    with pytest.raises(RuntimeError, match="already registered"):
+        drape.register("stvk", prototypes.Springs)
+    with pytest.raises(TypeError, match="not a class derived"):
+        drape.register("dict", dict)
+
+
+@pytest.mark.parametrize("function, answer, error", [
+    ("value", lambda self, x, rest: 1 / 0, ZeroDivisionError),
+    ("gradient", lambda self, x, rest: x[:-1], ValueError),
+    ("hessian", lambda self, x, rest: numpy.zeros((len(x), 3, 3)), ValueError),
+    ("value", lambda self, x, rest: ["a"] * len(x), TypeError),
+    ("value", lambda self, x, rest: None, TypeError),
+])
+def test_what_a_prototype_raises_is_raised(small, function, answer, error):
+    drape.register("bad", type("Bad", (prototypes.Springs,), {function: answer}))
+    small["energies"][0] = "bad"
+    experiment = drape.Experiment(small)
+    with pytest.raises(error):
+        experiment.run(progress=False)
+    with pytest.raises(error):
+        for _ in experiment.solver("newton"):
+            pass
+
+
+def test_elements_are_checked(small):
+    for elements in ([[0, 36]], [[-1, 0]], [0, 1], numpy.zeros((0, 2), int), [[0.5, 1]]):
+        drape.register("bad", type("Bad", (prototypes.Springs,), {"elements": lambda self, level: elements}))
+        small["energies"][0] = "bad"
+        with pytest.raises(drape.ConfigError, match="elements"):
+            drape.Experiment(small).check()
+
+
+def test_a_metric_or_refiner_that_fails(small):
+    class Broken(drape.Metric):
+        columns = {"a": drape.Column()}
+
+        def measure(self, level, x, other):
+            raise KeyError("lost")
+
+    class Thin(drape.Refiner):
+        def refine(self, level):
+            return level.triangles, scipy.sparse.identity(level.vertex_count)
+
+    drape.register("broken", Broken)
+    drape.register("thin", Thin)
+    with pytest.raises(KeyError, match="lost"):
+        drape.Experiment({**small, "metrics": ["broken"]}).run(progress=False)
+    with pytest.raises(drape.ConfigError, match="triangles must have the shape"):
+        drape.Experiment({**small, "refiner": "thin"}).check()
+
+
+def test_what_a_solver_keeps_is_not_used_after_its_end(small):
+    kept = []
+
+    class Keeps(prototypes.ProjectedNewton):
+        def solve(self, problem):
+            kept.append((problem, problem.model(0), problem.start(0)))
+            super().solve(problem)
+
+    drape.register("keeps", Keeps)
+    drape.Experiment({**small, "methods": {"keeps": {}}, "reference": {}}).run(progress=False)
+    problem, model, x = kept[0]
+    assert x.shape == (36, 3)
+    with pytest.raises(RuntimeError, match="has ended"):
+        problem.start(0)
+    with pytest.raises(RuntimeError, match="has ended"):
+        model.energy(x)
+
+
+def test_what_python_handles_is_not_raised(small):
+    class Picky(prototypes.Springs):
+        def value(self, x, rest):
+            if numpy.isnan(x).any():
+                raise ArithmeticError("not a number")
+            return super().value(x, rest)
+
+    drape.register("picky", Picky)
+    small["energies"][0] = "picky"
+
+    class Careful(prototypes.ProjectedNewton):
+        def solve(self, problem):
+            with pytest.raises(ArithmeticError):
+                problem.model(0).energy(numpy.nan * problem.start(0))
+            super().solve(problem)
+
+    drape.register("careful", Careful)
+    experiment = drape.Experiment({**small, "methods": {"careful": {}}, "reference": {}})
+    model, start = experiment.scene()[0], experiment.scene().start(0)
+
+    def ask(iteration):
+        with pytest.raises(ArithmeticError):
+            model.energy(numpy.nan * start)
+
+    assert experiment.run(on_iteration=ask, progress=False).complete
+
+
+def test_an_exception_keeps_its_type_through_solver_and_energy(small):
+    class Unlucky(prototypes.Springs):
+        def gradient(self, x, rest):
+            raise ArithmeticError("out of luck")
+
+    drape.register("unlucky", Unlucky)
+    small["energies"][0] = "unlucky"
+    experiment = drape.Experiment({**small, "methods": {"python_newton": {}}, "reference": {}})
+    with pytest.raises(ArithmeticError, match="out of luck"):
+        experiment.run(progress=False)
+    with pytest.raises(ArithmeticError, match="out of luck"):
+        next(experiment.solver("python_newton"))

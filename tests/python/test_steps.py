@@ -1,0 +1,105 @@
+"""A method step by step."""
+
+import gc
+import threading
+
+import numpy
+import pytest
+
+import drape
+
+
+def test_iterations_have_the_bits_of_a_run(experiment):
+    run = experiment.run(progress=False)
+    solver = experiment.solver("pcs")
+    residuals, states = [], []
+    for iteration in solver.iterate():
+        residuals.append(iteration.force_residual)
+        states.append(iteration.x)
+    assert numpy.allclose(residuals, run.iterations["force_residual"], rtol=1e-8)
+    assert solver.levels[-1].x.tobytes() == run["pcs"].levels[-1].x.tobytes() == states[-1].tobytes()
+    assert [level.status for level in solver.levels] == ["converged", "converged"]
+    assert list(solver.iterate()) == []
+
+
+def test_stop_and_refine(experiment):
+    solver = experiment.solver("pcs")
+    next(solver)
+    solver.refine()
+    assert next(solver).level == 1
+    solver.stop()
+    assert list(solver) == []
+    assert [level.status for level in solver.levels] == ["refined_early_on_request", "cancelled"]
+
+
+def test_a_checkpoint_goes_on_to_the_same_bits(experiment):
+    whole = experiment.solver("pcs")
+    expected = [iteration.x for iteration in whole]
+    part = experiment.solver("pcs")
+    for _ in range(3):
+        next(part)
+    checkpoint = part.checkpoint()
+    del part
+    gc.collect()
+    resumed = experiment.solver("pcs", start=checkpoint)
+    states = list(resumed)
+    assert states[-1].x.tobytes() == expected[-1].tobytes()
+    assert len(states) == len(expected) - 2  # the checkpoint's step is repeated
+
+
+def test_a_parameter_changes_between_steps(experiment):
+    solver = experiment.solver("newton")
+    with pytest.raises(RuntimeError, match="nothing is iterated"):
+        solver.set("material.density", 900)
+    x = next(solver).x
+    solver.set("material.density", 900.0)
+    assert numpy.array_equal(solver.scene.start(0), x)
+    solver.set("pins.0.translate", [0, 0, 0.2])
+    for _ in solver:
+        pass
+    assert solver.scene[0].material.density == 900
+    assert abs(solver.levels[0].x[0, 2] - 0.2) < 1e-5
+    again = experiment.solver("newton")
+    next(again)
+    with pytest.raises(drape.ConfigError, match="density"):
+        again.set("material.density", -1)
+    with pytest.raises(drape.ConfigError, match="cloth"):
+        again.set("cloth.columns", 7)
+    next(again)  # goes on as it was
+
+
+def test_a_solve_may_be_left_at_any_time(experiment):
+    for _ in range(20):
+        next(experiment.solver("pcs"))
+    gc.collect()
+    never = experiment.solver("pcs")
+    del never
+
+
+def test_unknown_methods(experiment):
+    with pytest.raises(RuntimeError, match="nothing_such"):
+        experiment.solver("nothing_such")
+    with pytest.raises(RuntimeError, match="one method"):
+        experiment.solver("all")
+
+
+def test_a_solve_is_of_one_thread_at_a_time(small):
+    small["cloth"].update(columns=40, rows=40)
+    solver = drape.Experiment(small).solver("newton")
+    refused = []
+
+    def advance():
+        for _ in range(50):
+            try:
+                next(solver)
+            except RuntimeError as error:
+                refused.append(str(error))
+            except StopIteration:
+                return
+
+    threads = [threading.Thread(target=advance) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all("being advanced" in message for message in refused)

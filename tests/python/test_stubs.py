@@ -1,0 +1,82 @@
+"""The type stubs name what the module has, and the documents' code runs."""
+
+import ast
+import inspect
+import json
+import re
+
+import pytest
+
+import drape
+import drape._core
+from conftest import SOURCE
+
+
+def stub():
+    return ast.parse((SOURCE / "core/app/python/drape/_core.pyi").read_text())
+
+
+def names_in(nodes):
+    names = set()
+    for node in nodes:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            names.add(node.name)
+        elif isinstance(node, ast.AnnAssign):
+            names.add(node.target.id)
+    return names
+
+
+def public(names):
+    return {n for n in names if not n.startswith("__") or n in ("__version__", "__commit__")}
+
+
+def test_the_stubs_name_everything():
+    assert public(names_in(stub().body)) == public(vars(drape._core))
+
+
+def test_the_stubs_classes_have_the_same_members():
+    classes = [node for node in stub().body if isinstance(node, ast.ClassDef)]
+    assert len(classes) > 12
+    for node in classes:
+        if node.name == "RunAborted":
+            continue
+        own = {n for n in vars(getattr(drape._core, node.name)) if not n.startswith("__")}
+        assert public(names_in(node.body)) == own, node.name
+
+
+def test_everything_public_has_a_docstring():
+    for name in drape.__all__:
+        thing = getattr(drape, name)
+        if inspect.isclass(thing) or inspect.isroutine(thing):
+            assert inspect.getdoc(thing), name
+
+
+def blocks_of(page):
+    text = (SOURCE / page).read_text()
+    return re.findall(r"```python\n(.*?)```", text, re.S)
+
+
+@pytest.mark.parametrize("page", ["docs/guide/python.md", "docs/extend/from-python.md"])
+def test_the_code_of_a_page_runs(page, monkeypatch, tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    monkeypatch.setattr("webbrowser.open", lambda url: None)
+    monkeypatch.chdir(SOURCE)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    code = blocks_of(page)
+    assert code
+    exec(compile("\n".join(code), page, "exec"), {"__name__": "page"})
+
+
+@pytest.mark.parametrize("notebook", sorted((SOURCE / "docs/guide/notebooks").glob("*.ipynb")),
+                         ids=lambda path: path.stem)
+def test_a_notebook_runs(notebook, monkeypatch):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    monkeypatch.chdir(SOURCE)
+    cells = json.loads(notebook.read_text())["cells"]
+    code = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    assert len(code) >= 3
+    names = {"__name__": "notebook"}
+    for number, cell in enumerate(code):
+        exec(compile(cell, f"{notebook.name}, code cell {number + 1}", "exec"), names)

@@ -1,0 +1,147 @@
+#include "core/kernel/solve/stepped_solve.h"
+
+#include <catch2/catch.hpp>
+#include <optional>
+
+#include "core/app/files/yaml_file.h"
+#include "core/app/run/steered_solve.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+ConfigNode small_experiment() {
+  ConfigErrors errors;
+  ConfigNode source =
+      read_yaml(std::filesystem::path(folders::source()) / "tests/configs/data/small.yaml", errors);
+  throw_errors(errors);
+  return source;
+}
+
+std::unique_ptr<SteeredSolve> begin(const std::string& method, MethodState from = {}) {
+  ConfigErrors errors;
+  auto solve = SteeredSolve::begin(small_experiment(), method, test_registry(), errors, std::move(from));
+  throw_errors(errors);
+  return solve;
+}
+
+struct Quiet : Observer {
+  std::vector<double> residuals;
+  void iteration(const IterationRow& row, const Positions&) override {
+    residuals.push_back(row.force_residual);
+  }
+};
+
+/// What Solver::solve gives.
+std::vector<LevelResult> solved(const std::string& method, Quiet& observer) {
+  const auto fresh = begin(method);
+  return fresh->experiment()->solver_of(method).solve(fresh->scene()->problem(), observer);
+}
+
+void advance_to_end(SteppedSolve& solve) {
+  while (solve.advance()) {
+  }
+}
+
+/// A solver that fails in its second iteration and cannot be resumed.
+struct Failing : Solver {
+  std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const override {
+    observer.level_started(0);
+    observer.iteration({}, problem.starts[0]);
+    throw std::runtime_error("out of luck");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a stepped solve shows every iteration and ends with the bits of a plain one") {
+  for (const char* method : {"pcs", "newton"}) {
+    Quiet plain;
+    const std::vector<LevelResult> expected = solved(method, plain);
+    const auto stepped = begin(method);
+    SteppedSolve& solve = stepped->solve();
+    std::vector<double> residuals;
+    while (solve.advance()) {
+      residuals.push_back(solve.row().force_residual);
+      CHECK(solve.x().rows() == stepped->scene()->hierarchy.levels[solve.row().level].vertex_count());
+    }
+    CHECK(solve.ended());
+    CHECK_FALSE(solve.advance());
+    CHECK(residuals == plain.residuals);
+    REQUIRE(solve.finished().size() == expected.size());
+    for (std::size_t l = 0; l < expected.size(); ++l) {
+      CHECK(solve.finished()[l].outcome == expected[l].outcome);
+      CHECK(solve.finished()[l].x == expected[l].x);
+    }
+  }
+}
+
+TEST_CASE("a checkpoint of a stepped solve is resumed to the same bits") {
+  Quiet plain;
+  const std::vector<LevelResult> expected = solved("pcs", plain);
+  for (const int steps : {1, 3, static_cast<int>(plain.residuals.size()) - 1}) {
+    const auto first = begin("pcs");
+    for (int k = 0; k < steps; ++k) REQUIRE(first->solve().advance());
+    const MethodState checkpoint = first->solve().checkpoint();
+    const auto resumed = begin("pcs", checkpoint);
+    advance_to_end(resumed->solve());
+    REQUIRE(resumed->solve().finished().size() == expected.size());
+    CHECK(resumed->solve().finished().back().x == expected.back().x);
+  }
+}
+
+TEST_CASE("a stepped solve is stopped, refined or left at any iteration") {
+  const auto stopped = begin("newton");
+  REQUIRE(stopped->solve().advance());
+  stopped->solve().stop();
+  CHECK_FALSE(stopped->solve().advance());
+  REQUIRE(stopped->solve().finished().size() == 1);
+  CHECK(stopped->solve().finished()[0].outcome == Outcome::cancelled);
+
+  const auto refined = begin("pcs");
+  REQUIRE(refined->solve().advance());
+  refined->solve().refine();
+  REQUIRE(refined->solve().advance());
+  CHECK(refined->solve().row().level == 1);
+  CHECK(refined->solve().finished()[0].outcome == Outcome::refined_early_on_request);
+  // Both destructors are called here, that of the second in the middle of its solve.
+}
+
+TEST_CASE("what a solver throws is thrown to the caller, and only what resumes takes a state") {
+  const auto any = begin("pcs");
+  const Failing failing;
+  SteppedSolve solve(failing, any->scene()->problem());
+  REQUIRE(solve.advance());
+  CHECK_THROWS_WITH(solve.advance(), "out of luck");
+  CHECK_FALSE(solve.advance());
+  MethodState state;
+  state.level = 1;
+  CHECK_THROWS_WITH(SteppedSolve(failing, any->scene()->problem(), state),
+                    Catch::Contains("cannot go on from a state"));
+}
+
+TEST_CASE("a parameter that is changed during a solve acts from its state on") {
+  const auto solve = begin("newton");
+  ConfigErrors errors;
+  CHECK_THROWS_WITH(solve->set("material.density", "900", errors), Catch::Contains("nothing is iterated"));
+  for (int k = 0; k < 3; ++k) REQUIRE(solve->solve().advance());
+  const Positions before = solve->solve().x();
+  CHECK_FALSE(solve->set("material.density", "-1", errors));
+  REQUIRE(errors.size() == 1);
+  CHECK(solve->experiment()->parameters.material.density > 0);
+  errors.clear();
+  CHECK_FALSE(solve->set("cloth.columns", "7", errors));
+  CHECK_FALSE(errors.empty());
+  CHECK(solve->solve().x() == before);
+  errors.clear();
+
+  REQUIRE(solve->set("pins.0.translate", "[0, 0, 0.2]", errors));
+  CHECK(solve->scene()->starts[0] == before);
+  advance_to_end(solve->solve());
+  const LevelResult& result = solve->solve().finished().front();
+  CHECK(has_converged(result.outcome));
+  const DirichletVertex& pin = solve->scene()->models[0]->dirichlet().front();
+  CHECK(pin.target.z() == Approx(0.2));
+  CHECK((result.x.row(pin.vertex).transpose() - pin.target).norm() < 1e-5);
+}
