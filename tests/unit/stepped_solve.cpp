@@ -138,6 +138,9 @@ TEST_CASE("a parameter that is changed during a solve acts from its state on") {
 
   REQUIRE(solve->set("pins.0.translate", "[0, 0, 0.2]", errors));
   CHECK(solve->scene()->starts[0] == before);
+  REQUIRE(solve->set("material.density", "900", errors));  // a second change, from the same state
+  CHECK(solve->scene()->starts[0] == before);
+  CHECK(solve->experiment()->parameters.material.density == 900);
   advance_to_end(solve->solve());
   const LevelResult& result = solve->solve().finished().front();
   CHECK(has_converged(result.outcome));

@@ -27,22 +27,26 @@ std::unique_ptr<SteeredSolve> SteeredSolve::begin(ConfigNode source, const std::
 }
 
 bool SteeredSolve::set(const std::string& key, const std::string& value, ConfigErrors& errors) {
-  if (solve_->x().rows() == 0)
+  const bool iterated = solve_->x().rows() > 0;
+  if (!iterated && level_ < 0)
     throw std::runtime_error("nothing is iterated yet; set " + key + " in the experiment");
   ConfigNode source = experiment_->source;
   if (!set_path(source, key, value, errors)) return false;
   auto changed = read_experiment(std::move(source), *experiment_->registry, errors);
   if (!changed) return false;
   MethodState from;
-  from.level = solve_->row().level;
+  from.level = iterated ? solve_->row().level : level_;
+  const Positions& x = iterated ? solve_->x() : scene_->starts[from.level];
   refuse_other_cloth(*experiment_, *changed, from.level, errors);
   if (!errors.empty()) return false;
   auto experiment = std::make_shared<const Experiment>(std::move(*changed));
   std::shared_ptr<Scene> scene = build_scene(*experiment, errors, IntersectingStart::allowed);
-  if (scene) warm_start_scene(*experiment, *scene, from.level, solve_->x(), errors);
+  if (scene) warm_start_scene(*experiment, *scene, from.level, x, errors);
   if (!errors.empty()) return false;
+  const int level = from.level;
   auto solve =
       std::make_unique<SteppedSolve>(experiment->solver_of(method_), scene->problem(), std::move(from));
+  level_ = level;
   solve_ = std::move(solve);
   experiment_ = std::move(experiment);
   scene_ = std::move(scene);

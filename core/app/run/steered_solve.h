@@ -28,14 +28,16 @@ class SteeredSolve {
 
   /// Changes one value, as `drape run --resume --set` does, and goes on from the present state on its level:
   /// Dirichlet vertices move from there to their targets. Returns false, with errors appended and nothing
-  /// changed, if the value is refused or the state does not fit it. Throws std::runtime_error before the
-  /// first iteration, and if the method's solver cannot go on from a state.
+  /// changed, if the value is refused or the state does not fit it. Several changes in a row go on from the
+  /// same state. Throws std::runtime_error before the first iteration, and if the method's solver cannot go
+  /// on from a finer level.
   bool set(const std::string& key, const std::string& value, ConfigErrors& errors);
 
  private:
   SteeredSolve() = default;
 
   std::string method_;
+  int level_ = -1;  // of the last change; -1 before the first
   std::shared_ptr<const Experiment> experiment_;
   std::shared_ptr<const Scene> scene_;
   std::unique_ptr<SteppedSolve> solve_;  // last: it refers to the others
