@@ -3,12 +3,15 @@
 import gc
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy
 import pytest
 
 import drape
+from conftest import SOURCE
+from drape import plots
 
 
 def test_version(command):
@@ -145,6 +148,12 @@ def test_a_result_shows_itself(experiment, monkeypatch, tmp_path):
     assert len(opened) == 1 and opened[0].startswith("file://")
     page = drape.show(experiment.scene(), result["pcs"].levels[-1].x)
     assert "viewer-canvas" in page.text
+
+
+def test_plots_have_the_reports_colours():
+    style = (SOURCE / "core/app/view/assets/page.css").read_text()
+    light = {n: colour for n, colour in reversed(re.findall(r"--method-(\d): (#[0-9a-f]{6})", style))}
+    assert list(plots.METHOD_COLOURS) == [light[str(n)] for n in range(len(light))]
 
 
 def test_plots(experiment):

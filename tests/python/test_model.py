@@ -80,6 +80,16 @@ def test_contacts():
     assert "ball" in first + second and len(where) == 3
 
 
+def test_states_that_contacts_cannot_search():
+    scene = drape.Experiment(CONTACT).scene()
+    model, x = scene[0], scene.start(0)
+    for wrong in (numpy.nan * x, numpy.where(x == x[0, 0], numpy.inf, x), 1e30 + x):
+        for ask in (model.energy, model.gradient, model.hessian, model.energy_parts, model.force_residual,
+                    model.contacts, model.intersections, lambda y: model.max_step(x, y)):
+            with pytest.raises(ValueError, match="must be finite"):
+                ask(wrong)
+
+
 def test_metrics(scene, experiment):
     result = experiment.run(progress=False)
     level = result["pcs"].levels[0]

@@ -101,10 +101,12 @@ def test_a_solver_steps_and_stops(small):
     solver.stop()
     assert list(solver) == []
     assert solver.levels[0].status == "cancelled"
+    again = experiment.solver("python_newton")
+    next(again)
+    again.set("material.density", 900)  # the coarsest level begins anew, from this state
+    assert next(iteration for iteration in again if iteration.level == 1)
     with pytest.raises(RuntimeError, match="cannot go on from a state"):
-        again = experiment.solver("python_newton")
-        next(again)
-        again.set("material.density", 900)
+        again.set("material.density", 800)
 
 
 def test_a_prototype_is_replaced_and_earlier_experiments_stay(small):
@@ -154,10 +156,13 @@ def test_elements_are_checked(small):
 
 def test_a_metric_or_refiner_that_fails(small):
     class Broken(drape.Metric):
+        parameters = {"fails": False}  # experiments that name no metrics have this one too
         columns = {"a": drape.Column()}
 
         def measure(self, level, x, other):
-            raise KeyError("lost")
+            if self.fails:
+                raise KeyError("lost")
+            return {"a": 1.0}
 
     class Thin(drape.Refiner):
         def refine(self, level):
@@ -166,7 +171,7 @@ def test_a_metric_or_refiner_that_fails(small):
     drape.register("broken", Broken)
     drape.register("thin", Thin)
     with pytest.raises(KeyError, match="lost"):
-        drape.Experiment({**small, "metrics": ["broken"]}).run(progress=False)
+        drape.Experiment({**small, "metrics": [{"type": "broken", "fails": True}]}).run(progress=False)
     with pytest.raises(drape.ConfigError, match="triangles must have the shape"):
         drape.Experiment({**small, "refiner": "thin"}).check()
 
@@ -187,6 +192,28 @@ def test_what_a_solver_keeps_is_not_used_after_its_end(small):
         problem.start(0)
     with pytest.raises(RuntimeError, match="has ended"):
         model.energy(x)
+
+
+def test_a_solver_reports_finite_states(small):
+    class Lost(drape.Solver):
+        def solve(self, problem):
+            problem.begin(0)
+            with pytest.raises(ValueError, match="finite"):
+                problem.iteration(numpy.inf * problem.start(0))
+            with pytest.raises(ValueError, match="finite"):
+                problem.end(numpy.nan * problem.start(0))
+            with pytest.raises(IndexError):
+                problem.model(9)
+            problem.end(problem.start(0), "stalled")
+            with pytest.raises(IndexError):
+                problem.begin(9)
+            problem.begin(1)  # the level that does not exist has not begun
+            problem.end(problem.start(1), "infeasible", "not tried")
+
+    drape.register("lost", Lost)
+    result = drape.Experiment({**small, "methods": {"lost": {}}, "reference": {}}).run(progress=False)
+    assert [(level.status, level.message) for level in result["lost"].levels] == [
+        ("stalled", ""), ("infeasible", "not tried")]
 
 
 def test_what_python_handles_is_not_raised(small):

@@ -1,6 +1,9 @@
 """A method step by step."""
 
 import gc
+import pathlib
+import subprocess
+import sys
 import threading
 
 import numpy
@@ -32,7 +35,7 @@ def test_stop_and_refine(experiment):
     assert [level.status for level in solver.levels] == ["refined_early_on_request", "cancelled"]
 
 
-def test_a_checkpoint_goes_on_to_the_same_bits(experiment):
+def test_a_checkpoint_goes_on_to_the_same_bits(experiment, small):
     whole = experiment.solver("pcs")
     expected = [iteration.x for iteration in whole]
     part = experiment.solver("pcs")
@@ -45,6 +48,13 @@ def test_a_checkpoint_goes_on_to_the_same_bits(experiment):
     states = list(resumed)
     assert states[-1].x.tobytes() == expected[-1].tobytes()
     assert len(states) == len(expected) - 2  # the checkpoint's step is repeated
+    with pytest.raises(RuntimeError, match="method pcs"):
+        experiment.solver("cascadic", start=checkpoint)
+    for key, value in (("cloth.columns", 7), ("levels", 1), ("material.density", 900)):
+        other = drape.Experiment(small)
+        other.set(key, value)
+        with pytest.raises(RuntimeError, match="other values"):
+            other.solver("pcs", start=checkpoint)
 
 
 def test_a_parameter_changes_between_steps(experiment):
@@ -74,6 +84,22 @@ def test_a_solve_may_be_left_at_any_time(experiment):
     gc.collect()
     never = experiment.solver("pcs")
     del never
+
+
+def test_a_solve_that_is_left_at_exit_ends(small):
+    script = f"""
+import sys
+sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r})
+import drape, prototypes
+drape.register("springs", prototypes.Springs)
+small = {small!r}
+small["energies"][0] = "springs"
+solver = drape.Experiment(small).solver("newton")
+next(solver)
+sys.modules["keeps it"] = solver
+"""
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=100)
+    assert (ended.returncode, ended.stderr) == (0, "")
 
 
 def test_unknown_methods(experiment):

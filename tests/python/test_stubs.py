@@ -4,6 +4,8 @@ import ast
 import inspect
 import json
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -42,6 +44,13 @@ def test_the_stubs_classes_have_the_same_members():
             continue
         own = {n for n in vars(getattr(drape._core, node.name)) if not n.startswith("__")}
         assert public(names_in(node.body)) == own, node.name
+
+
+def test_mypy_accepts_the_package_and_its_use(tmp_path):
+    pytest.importorskip("mypy")
+    ended = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", tmp_path], cwd=SOURCE, capture_output=True,
+                           text=True)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
 def test_everything_public_has_a_docstring():

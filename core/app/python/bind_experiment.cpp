@@ -102,15 +102,17 @@ std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
 }
 
 std::unique_ptr<SolveHandle> solver(const ExperimentHandle& handle, const std::string& method,
-                                    const std::shared_ptr<MethodState>& start) {
+                                    const std::shared_ptr<CheckpointHandle>& start) {
   ConfigErrors errors;
   std::unique_ptr<SteeredSolve> solve;
   const Registry& plugins = registry();
   {
     const py::gil_scoped_release released;
-    solve = SteeredSolve::begin(handle.source(), method, plugins, errors, start ? *start : MethodState());
+    solve =
+        SteeredSolve::begin(handle.source(), method, plugins, errors, start ? start->state : MethodState());
   }
   throw_errors(errors);
+  if (start) start->require_fitting(*solve);
   return std::make_unique<SolveHandle>(std::move(solve));
 }
 
@@ -150,7 +152,8 @@ void bind_experiment(py::module_& m) {
       .def("solver", &solver, py::arg("method") = "", py::arg("start") = nullptr,
            "A Solve of one method, to be advanced step by step; by default pcs, or the only method. `start` "
            "is "
-           "a Checkpoint of the same experiment and method. Raises ConfigError.")
+           "a Checkpoint of the same experiment and method. Raises ConfigError, and RuntimeError for another "
+           "experiment's checkpoint.")
       .def("_run", &run, py::arg("methods"), py::arg("out"), py::arg("on_iteration"), py::arg("on_level"),
            py::arg("progress"), py::arg("report"), py::arg("overwrite"), py::arg("allow_memory"));
 }

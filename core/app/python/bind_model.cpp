@@ -3,6 +3,7 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/level_handle.h"
 #include "core/app/python/module.h"
+#include "core/kernel/mesh/extent.h"
 #include "core/kernel/model/objective.h"
 
 namespace drape::python {
@@ -19,8 +20,17 @@ Projection projection_of(const std::string& kind, double blend) {
   throw py::value_error("projection must be none, clamp or absolute, not \"" + kind + "\"");
 }
 
+/// A state of the model. Throws ValueError for a wrong shape and, with contacts, for coordinates that their
+/// search cannot sort.
+Positions state_of(const ModelHandle& m, const py::handle& values, const std::string& name) {
+  Positions x = positions_of(values, m.vertex_count(), name);
+  if (!m.model().contacts().empty() && !(x.array().abs() <= largest_coordinate).all())
+    throw py::value_error(name + " must be finite and within 1e9 m, because the model has contacts");
+  return x;
+}
+
 py::array gradient(const ModelHandle& m, const py::handle& values) {
-  const Positions x = positions_of(values, m.vertex_count(), "x");
+  const Positions x = state_of(m, values, "x");
   Positions g;
   {
     const Released released;
@@ -30,7 +40,7 @@ py::array gradient(const ModelHandle& m, const py::handle& values) {
 }
 
 py::object hessian(const ModelHandle& m, const py::handle& values, const std::string& kind, double blend) {
-  const Positions x = positions_of(values, m.vertex_count(), "x");
+  const Positions x = state_of(m, values, "x");
   const Projection projection = projection_of(kind, blend);
   BlockMatrix matrix;
   {
@@ -42,7 +52,7 @@ py::object hessian(const ModelHandle& m, const py::handle& values, const std::st
 
 /// The contacts at x, one dict for each contact model.
 py::list contacts(const ModelHandle& m, const py::handle& values) {
-  const Positions x = positions_of(values, m.vertex_count(), "x");
+  const Positions x = state_of(m, values, "x");
   py::list all;
   for (const auto& contact : m.model().contacts()) {
     std::unique_ptr<CollisionCandidates> candidates;
@@ -72,7 +82,7 @@ py::list contacts(const ModelHandle& m, const py::handle& values) {
 }
 
 py::list intersections(const ModelHandle& m, const py::handle& values) {
-  const Positions x = positions_of(values, m.vertex_count(), "x");
+  const Positions x = state_of(m, values, "x");
   py::list all;
   for (const auto& contact : m.model().contacts()) {
     std::vector<Intersection> found;
@@ -88,8 +98,8 @@ py::list intersections(const ModelHandle& m, const py::handle& values) {
 }
 
 py::tuple max_step(const ModelHandle& m, const py::handle& from, const py::handle& to) {
-  const Positions x0 = positions_of(from, m.vertex_count(), "x0");
-  const Positions x1 = positions_of(to, m.vertex_count(), "x1");
+  const Positions x0 = state_of(m, from, "x0");
+  const Positions x1 = state_of(m, to, "x1");
   StepLimit limit;
   {
     const Released released;
@@ -103,7 +113,7 @@ py::tuple max_step(const ModelHandle& m, const py::handle& from, const py::handl
 /// A number of the model at x.
 template <class Evaluate>
 double number(const ModelHandle& m, const py::handle& values, const Evaluate& evaluate) {
-  const Positions x = positions_of(values, m.vertex_count(), "x");
+  const Positions x = state_of(m, values, "x");
   const Released released;
   return evaluate(m.model(), x);
 }
@@ -140,7 +150,8 @@ void bind_model(py::module_& m) {
       m, "Model",
       "The plain model of one level: the sum E of its energies, strain limits and contacts, without "
       "friction. "
-      "Immutable. Every x is n×3 [m]; another shape raises ValueError, another dtype TypeError.");
+      "Immutable. Every x is n×3 [m]; another shape raises ValueError, another dtype TypeError. With "
+      "contacts, x must be finite.");
   bind_structure(type);
   type.def(
           "energy",
@@ -155,7 +166,7 @@ void bind_model(py::module_& m) {
       .def(
           "energy_parts",
           [](const ModelHandle& h, const py::object& values) {
-            const Positions x = positions_of(values, h.vertex_count(), "x");
+            const Positions x = state_of(h, values, "x");
             std::vector<std::pair<std::string, double>> parts;
             {
               const Released released;

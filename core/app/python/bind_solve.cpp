@@ -1,5 +1,7 @@
 #include <pybind11/stl.h>
 
+#include <set>
+
 #include "core/app/python/arrays.h"
 #include "core/app/python/callbacks.h"
 #include "core/app/python/config_value.h"
@@ -10,13 +12,41 @@
 
 namespace drape::python {
 
+namespace {
+
+/// Those that exist, guarded by the GIL. Never destroyed: solves may outlive the module.
+std::set<SolveHandle*>& all_solves() {
+  static auto* const all = new std::set<SolveHandle*>;
+  return *all;
+}
+
+}  // namespace
+
+void end_all_solves() {
+  const std::set<SolveHandle*> all = all_solves();
+  for (SolveHandle* solve : all)
+    if (all_solves().count(solve) > 0) solve->end();  // one's end may destroy another
+}
+
+SolveHandle::SolveHandle(std::unique_ptr<SteeredSolve> solve) : solve_(std::move(solve)) {
+  all_solves().insert(this);
+}
+
 SolveHandle::~SolveHandle() {
+  all_solves().erase(this);
+  end();
+}
+
+void SolveHandle::end() {
+  if (busy_) return;  // whoever advances it keeps it
+  std::unique_ptr<SteeredSolve> ended = std::move(solve_);
   const py::gil_scoped_release released;  // the solver's thread may need the GIL to end
-  solve_.reset();
+  ended.reset();
 }
 
 void SolveHandle::require_idle() const {
   if (busy_) throw std::runtime_error("the solve is being advanced, by another thread or by its own solver");
+  if (!solve_) throw std::runtime_error("the solve has ended, with the interpreter");
 }
 
 std::optional<Iteration> SolveHandle::next() {
@@ -59,11 +89,12 @@ void SolveHandle::set(const std::string& key, const std::string& value) {
 }
 
 void bind_solve(py::module_& m) {
-  py::class_<MethodState, std::shared_ptr<MethodState>>(
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_all_solves));
+  py::class_<CheckpointHandle, std::shared_ptr<CheckpointHandle>>(
       m, "Checkpoint",
       "The state of a solve at the beginning of a step. Experiment.solver(method, start=checkpoint) goes on "
       "from it with the bits of a solve that was not interrupted, and repeats the step.")
-      .def_readonly("level", &MethodState::level);
+      .def_property_readonly("level", [](const CheckpointHandle& c) { return c.state.level; });
 
   py::class_<SolveHandle>(
       m, "Solve",

@@ -20,9 +20,11 @@ void Callbacks::call(const SharedObject& function, Argument&& argument) {
   try {
     const py::object answer = (*function)(std::forward<Argument>(argument));
     const std::string word = py::isinstance<py::str>(answer) ? answer.cast<std::string>() : "";
-    if (word == "stop") stop_ = true;
-    if (word == "refine") refine_ = true;
-    if (!stop_ && !refine_ && !answer.is_none())
+    if (word == "stop")
+      stop_ = true;
+    else if (word == "refine")
+      refine_ = true;
+    else if (!answer.is_none())
       throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " +
                             std::string(py::repr(answer)));
   } catch (const std::exception&) {  // raised at the end of the run, whose results are saved until then

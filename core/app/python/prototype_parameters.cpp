@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/app/python/config_value.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape::python {
 

@@ -15,6 +15,11 @@ Outcome outcome_of(const std::string& status) {
       "\"");
 }
 
+/// A run measures and compares the states that it is given, and searches them for contacts.
+void require_finite(const Positions& x) {
+  if (!x.allFinite()) throw py::value_error("x must be finite; end the level with the last state that is");
+}
+
 }  // namespace
 
 const Problem& SolverProblem::problem() const {
@@ -44,8 +49,9 @@ int SolverProblem::vertex_count() const {
 
 void SolverProblem::begin(int level) {
   if (under_way_) throw std::runtime_error("end the level before beginning another");
+  checked(level);
   under_way_.emplace();
-  under_way_->level = checked(level);
+  under_way_->level = level;
   under_way_->from_initial_state = results_.empty();
   began_ = clock_.seconds();
   const py::gil_scoped_release released;
@@ -54,6 +60,7 @@ void SolverProblem::begin(int level) {
 
 bool SolverProblem::iteration(const Positions& x, std::optional<double> energy,
                               std::optional<double> force_residual, double step_length) {
+  require_finite(x);
   const LevelModel& model = *problem().models[under_way_->level];
   const py::gil_scoped_release released;
   IterationRow row;
@@ -70,6 +77,7 @@ bool SolverProblem::iteration(const Positions& x, std::optional<double> energy,
 }
 
 void SolverProblem::end(const Positions& x, const std::string& status, const std::string& message) {
+  require_finite(x);
   under_way_->outcome = outcome_of(status);
   under_way_->message = message;
   under_way_->x = x;

@@ -22,7 +22,8 @@ class SolverProblem {
   void begin(int level);
   /// Vertices of the level that has begun. Throws std::runtime_error without one.
   int vertex_count() const;
-  /// x is vertex_count()×3. Returns whether to go on: false after a request to stop.
+  /// x is vertex_count()×3 and finite, or ValueError is raised. Returns whether to go on: false after a
+  /// request to stop.
   bool iteration(const Positions& x, std::optional<double> energy, std::optional<double> force_residual,
                  double step_length);
   void end(const Positions& x, const std::string& status, const std::string& message);

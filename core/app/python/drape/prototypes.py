@@ -7,7 +7,7 @@ Evaluation must depend on the arguments alone: the solvers rely on that. What it
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy
 
@@ -48,6 +48,11 @@ class _Prototype:
             if name not in self.parameters:
                 raise TypeError(f"{type(self).__name__} has no parameter \"{name}\"")
             setattr(self, name, value)
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """The value of a parameter, which __init__ sets."""
 
 
 class Energy(_Prototype):
