@@ -27,7 +27,8 @@
 
 PRESET ?= release
 JOBS ?= $(shell nproc)
-LINT ?= (core|plugins)/
+# Not `?=`: make itself has LINT = lint.
+LINT = (core|plugins)/
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
