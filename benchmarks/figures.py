@@ -159,6 +159,16 @@ def changes():
     return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, ["changes.json"], "lrrrr")
 
 
+def python():
+    """A run with a callback and a membrane in numpy, beside the command and the C++ membrane."""
+    record = read("python.json")
+    run, membrane = record["run"], record["membrane"]
+    rows = [[f"a run with a callback for each iteration, {run['vertices']} vertices", *(figure(run[k]) for k in ("python", "cpp", "ratio"))]]
+    rows += [[f"{what} of a membrane, {membrane['vertices']} vertices", *(figure(membrane[what][k]) for k in ("python", "cpp", "ratio"))]
+             for what in ("value", "gradient", "hessian")]
+    return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, ["python.json"], "lrrr")
+
+
 def scale():
     record = read("scale.json")
     mean = lambda r: f"{figure(r['seconds'], 2)} ({figure(r['seconds_lowest'], 2)}–{figure(r['seconds_highest'], 2)})"  # noqa: E731
@@ -185,6 +195,7 @@ STUDIES = [
     ("[ratios](speed.md#ratios)", "ratios.json"),
     ("[changes](speed.md#changes-of-a-parameter)", "changes.json"),
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
+    ("[Python](../extend/from-python.md#what-it-costs)", "python.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes-five-starts)", "previews.md"),
     ("[interpolation](previews.md#the-choice-of-interpolation)", "interpolation.md"),
@@ -242,6 +253,7 @@ BLOCKS = {
     "progressions": progressions,
     "ratios": ratios,
     "changes": changes,
+    "python": python,
     "scale": scale,
     "studies": studies,
 }

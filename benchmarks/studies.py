@@ -3,7 +3,7 @@
 A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or
 only its iterations and flops (one thread a run, a run a core); `starts`; the commands that `run` it in {out}, which go on
 where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
-benchmarks/results; `meshes` of data/ that it needs; commands to `attempt`, whose refusal is what is recorded.
+benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python `module`; commands to `attempt`, whose refusal is what is recorded.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -41,6 +41,10 @@ STUDIES = {
     "ratios": program("ratios", "parts of an iteration against each other"),
     "changes": program("changes", "what a change of a parameter costs"),
     "linear_solvers": program("linear_solvers", "both linear solvers on the same matrices"),
+    "python": {
+        "what": "what the Python module costs", "timed": True, "module": True,
+        "run": [["env", "PYTHONPATH={build}/python", "/usr/bin/python3", "benchmarks/python", "{drape}", "{out}/python.json"]],
+        "gather": [["cp", "{out}/python.json", "{results}/"]], "records": ["python.json"]},
     "scale": {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million")],
