@@ -18,11 +18,11 @@ struct CommonObstacleParameters {
   Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
 };
 
-/// Declares them. Returns the handle of `translate`.
+/// Declares its members. Returns the handle of `translate`.
 template <class Derived>
 ParameterHandle declare_obstacle(Declaration<Derived>& d) {
   d.add("name", &Derived::name)
-      .description("name in messages and paths; by default its kind and its number in the contact model");
+      .description("name, for messages and paths; messages call an unnamed obstacle by its kind and number");
   declare_friction(d).description("its own friction coefficient μ; null: the experiment's `friction`");
   return declare_placement(d);
 }
