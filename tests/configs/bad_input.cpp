@@ -49,8 +49,7 @@ std::string said_of_set(const std::string& set) { return said_of(small_experimen
 
 const std::string top_keys =
     "name, description, cloth, levels, material, start, pins, handles, schedule, energies, "
-    "refiner, contact, "
-    "newton, "
+    "refiner, contact, obstacles, friction, newton, "
     "methods, metrics, reference, snapshots, check_intersections";
 
 }  // namespace
@@ -346,6 +345,43 @@ TEST_CASE("keys of earlier versions are refused with the new ones") {
         "error: e.yaml:15:43: \"at\" in keys is now called \"times\"\n"
         "error: e.yaml:15:55: \"to\" in keys is now called \"values\"\n"
         "error: e.yaml:15:67: \"between\" in keys is now called \"interpolation\"\n");
+  CHECK(said_of_edit("levels: 2", "contact: {type: ipc, friction: 0.1}") ==
+        "error: e.yaml:3:22: \"friction\" in ipc is now at the top of the experiment: \"friction\", once for "
+        "all "
+        "contact models\n");
+  CHECK(
+      said_of_edit("levels: 2", "contact: {type: ipc, obstacles: [{file: a.ply}]}") ==
+      "error: e.yaml:3:22: \"obstacles\" in ipc is now at the top of the experiment: \"obstacles\", once for "
+      "all contact models\n");
+  CHECK(said_of_edit("levels: 2", "contact: {type: shapes, shapes: [{shape: sphere}]}") ==
+        "error: e.yaml:3:25: \"shapes\" in shapes is now \"obstacles\"\n");
+  CHECK(said_of_edit("levels: 2", "contact: shapes\nobstacles: [{shape: sphere, centre: [0, 0, 1]}]") ==
+        "error: e.yaml:4:29: \"centre\" in obstacles is now called \"translate\"\n");
+  CHECK(said_of_edit("levels: 2", "contact: ipc\nobstacles: [{name: ball, file: ball.ply}]") ==
+        "error: e.yaml:4:26: \"file\" in obstacles is now called \"mesh\"\n");
+  CHECK(
+      said_of_edit("levels: 2",
+                   "contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: "
+                   "contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}]}") ==
+      "error: e.yaml:5:31: \"shapes\" in shapes is now \"obstacles\"\n");
+}
+
+TEST_CASE("obstacles that no contact model takes are refused with the model that would") {
+  const auto said = [](const std::string& contact, const std::string& obstacle) {
+    return said_of_edit("levels: 2", "contact: " + contact + "\nobstacles: [" + obstacle + "]");
+  };
+  for (const char* contact : {"ipc", "none", "[ipc, none]"})
+    CHECK(said(contact, "{name: ball, shape: sphere}") ==
+          "error: e.yaml:4:13: obstacles[0] (ball): no contact model of this experiment takes \"shape\"; add "
+          "shapes to \"contact\"\n");
+  CHECK(said("shapes", "{shape: sphere}, {meshed_shape: box}") ==
+        "error: e.yaml:4:30: obstacles[1]: no contact model of this experiment takes \"meshed_shape\"; add "
+        "ipc to "
+        "\"contact\"\n");
+  for (const char* obstacle : {"{name: ball, radius: 1}", "ball"})
+    CHECK_THAT(said("[ipc, shapes]", obstacle),
+               Catch::Matchers::EndsWith(
+                   " must be a map with \"mesh\", \"meshed_shape\", \"animation\" or \"shape\"\n"));
 }
 
 TEST_CASE("a --set or --method that does not fit") {

@@ -13,12 +13,10 @@ cloth: {shape: square, side: 0.4, columns: 9, rows: 9}
 levels: 3
 start: {translate: [-0.2, -0.2, 0.15], perturbation: 1e-3}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.06}, gravity]
-contact:
-  - type: ipc
-    self_contact: false
-    friction: 0.1
-    obstacles:
-      - {name: ball, shape: sphere, radius: 0.1, subdivisions: 2, cages: {count: 2, alpha: 0.05, offset: 0.03}}
+contact: {type: ipc, self_contact: false}
+obstacles:
+  - {name: ball, meshed_shape: sphere, radius: 0.1, subdivisions: 2, cages: {count: 2, alpha: 0.05, offset: 0.03}}
+friction: 0.1
 newton: {force_tolerance: 1e-2, step_size: 0.05}
 check_intersections: every_step
 methods: {pcs: {}, cascadic: {}}

@@ -213,7 +213,7 @@ schedule:
   steps: 6
   keys:
     - {parameter: material.bending_modulus, times: [0, 0.5], values: [8e4, 8e3], interpolation: log}
-    - {parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.03]]}
+    - {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.03]]}
     - parameter: pins.1.translate
       times: [0, 0.5, 1]
       values: [[-0.2, -0.2, 0.1015], [-0.25, -0.2, 0], [-0.2, -0.2, 0.1015]]
@@ -236,9 +236,10 @@ cloth: {shape: square, side: 0.4, columns: 8, rows: 8}
 levels: 1
 start: {translate: [-0.2, -0.2, 0.11], perturbation: 1e-3}
 energies: [neo_hookean, hinge, gravity]
-contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
-  {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
-schedule: {steps: 2, equilibrate: true, keys: [{parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.05]]}]}
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.1}]
+friction: 0.3
+schedule: {steps: 2, equilibrate: true, keys: [{parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, 0], [0, 0, 0.05]]}]}
 newton: {force_tolerance: 1e-2}
 methods: {pcs: {}}
 )");
@@ -567,8 +568,7 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
 TEST_CASE("An obstacle's mesh that changed since is named") {
   const Scratch folder;
   folder.write("e.yaml", replaced(text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"),
-                                  "{type: ipc, friction: 0.1}",
-                                  "{type: ipc, obstacles: [{file: box.obj, translate: [0, 0, -1]}]}"));
+                                  "obstacles: [", "obstacles: [{mesh: box.obj, translate: [0, 0, -1]}, "));
   write_mesh(folder / "box.obj", grid({0.4, 0.4}, 2, 2, Diagonals::one_way));
   Command command("exec " + drape_command + " " + sheets_run, folder.path);
   wait_for_steps(command, folder / "out", 3);
@@ -624,7 +624,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
              Contains("holds no state of method pcs on level 2; the last level that it has is 1"));
   CHECK_THAT(refused_by(flow + "--out x --method cascadic", folder),
              Contains("holds no state of method cascadic; name another with --method"));
-  CHECK_THAT(refused_by(flow + "--out x --set contact.1.shapes.0.radius=0.15", folder),
+  CHECK_THAT(refused_by(flow + "--out x --set obstacles.ball.radius=0.15", folder),
              Contains("the start of level 1 touches: "));
   CHECK_FALSE(fs::exists(folder / "x"));
 }

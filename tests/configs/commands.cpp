@@ -104,8 +104,8 @@ TEST_CASE("an obstacle that is missing from data/ says how to make it") {
   const Scratch folder;
   fs::create_directory(folder / "configs");
   folder.write("configs/e.yaml", replaced(small_experiment(), "levels: 2\n",
-                                          "levels: 2\ncontact: {type: ipc, obstacles: [{name: bunny, file: "
-                                          "../data/bunny.ply}]}\n"));
+                                          "levels: 2\ncontact: ipc\nobstacles: [{name: bunny, mesh: "
+                                          "../data/bunny.ply}]\n"));
   const Ended ended = drape_with("check configs/e.yaml", folder.path);
   CHECK(ended.exit_code == 2);
   CHECK_THAT(ended.err,
@@ -166,6 +166,16 @@ TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and 
   std::set<std::string> registered;
   for (const drape::RegistryEntry* entry : test_registry().of_kind("energy")) registered.insert(entry->name);
   CHECK((energies == registered));
+  // Obstacles and friction are keys of the experiment, in whichever contact model they are declared.
+  CHECK(properties["obstacles"]["items"]["anyOf"].size() == 2);
+  int models = 0;
+  for (const auto& choice : properties["contact"]["anyOf"][0]["anyOf"]) {
+    if (!choice.contains("properties")) continue;
+    ++models;
+    CHECK(!choice["properties"].contains("obstacles"));
+    CHECK(!choice["properties"].contains("friction"));
+  }
+  CHECK(models >= 3);
   std::set<std::string> solvers;
   for (const auto& choice : properties["methods"]["additionalProperties"]["anyOf"])
     if (choice.contains("properties")) {

@@ -56,9 +56,8 @@ TEST_CASE("a start that touches an obstacle is refused, with the pairs and the l
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
             "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart\n");
   const std::string table =
-      "{type: ipc, obstacles: [{name: table, shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, "
-      "0.02]}]}";
-  CHECK_THAT(said_of(text, "--set start.perturbation=0 --set 'contact=" + table + "'"),
+      "[{name: table, meshed_shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]";
+  CHECK_THAT(said_of(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),
              Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
 }
 
@@ -66,7 +65,7 @@ TEST_CASE("a start is checked on every level") {
   // Noise whose valleys only the finer level is fine enough for.
   const std::string said =
       said_of(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
-              "--set 'contact={type: shapes, shapes: [{name: floor, shape: half_space}]}' --set "
+              "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
               "start.perturbation=5e-3 "
               "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
   CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
@@ -151,9 +150,9 @@ TEST_CASE("obstacle files are found beside the config, and results run again fro
   drape::TriangleMesh slab = drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross);
   slab.vertices.rowwise() -= Eigen::RowVector3d(0.53, 0.52, 0);
   drape::write_mesh(folder / "in/meshes/slab.obj", slab);
-  folder.write("in/e.yaml", replaced(contact_experiment(), "  - {type: ipc, friction: 0.1}\n",
-                                     "  - {type: ipc, friction: 0.1, obstacles: [{name: slab, file: "
-                                     "meshes/slab.obj, translate: [0, 0, -0.03]}]}\n"));
+  folder.write("in/e.yaml", replaced(contact_experiment(), "obstacles: [",
+                                     "obstacles: [{name: slab, mesh: meshes/slab.obj, "
+                                     "translate: [0, 0, -0.03]}, "));
   const std::string options = quiet + "--method pcs --out ";
   const Ended first = drape_with("run ../in/e.yaml" + options + "first", folder / "elsewhere");
   INFO(first.err);

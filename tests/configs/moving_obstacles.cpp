@@ -51,15 +51,17 @@ newton: {force_tolerance: 1e-2, step_size: 0.1, iterations_per_step: 30}
 check_intersections: every_step
 methods: {pcs: {}}
 )";
-  const std::string ipc = R"(contact: {type: ipc, self_contact: false, friction: 0.3, obstacles: [
-  {name: plate, shape: box, size: [0.5, 0.5, 0.1], translate: [0.06, 0.07, -0.05]}]}
+  const std::string ipc = R"(contact: {type: ipc, self_contact: false}
+friction: 0.3
+obstacles: [{name: plate, meshed_shape: box, size: [0.5, 0.5, 0.1], translate: [0.06, 0.07, -0.05]}]
 schedule: {steps: 10, equilibrate: true, keys: [
-  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0.06, 0.07, -0.05], [0.12, 0.04, -0.05]]}]}
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0.06, 0.07, -0.05], [0.12, 0.04, -0.05]]}]}
 )";
-  const std::string shapes = R"(contact: {type: shapes, friction: 0.3, shapes: [
-  {name: plate, shape: box, size: [0.5, 0.5, 0.1], centre: [0, 0, -0.05]}]}
+  const std::string shapes = R"(contact: shapes
+friction: 0.3
+obstacles: [{name: plate, shape: box, size: [0.5, 0.5, 0.1], translate: [0, 0, -0.05]}]
 schedule: {steps: 10, equilibrate: true, keys: [
-  {parameter: contact.shapes.0.centre, times: [0, 1], values: [[0, 0, -0.05], [0.06, -0.03, -0.05]]}]}
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.05], [0.06, -0.03, -0.05]]}]}
 )";
   const Eigen::RowVector3d way(0.06, -0.03, 0);
   for (const std::string& contact : {ipc, shapes}) {
@@ -72,18 +74,19 @@ schedule: {steps: 10, equilibrate: true, keys: [
 }
 
 TEST_CASE("a plate that rises under a pinned cloth and turns there pushes it, and never passes through") {
-  for (const std::string contact :
-       {R"(contact: {type: ipc, friction: 0.1, obstacles: [
-  {name: plate, shape: box, size: [0.2, 0.1, 0.004], translate: [0, 0, -0.1]}]}
+  for (const std::string contact : {R"(contact: ipc
+friction: 0.1
+obstacles: [{name: plate, meshed_shape: box, size: [0.2, 0.1, 0.004], translate: [0, 0, -0.1]}]
 schedule: {steps: 10, keys: [
-  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
-  {parameter: contact.obstacles.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {parameter: obstacles.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
 )",
-        R"(contact: [{type: ipc, friction: 0.1}, {type: shapes, friction: 0.1, shapes: [
-  {name: plate, shape: box, size: [0.2, 0.1, 0.004], centre: [0, 0, -0.1]}]}]
+                                    R"(contact: [ipc, shapes]
+friction: 0.1
+obstacles: [{name: plate, shape: box, size: [0.2, 0.1, 0.004], translate: [0, 0, -0.1]}]
 schedule: {steps: 10, keys: [
-  {parameter: contact.1.shapes.0.centre, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
-  {parameter: contact.1.shapes.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.1], [0, 0, -0.02]]},
+  {parameter: obstacles.0.rotate, times: [0, 1], values: [[0, 0, 0], [20, 0, 200]]}]}
 )"}) {
     INFO(contact);
     const Scratch folder;
@@ -104,11 +107,13 @@ newton: {force_tolerance: 1e-3}
 check_intersections: every_step
 methods: {pcs: {}}
 )";
-  const std::string shapes = R"(contact: [{type: ipc, friction: 0.3}, {type: shapes, friction: 0.3, shapes: [
-  {name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.1}]}]
+  const std::string shapes = R"(contact: [ipc, shapes]
+friction: 0.3
+obstacles: [{name: ball, shape: sphere, radius: 0.1}]
 )";
-  const std::string ipc = R"(contact: {type: ipc, friction: 0.3, obstacles: [
-  {name: ball, shape: sphere, radius: 0.1, subdivisions: 3, translate: [0, 0, 0]}]}
+  const std::string ipc = R"(contact: ipc
+friction: 0.3
+obstacles: [{name: ball, meshed_shape: sphere, radius: 0.1, subdivisions: 3}]
 )";
   const auto schedule = [](const std::string& key, const std::string& to) {
     return "schedule: {steps: 2, equilibrate: true, keys: [{parameter: " + key +
@@ -121,11 +126,10 @@ methods: {pcs: {}}
     return all["methods"]["pcs"]["levels"][0]["newton_iterations"].get<int>();
   };
   const int still = iterations(shapes);  // one part at a time, 3000 to 6000 more
-  CHECK(iterations(shapes + schedule("contact.1.shapes.0.centre", "[[0, 0, 0], [0, 0, 0.1]]")) < still + 150);
-  CHECK(iterations(shapes + schedule("contact.1.shapes.0.centre", "[[0, 0, 0], [0.1, 0, 0]]")) < still + 300);
-  CHECK(iterations(shapes + schedule("contact.1.shapes.0.radius", "[0.1, 0.13]")) < still + 1000);
-  CHECK(iterations(ipc + schedule("contact.obstacles.0.translate", "[[0, 0, 0], [0, 0.05, 0.1]]")) <
-        still + 300);
+  CHECK(iterations(shapes + schedule("obstacles.0.translate", "[[0, 0, 0], [0, 0, 0.1]]")) < still + 150);
+  CHECK(iterations(shapes + schedule("obstacles.0.translate", "[[0, 0, 0], [0.1, 0, 0]]")) < still + 300);
+  CHECK(iterations(shapes + schedule("obstacles.0.radius", "[0.1, 0.13]")) < still + 1000);
+  CHECK(iterations(ipc + schedule("obstacles.0.translate", "[[0, 0, 0], [0, 0.05, 0.1]]")) < still + 300);
 }
 
 TEST_CASE("a wing that flaps under a pinned cloth, and a ball with cages that rises into it") {
@@ -137,16 +141,19 @@ TEST_CASE("a wing that flaps under a pinned cloth, and a ball with cages that ri
       wing.vertices(v, 2) += (k == 1 ? 1.5 : -0.5) * wing.vertices(v, 0);
     drape::write_mesh(folder / ("wing" + std::to_string(k) + ".ply"), wing);
   }
-  end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
-  {name: wing, animation: [wing0.ply, wing1.ply, wing2.ply]}]}
-schedule: {steps: 12, keys: [{parameter: contact.obstacles.0.frame, times: [0, 1], values: [0, 2]}]}
+  end_of(pinned + R"(contact: ipc
+friction: 0.1
+obstacles: [{name: wing, animation: [wing0.ply, wing1.ply, wing2.ply]}]
+schedule: {steps: 12, keys: [{parameter: obstacles.0.frame, times: [0, 1], values: [0, 2]}]}
 )",
          folder, 1);
-  const Positions x = end_of(pinned + R"(contact: {type: ipc, friction: 0.1, obstacles: [
-  {name: ball, shape: sphere, radius: 0.05, subdivisions: 2, translate: [0, 0, -0.2],
-   cages: {count: 1, alpha: 0.1, offset: 0.03}}]}
+  const Positions x = end_of(pinned + R"(contact: ipc
+friction: 0.1
+obstacles:
+  - {name: ball, meshed_shape: sphere, radius: 0.05, subdivisions: 2, translate: [0, 0, -0.2],
+     cages: {count: 1, alpha: 0.1, offset: 0.03}}
 schedule: {steps: 10, keys: [
-  {parameter: contact.obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.2], [0, 0, -0.05]]}]}
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.2], [0, 0, -0.05]]}]}
 )",
                              folder, 1);
   CHECK(x.col(2).maxCoeff() > 5e-4);  // on the ball's top, at 0, and not its cage's, at 5 mm

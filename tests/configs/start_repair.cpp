@@ -16,7 +16,7 @@ std::string experiment(const std::string& contact, const std::string& translate,
 }
 
 std::string ball_at(const std::string& centre) {
-  return "{type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.1, centre: " + centre + "}]}";
+  return "shapes\nobstacles: [{name: ball, shape: sphere, radius: 0.1, translate: " + centre + "}]";
 }
 
 /// The way that the message says, after a check that must succeed.
@@ -88,7 +88,7 @@ TEST_CASE("a start in a ball is moved up, no further than needed, and recorded s
 }
 
 TEST_CASE("a start that touches nothing stays where it is, one within a micrometre does not") {
-  const std::string floor = "{type: shapes, shapes: [{shape: half_space}]}";
+  const std::string floor = "shapes\nobstacles: [{shape: half_space}]";
   const auto at = [&](const std::string& height) {
     return replaced(experiment(floor, "[0, 0, " + height + "]"), "perturbation: 1e-3", "perturbation: 0");
   };
@@ -106,15 +106,15 @@ TEST_CASE("a start that touches nothing stays where it is, one within a micromet
 
 TEST_CASE("under a ceiling a start is moved to a side") {
   const std::string ceiling =
-      "{type: shapes, shapes: [{shape: half_space, normal: [0, 0, -1], centre: [0, 0, 0.05]}, {name: ball, "
-      "shape: sphere, radius: 0.1, centre: [0, 0, -0.05]}]}";
+      "shapes\nobstacles: [{shape: half_space, normal: [0, 0, -1], translate: [0, 0, 0.05]}, {name: ball, "
+      "shape: sphere, radius: 0.1, translate: [0, 0, -0.05]}]";
   const Eigen::Vector3d right = moved(experiment(ceiling, "[-0.1, -0.2, 0]"));
   CHECK(right.x() > 0.1);
   CHECK(right.x() < 0.2);
   CHECK((right.y() == 0 && right.z() == 0));
-  const std::string walled = replaced(ceiling, "shapes: [",
-                                      "shapes: [{shape: half_space, normal: [-1, 0, 0], "
-                                      "centre: [0.31, 0, 0]}, ");
+  const std::string walled = replaced(ceiling, "obstacles: [",
+                                      "obstacles: [{shape: half_space, normal: [-1, 0, 0], "
+                                      "translate: [0.31, 0, 0]}, ");
   const Eigen::Vector3d left = moved(experiment(walled, "[-0.1, -0.2, 0]"));
   CHECK(left.x() < -0.3);
   CHECK((left.y() == 0 && left.z() == 0));
@@ -123,7 +123,7 @@ TEST_CASE("under a ceiling a start is moved to a side") {
 TEST_CASE("a start is not moved into a closed mesh") {
   // A cloth through the lowest part of a shell: a little further up nothing would touch.
   const std::string shell =
-      "{type: ipc, obstacles: [{name: shell, shape: sphere, radius: 1, translate: [0, 0, 0.98]}]}";
+      "ipc\nobstacles: [{name: shell, meshed_shape: sphere, radius: 1, translate: [0, 0, 0.98]}]";
   const Eigen::Vector3d way = moved(experiment(shell, "[-0.2, -0.2, 0]"));
   CHECK(way.z() == 0);
   CHECK(way.head<2>().norm() > 0.1);
@@ -142,8 +142,8 @@ TEST_CASE("a start with pins is not translated") {
 
 TEST_CASE("a start without a free position is refused, with the pairs") {
   const auto between = [](const std::string& top) {
-    return "{type: shapes, shapes: [{name: top, shape: half_space, normal: [0, 0, -1], centre: [0, 0, " +
-           top + "]}, {name: bottom, shape: half_space, centre: [0, 0, 0]}]}";
+    return "shapes\nobstacles: [{name: top, shape: half_space, normal: [0, 0, -1], translate: [0, 0, " + top +
+           "]}, {name: bottom, shape: half_space}]";
   };
   const std::string ways = "error: e.yaml:4:8: moving the start by up to 0.566 m up or to a side ";
   // A gap below what the noise needs: the top is met everywhere.

@@ -59,20 +59,21 @@ TEST_CASE("numbers that overflow, or never end, are refused by name with their b
 TEST_CASE("contact's numbers too") {
   const auto said = [](const std::string& contact) {
     const Scratch folder;
-    folder.write("e.yaml", with("contact: {type: " + contact + "}"));
+    folder.write("e.yaml", with("contact: " + contact));
     const std::string text = refused(folder, "");
     return text.substr(text.find('"'));
   };
-  CHECK(said("ipc, dhat: 1e39") == "\"dhat\" must be at most 1000 m, not 1e39\n");
-  CHECK(said("shapes, shapes: [], dhat: 1e39") == "\"dhat\" must be at most 1000 m, not 1e39\n");
+  CHECK(said("{type: ipc, dhat: 1e39}") == "\"dhat\" must be at most 1000 m, not 1e39\n");
+  CHECK(said("{type: shapes, dhat: 1e39}") == "\"dhat\" must be at most 1000 m, not 1e39\n");
   const auto cages = [&](const std::string& text) {
-    return said("ipc, obstacles: [{shape: sphere, translate: [0, 0, -3], cages: {count: 2, " + text + "}}]");
+    return said("ipc\nobstacles: [{meshed_shape: sphere, translate: [0, 0, -3], cages: {count: 2, " + text +
+                "}}]");
   };
   CHECK(cages("growth: 1e40") == "\"growth\" must be at most 10, not 1e40\n");
   CHECK_THAT(cages("alpha: 1e-9, offset: 1e-9"),
              Contains("\"alpha\" must be at least 0.005, not 1e-9\n") &&
                  Contains("\"offset\" must be at least 1.0e-04, not 1e-9\n"));
-  CHECK(said("ipc, obstacles: [{shape: box, size: [1, 1e40, 1]}]") ==
+  CHECK(said("ipc\nobstacles: [{meshed_shape: box, size: [1, 1e40, 1]}]") ==
         "\"size\" must be at most 1.0e+06 m, not 1e40\n");
 }
 
@@ -84,7 +85,7 @@ TEST_CASE("a mesh with coordinates beyond what can be computed with is refused, 
   CHECK_THAT(refused(folder, ""),
              StartsWith("error: e.yaml:2:8: far.obj: vertex 2 has a coordinate of 1e+30 m; "
                         "at most 1e+09 m can be computed with\n"));
-  folder.write("e.yaml", with("contact: {type: ipc, obstacles: [{file: far.obj}]}"));
+  folder.write("e.yaml", with("contact: ipc\nobstacles: [{mesh: far.obj}]"));
   CHECK_THAT(refused(folder, ""), Contains("far.obj: vertex 2 has a coordinate of 1e+30 m; at most 1e+09 m"));
 }
 

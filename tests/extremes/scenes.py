@@ -11,32 +11,32 @@ import random
 FALLING = {"cloth": {"shape": "square", "side": 0.3, "columns": 6, "rows": 6},
            "start": {"translate": [-0.15, -0.15, 0.13], "perturbation": 1e-3},
            "energies": ["neo_hookean", "hinge", {"type": "strain_limit", "limit": 1.1}, "gravity"],
-           "contact": [{"type": "ipc", "friction": 0.2,
-                        "obstacles": [{"shape": "sphere", "radius": 0.1, "subdivisions": 1},
-                                      {"shape": "box", "size": [0.4, 0.4, 0.1], "translate": [0, 0, -0.2]}]}]}
+           "contact": ["ipc"], "friction": 0.2,
+           "obstacles": [{"meshed_shape": "sphere", "radius": 0.1, "subdivisions": 1},
+                         {"meshed_shape": "box", "size": [0.4, 0.4, 0.1], "translate": [0, 0, -0.2]}]}
 HUNG = {"cloth": {"shape": "rectangle", "size": [0.3, 0.2], "triangulation": "random", "vertices": 40},
         "pins": [{"region": "ball", "point": [0, 0, 0], "radius": 0.03},
                  {"region": "nearest", "point": [0.3, 0, 0], "translate": [0, 0, -0.02]}],
         "energies": ["stvk", "quadratic_bending", {"type": "gravity", "acceleration": [0, 5, -8]}],
-        "contact": [{"type": "ipc"},
-                    {"type": "shapes", "friction": 0.3,
-                     "shapes": [{"shape": "sphere", "radius": 0.05, "centre": [0.15, 0.1, -0.06]},
-                                {"shape": "half_space", "normal": [0, 0, 1], "centre": [0, 0, -0.3]},
-                                {"shape": "capsule", "radius": 0.02, "height": 0.2, "centre": [0, 0.3, -0.1]}]}]}
+        "contact": ["ipc", "shapes"], "friction": 0.3,
+        "obstacles": [{"shape": "sphere", "radius": 0.05, "translate": [0.15, 0.1, -0.06]},
+                      {"shape": "half_space", "normal": [0, 0, 1], "translate": [0, 0, -0.3]},
+                      {"shape": "capsule", "radius": 0.02, "height": 0.2, "translate": [0, 0.3, -0.1]}]}
 DRAGGED = {"cloth": {"shape": "disc", "radius": 0.15, "vertices": 40},
            "start": {"translate": [0, 0, 0.06]},
            "pins": [{"region": "box", "lower": [0.1, -0.2, -0.1], "upper": [0.2, 0.2, 0.1], "translate": [0, 0, 0.06]}],
            "energies": ["neo_hookean", "hinge", "gravity"],
-           "contact": [{"type": "shapes",
-                        "shapes": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
-                                   {"shape": "cylinder", "radius": 0.03, "height": 0.08, "centre": [-0.1, 0, 0]}]}],
+           "contact": ["shapes"],
+           "obstacles": [{"shape": "box", "size": [0.1, 0.1, 0.1]},
+                         {"shape": "cylinder", "radius": 0.03, "height": 0.08, "translate": [-0.1, 0, 0]}],
            "schedule": {"steps": 2, "keys": [{"parameter": "pins.0.translate", "times": [0, 1], "values": [[0, 0, 0.06], [0.02, 0, 0.05]]}]}}
 PULLED = {"cloth": {"shape": "polygon", "vertices": 40,
                     "loops": [{"points": [0, 0, 0.3, 0, 0.3, 0.3, 0, 0.3]},
                               {"points": [0.1, 0.1, 0.2, 0.1, 0.2, 0.2, 0.1, 0.2]}]},
           "handles": [{"region": "border"}, {"region": "vertices", "vertices": [0], "translate": [0, 0, 0.05], "stiffness": 1e3}],
           "energies": ["neo_hookean", "hinge", {"type": "pressure", "pressure": 5}, "gravity"],
-          "contact": [{"type": "ipc", "obstacles": [{"shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}]}
+          "contact": ["ipc"],
+          "obstacles": [{"meshed_shape": "box", "size": [0.1, 0.1, 0.1], "translate": [0.15, 0.15, -0.1]}]}
 SCENES = [FALLING, HUNG, DRAGGED, PULLED]
 METHODS = ["pcs", "cascadic", "newton"]
 
@@ -49,6 +49,14 @@ class Plugin:
 
     def __str__(self):
         return self.name
+
+
+class Obstacle(Plugin):
+    """A step of a path: an item of the obstacles, of the contact model `name`."""
+
+    def keys(self):
+        """Those that tell its items from another model's."""
+        return [rule["required"][0] for rule in self.section["allOf"][0]["anyOf"]]
 
 
 class Parameter:
@@ -114,6 +122,12 @@ def plugin_name(schema):
 def parameters_of(schema, path=()):
     """Every parameter below, those of plugins among them."""
     options = alternatives(schema)
+    if path == ("obstacles",):
+        for o in alternatives(schema["items"]):
+            step = Obstacle(o["description"].split(":")[0].split()[-1], o)
+            for key, s in o["properties"].items():
+                yield from parameters_of(s, path + (step, key))
+        return
     if any(plugin_name(o) for o in options):
         for o in options:
             if plugin_name(o):
@@ -172,11 +186,28 @@ def in_plugin(scene, kind, plugin, rng):
     return fresh
 
 
+def of_obstacle(scene, step, rng):
+    """An obstacle of the contact model in the scene: one that is there, or a new one with its model."""
+    there = [item for item in scene.setdefault("obstacles", []) if any(key in item for key in step.keys())]
+    if there:
+        return rng.choice(there)
+    properties = step.section["properties"]
+    words = {key: alternatives(properties[key])[0].get("enum") for key in step.keys()}
+    key = next(key for key, enum in words.items() if enum)  # the others name files
+    scene["obstacles"].append({key: rng.choice(words[key])})
+    models = scene.setdefault("contact", [])
+    if not any(model == step.name or isinstance(model, dict) and model["type"] == step.name for model in models):
+        models.append(step.name)
+    return scene["obstacles"][-1]
+
+
 def put(scene, schema, parameter, value, rng):
     at, section = scene, schema
     steps = list(parameter.path)
     for k, step in enumerate(steps[:-1]):
-        if isinstance(step, Plugin):
+        if isinstance(step, Obstacle):
+            at, section = of_obstacle(scene, step, rng), step.section
+        elif isinstance(step, Plugin):
             at, section = in_plugin(at, steps[k - 1], step, rng), step.section
         elif step is None:
             if not at:
@@ -193,7 +224,9 @@ def steps_there(scene, parameter):
     """How much of the parameter's path the scene has: the more, the likelier it is to have an effect."""
     at, there = scene, 0
     for step in parameter.path:
-        if isinstance(step, Plugin):
+        if isinstance(step, Obstacle):
+            found = [e for e in at if any(key in e for key in step.keys())]
+        elif isinstance(step, Plugin):
             found = [e for e in at if e == step.name or isinstance(e, dict) and e.get("type") == step.name]
         elif step is None:
             found = sorted(at, key=lambda item: parameter.path[-1] in item, reverse=True)

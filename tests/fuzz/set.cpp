@@ -13,9 +13,8 @@ name: fuzz
 levels: 2
 pins: [{region: ball, point: [0, 0, 0], radius: 0.1}]
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.1}, gravity]
-contact:
-  - {type: ipc, obstacles: [{name: box, shape: box}]}
-  - {type: shapes, shapes: [{name: ball, shape: sphere}]}
+contact: [ipc, shapes]
+obstacles: [{name: box, meshed_shape: box}, {name: ball, shape: sphere}]
 methods: {pcs: {}, slow: {type: newton, newton: {step_size: 0.01}}}
 metrics: [energy]
 reference: pcs

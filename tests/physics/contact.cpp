@@ -37,10 +37,10 @@ TriangleMesh rings(double radius, int count) {
   return mesh;
 }
 
-const std::string half_space = "shapes, shapes: [{name: floor, shape: half_space}]";
+const std::string half_space = "shapes\nobstacles: [{name: floor, shape: half_space}]";
 /// The floor as the top of a box of twelve triangles; the cloth lies within one of them.
 const std::string mesh_floor =
-    "ipc, obstacles: [{name: floor, shape: box, size: [4, 4, 1], translate: [0.5, 0, -0.5]}]";
+    "ipc\nobstacles: [{name: floor, meshed_shape: box, size: [4, 4, 1], translate: [0.5, 0, -0.5]}]";
 
 /// The drape coefficient of a cotton with this bending modulus [Pa] in the Cusick test (BS 5058): a disc of
 /// 30 cm is held between two plates of 18 cm; its shadow covers this fraction of the overhang's area.
@@ -57,9 +57,8 @@ material: {membrane_modulus: 8.21e5, bending_modulus: )" +
 start: {perturbation: 2e-4, perturbation_wavelength: 0.1}
 pins: [{region: ball, radius: 0.090001}]
 energies: [neo_hookean, hinge, gravity]
-contact:
-  - ipc
-  - {type: shapes, shapes: [{name: plate, shape: cylinder, centre: [0, 0, -0.0515], radius: 0.09, height: 0.1}]}
+contact: [ipc, shapes]
+obstacles: [{name: plate, shape: cylinder, translate: [0, 0, -0.0515], radius: 0.09, height: 0.1}]
 newton: {force_tolerance: 1e-3}
 methods: {newton: {}}
 )");

@@ -138,7 +138,8 @@ pins:
   - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
   - {region: nearest, point: [0, 0, 0]}
 energies: [neo_hookean, hinge, gravity]
-contact: [ipc, {type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.2}]}]
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.2}]
 schedule:
   steps: 3
   keys: [{parameter: pins.0.translate, times: [0, 1], values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
@@ -204,9 +205,11 @@ cloth: {shape: square, side: 0.3, columns: 10, rows: 10}
 levels: 1
 start: {translate: [-0.15, -0.15, 0.05], perturbation: 1e-4}
 energies: [neo_hookean, hinge, gravity]
-contact:
-  - {type: ipc, friction: 0.3, obstacles: [{name: plate, shape: box, size: [0.4, 0.4, 0.01], translate: [0, 0, 0.04]}]}
-  - {type: shapes, shapes: [{name: lid, shape: box, size: [0.4, 0.4, 0.01], centre: [0, 0, 0.5]}]}
+contact: [ipc, shapes]
+obstacles:
+  - {name: plate, meshed_shape: box, size: [0.4, 0.4, 0.01], translate: [0, 0, 0.04]}
+  - {name: lid, shape: box, size: [0.4, 0.4, 0.01], translate: [0, 0, 0.5], friction: 0}
+friction: 0.3
 schedule:
   steps: 10
   keys: [)" + keys + R"(]
@@ -214,7 +217,7 @@ methods: {newton: {}}
 )");
   };
   Solved s = scene(
-      "{parameter: contact.ipc.obstacles.plate.translate, times: [0, 1], values: [[0, 0, 0.04], [0.05, 0, "
+      "{parameter: obstacles.plate.translate, times: [0, 1], values: [[0, 0, 0.04], [0.05, 0, "
       "0.24]]}");
   Increments increments(s);
   run(s, increments);
@@ -226,8 +229,8 @@ methods: {newton: {}}
   // Friction drags it sideways too, except for what slid while it was lifted off the start.
   CHECK(centroid.x() > 0.03);
 
-  Solved closing = scene(
-      "{parameter: contact.shapes.shapes.lid.centre, times: [0, 1], values: [[0, 0, 0.5], [0, 0, 0.045]]}");
+  Solved closing =
+      scene("{parameter: obstacles.lid.translate, times: [0, 1], values: [[0, 0, 0.5], [0, 0, 0.045]]}");
   Increments closing_increments(closing);
   run(closing, closing_increments);
   CHECK(closing.levels[0].outcome == Outcome::infeasible);

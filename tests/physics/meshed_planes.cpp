@@ -36,7 +36,7 @@ struct Floor {
 
 /// The same plane in many ways, the exact one first.
 std::vector<Floor> floors(const Scratch& folder) {
-  std::vector<Floor> all = {{"half-space", "shapes, shapes: [{name: floor, shape: half_space}]"}};
+  std::vector<Floor> all = {{"half-space", "shapes\nobstacles: [{name: floor, shape: half_space}]"}};
   for (const auto& [name, cell, jitter, uneven] :
        {std::tuple("two triangles", 0.6, 0.0, 0.0), std::tuple("0.1 m", 0.1, 0.0, 0.0),
         std::tuple("0.025 m", 0.025, 0.0, 0.0), std::tuple("0.01 m", 0.01, 0.0, 0.0),
@@ -44,7 +44,7 @@ std::vector<Floor> floors(const Scratch& folder) {
         std::tuple("0.025 m, as flat as single precision", 0.025, 0.3, 2e-8)}) {
     const auto file = folder / (std::to_string(all.size()) + ".ply");
     write_mesh(file, plane(cell, jitter, uneven));
-    all.push_back({name, "ipc, obstacles: [{name: floor, file: " + file.string() + "}]"});
+    all.push_back({name, "ipc\nobstacles: [{name: floor, mesh: " + file.string() + "}]"});
   }
   return all;
 }

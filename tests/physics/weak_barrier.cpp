@@ -20,13 +20,13 @@ std::string over_a_ball(const std::string& contact, int steps) {
 }
 
 std::string a_mesh(const std::string& stiffness) {
-  return "{type: ipc, friction: 0.4, stiffness: " + stiffness +
-         ", obstacles: [{name: ball, shape: sphere, radius: 0.1}]}";
+  return "{type: ipc, stiffness: " + stiffness +
+         "}\nfriction: 0.4\nobstacles: [{name: ball, meshed_shape: sphere, radius: 0.1}]";
 }
 
 std::string a_shape(const std::string& stiffness) {
-  return "{type: shapes, friction: 0.4, stiffness: " + stiffness +
-         ", shapes: [{name: ball, shape: sphere, radius: 0.1}]}";
+  return "{type: shapes, stiffness: " + stiffness +
+         "}\nfriction: 0.4\nobstacles: [{name: ball, shape: sphere, radius: 0.1}]";
 }
 
 }  // namespace

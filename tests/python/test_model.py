@@ -15,7 +15,8 @@ CONTACT = {
     "levels": 1,
     "start": {"translate": [-0.2, -0.2, 0.1005]},
     "energies": ["stvk", "hinge", {"type": "strain_limit", "limit": 1.1}, "gravity"],
-    "contact": {"type": "shapes", "dhat": 2e-3, "shapes": [{"name": "ball", "shape": "sphere", "radius": 0.1}]},
+    "contact": {"type": "shapes", "dhat": 2e-3},
+    "obstacles": [{"name": "ball", "shape": "sphere", "radius": 0.1}],
     "methods": {"newton": {}},
 }
 

@@ -22,6 +22,7 @@ inline double resting_gap(double pressure, double stiffness, double dhat) {
 }
 
 /// A patch of cotton at rest on the floor z = 0, under gravity that is turned by `angle` from the vertical.
+/// `contact` is a contact model, and the key `obstacles` on a line of its own.
 inline std::string on_a_slope(double angle, double friction, const std::string& contact,
                               const std::string& newton) {
   const drape::Material cotton;
@@ -35,7 +36,8 @@ levels: 1
 material: {}
 start: {translate: [-0.05, -0.05, %.17g]}
 energies: [neo_hookean, hinge, {type: gravity, acceleration: [%.17g, 0, %.17g]}]
-contact: {type: %s, friction: %g}
+contact: %s
+friction: %g
 newton: {%s}
 methods: {newton: {}}
 )",

@@ -19,15 +19,16 @@ constexpr double dhat = 1e-3, stiffness = 100, mu = 0.3, epsilon = 1e-4;
 /// The half-space below z = 0.
 std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double height = 0) {
   return make_plugin_from<ContactModel>(
-      "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: " + name +
-      ", shape: half_space, centre: [0, 0, " + std::to_string(height) + "]}]}");
+      "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: " + name +
+      ", shape: half_space, translate: [0, 0, " + std::to_string(height) + "]}]}");
 }
 
 /// A box whose top is z = 0, larger than the sheet.
 std::shared_ptr<ContactModel> a_plate(double x) {
   return make_plugin_from<ContactModel>(
-      "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: plate, shape: box, size: [1, 1, 0.2], "
-      "centre: [" +
+      "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: plate, shape: box, size: [1, 1, "
+      "0.2], "
+      "translate: [" +
       std::to_string(x) + ", 0, -0.1]}]}");
 }
 
@@ -221,10 +222,11 @@ TEST_CASE("Ten layers that stick to each other do not creep") {
   }
   const Level level = Level::of(0, rest);
   const auto beside_a_box = [&](const std::string& place) {
-    return bound(level, {make_plugin_from<ContactModel>(
-                            "{type: ipc, stiffness: 100, friction: 0.3, obstacles: [{name: box, shape: box, "
-                            "translate: " +
-                            place + "}]}")});
+    return bound(level,
+                 {make_plugin_from<ContactModel>(
+                     "{type: ipc, stiffness: 100, friction: 0.3, obstacles: [{name: box, meshed_shape: box, "
+                     "translate: " +
+                     place + "}]}")});
   };
   BoundContacts models = beside_a_box("[0, 9, 0]");
   ActiveContacts contacts(models);
@@ -298,9 +300,9 @@ TEST_CASE("Tangential displacements on a static obstacle are the cloth's own, an
   const auto on_floor = [&](double far) {  // in one model, and in two
     return std::array{
         bound(level, {make_plugin_from<ContactModel>(
-                         "{type: shapes, stiffness: 100, friction: 0.3, shapes: [{name: floor, "
-                         "shape: box, size: [4, 4, 0.2], rotate: [0, 0, 33], centre: [0.7, 0.3, -0.1]}, "
-                         "{name: ball, shape: sphere, radius: 0.1, centre: [0, " +
+                         "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: floor, "
+                         "shape: box, size: [4, 4, 0.2], rotate: [0, 0, 33], translate: [0.7, 0.3, -0.1]}, "
+                         "{name: ball, shape: sphere, radius: 0.1, translate: [0, " +
                          std::to_string(far) + ", 3]}]}")}),
         bound(level, {a_floor(), a_plate(far)})};
   };
@@ -467,10 +469,12 @@ material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e6}
 start: {translate: [-0.15, -0.1, 0.109], perturbation: 3e-3}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3, stiffness: 100}, gravity]
 contact:
-  - {type: ipc, dhat: 0.02, stiffness: 20, friction: 0.4, friction_smoothing_distance: 1e-3,
-     obstacles: [{name: shelf, shape: box, size: [0.05, 0.3, 0.1], translate: [0.12, 0, 0.05]}]}
-  - {type: shapes, dhat: 0.02, stiffness: 20, friction: 0.4, friction_smoothing_distance: 1e-3,
-     shapes: [{name: ball, shape: sphere, radius: 0.1}]}
+  - {type: ipc, dhat: 0.02, stiffness: 20, friction_smoothing_distance: 1e-3}
+  - {type: shapes, dhat: 0.02, stiffness: 20, friction_smoothing_distance: 1e-3}
+obstacles:
+  - {name: shelf, meshed_shape: box, size: [0.05, 0.3, 0.1], translate: [0.12, 0, 0.05]}
+  - {name: ball, shape: sphere, radius: 0.1}
+friction: 0.4
 methods: {newton: {}}
 )");
   const LevelModel& model = s.model();

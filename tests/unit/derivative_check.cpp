@@ -79,7 +79,7 @@ TEST_CASE("the derivatives of a model's whole energy have limits and contacts in
   const auto gravity = make_plugin_from<Energy>("gravity");
   const auto limit = make_plugin_from<Energy>("{type: strain_limit, limit: 1.2}");
   const auto floor = make_plugin_from<ContactModel>(
-      "{type: shapes, dhat: 0.05, shapes: [{name: floor, shape: half_space, centre: [0, 0, -0.02], "
+      "{type: shapes, dhat: 0.05, obstacles: [{name: floor, shape: half_space, translate: [0, 0, -0.02], "
       "normal: [0, 0, 1]}]}");
   const LevelModel model(level, Material(), {{"stvk", stvk}, {"gravity", gravity}, {"limit", limit}}, {},
                          {floor});

@@ -48,6 +48,6 @@ TEST_CASE("self-contact tells the gap of every pair") { check_gaps("{type: ipc, 
 
 TEST_CASE("shapes tell the gap of every element") {
   check_gaps(
-      "{type: shapes, dhat: 0.01, shapes: [{name: floor, shape: half_space, centre: [0, 0, -0.004], "
+      "{type: shapes, dhat: 0.01, obstacles: [{name: floor, shape: half_space, translate: [0, 0, -0.004], "
       "normal: [0, 0, 1]}]}");
 }

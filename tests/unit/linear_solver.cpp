@@ -48,7 +48,8 @@ pins:
   - {region: nearest, point: [0.25, 0.2, 0]}
 energies: [neo_hookean, hinge, gravity]
 refiner: loop
-contact: [{type: shapes, shapes: [{name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.15}]}]
+contact: shapes
+obstacles: [{name: ball, shape: sphere, radius: 0.15}]
 newton: {force_tolerance: 1e-7}
 methods:
   supernodal: {type: cascadic}

@@ -16,9 +16,9 @@ levels: 2
 pins: [{region: nearest, point: [0, 0, 0]}]
 handles: [{region: nearest, point: [0.4, 0.4, 0]}]
 energies: [neo_hookean, hinge, {type: gravity, acceleration: [0, 0, -9.81]}]
-contact:
-  - {type: ipc, friction: 0.1}
-  - {type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.1, centre: [0.2, 0.2, -0.2]}]}
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.1, translate: [0.2, 0.2, -0.2]}]
+friction: 0.1
 methods: {newton: {}}
 schedule:
   steps: 4
@@ -26,7 +26,7 @@ schedule:
     - {parameter: pins.0.translate, times: [0, 4], values: [[0, 0, 0], [0, 0, 0.4]]}
     - {parameter: energies.gravity.acceleration.2, times: [0, 4], values: [-9.81, -1.81]}
     - {parameter: material.bending_modulus, times: [2, 4], values: [8e4, 8e2], interpolation: log}
-    - {parameter: contact.shapes.shapes.ball.centre, times: [0, 4], values: [[0.2, 0.2, -0.2], [0.2, 0.2, -0.12]]}
+    - {parameter: obstacles.ball.translate, times: [0, 4], values: [[0.2, 0.2, -0.2], [0.2, 0.2, -0.12]]}
 )";
 
 /// What a model gives, for comparison.
@@ -155,9 +155,10 @@ TEST_CASE("An increment whose value a parameter refuses is named") {
 cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
 levels: 1
 energies: [neo_hookean, gravity]
-contact: {type: ipc, obstacles: [{shape: sphere, radius: 0.1, subdivisions: 1, translate: [0.2, 0.2, -1]}]}
+contact: ipc
+obstacles: [{meshed_shape: sphere, radius: 0.1, subdivisions: 1, translate: [0.2, 0.2, -1]}]
 methods: {newton: {}}
-schedule: {steps: 4, keys: [{parameter: contact.obstacles.0.subdivisions, times: [0, 2], values: [1, 2]}]}
+schedule: {steps: 4, keys: [{parameter: obstacles.0.subdivisions, times: [0, 2], values: [1, 2]}]}
 )");
   LoadStepping& stepping = *s.scene->schedule;
   stepping.begin(0, true);

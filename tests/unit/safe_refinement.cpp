@@ -72,7 +72,7 @@ double largest_distance(const Positions& x, const Positions& y) {
   return (x - y).rowwise().norm().maxCoeff();
 }
 
-const std::string ball = "{type: shapes, shapes: [{name: ball, shape: sphere, radius: 0.3}]}";
+const std::string ball = "{type: shapes, obstacles: [{name: ball, shape: sphere, radius: 0.3}]}";
 
 /// A square that lies on a dome around the ball, as low as its triangles can without touching it.
 Positions over_the_ball(const TwoLevels& cloth) {

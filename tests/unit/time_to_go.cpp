@@ -133,7 +133,7 @@ TEST_CASE("Under a schedule the progress line shows which increment of how many,
       "energy -0.25 J");
 
   Progress of_many(1e-4, 3, Verbosity::quiet, &increments,
-                   {"pins.0.translate", "material.density", "contact.friction"});
+                   {"pins.0.translate", "material.density", "friction"});
   of_many.level_started(1);
   CHECK_THAT(line_after(of_many, row_of(0, 1, 20)),
              Catch::Contains(" increment 20/40 of pins.0.translate and 2 more "));

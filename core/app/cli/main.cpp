@@ -146,6 +146,7 @@ int report(const std::vector<std::filesystem::path>& folders, std::filesystem::p
 nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
   nlohmann::ordered_json schema = json_schema(schema_of<ExperimentParameters>("experiment"), &registry);
   schema["properties"]["methods"].update(named_plugins_schema("solver", registry));
+  schema["properties"]["obstacles"].update(obstacles_schema(registry));
   return schema;
 }
 

@@ -44,12 +44,10 @@ start: {translate: [-0.5, -0.5, 0.32], perturbation: 1e-3}
 # `drape list energy` names every energy, `drape describe strain_limit` shows one's parameters.
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.06}, gravity]
 
-# Contact of the cloth with itself, then with a sphere at the origin.
-contact:
-  - {type: ipc, friction: 0.1}
-  - type: shapes
-    friction: 0.1
-    shapes: [{name: ball, shape: sphere, centre: [0, 0, 0], radius: 0.3}]
+# `ipc` keeps the cloth apart from itself and from meshes, `shapes` from solids such as this sphere at the origin.
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.3, translate: [0, 0, 0]}]
+friction: 0.1              # Coulomb's coefficient, with the cloth itself and with every obstacle
 
 # A level ends once its forces balance to this fraction.
 newton: {force_tolerance: 1e-3}

@@ -73,6 +73,10 @@ size_t width(const std::string& text) {
   return n;
 }
 
+std::string description_of(const Parameter& p) {
+  return p.description + (p.from_experiment ? "; a key of the experiment" : "");
+}
+
 std::string cell(const std::string& text) {
   std::string escaped;
   for (const char c : text) escaped += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
@@ -98,7 +102,7 @@ std::string describe(const Schema& schema) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;
-    std::string note = p.description;
+    std::string note = description_of(p);
     if (!p.source.empty()) note += (note.empty() ? "[" : " [") + p.source + "]";
     if (!note.empty()) text += "      " + std::string(2 * size_t(rows[i - 1].depth), ' ') + note + "\n";
   }
@@ -119,7 +123,7 @@ std::string describe_markdown(const Schema& schema, const SharedSection* shared)
     const Parameter& p = *row.parameter;
     const std::string initial = row.initial.empty() || p.required ? row.initial : "`" + row.initial + "`";
     text += "|" + cell("`" + row.path + "`") + cell(row.type) + cell(initial) + cell(unit_of(p)) +
-            cell(row.range) + cell(p.description + (row.link.empty() ? "" : "; see " + row.link)) +
+            cell(row.range) + cell(description_of(p) + (row.link.empty() ? "" : "; see " + row.link)) +
             cell(p.source) + "\n";
   }
   return text;

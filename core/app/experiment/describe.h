@@ -39,4 +39,7 @@ nlohmann::ordered_json json_schema(const Schema& schema, const Registry* registr
 /// the name.
 nlohmann::ordered_json named_plugins_schema(const std::string& kind, const Registry& registry);
 
+/// The JSON Schema of an experiment's `obstacles`: the items that the registered contact models take.
+nlohmann::ordered_json obstacles_schema(const Registry& registry);
+
 }  // namespace drape

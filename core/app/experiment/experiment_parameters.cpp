@@ -1,6 +1,7 @@
 #include "core/app/experiment/experiment_parameters.h"
 
-#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/contact/contact_parameters.h"
+#include "core/kernel/plugin/placement.h"
 
 namespace drape {
 
@@ -69,16 +70,7 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .at_least(-bounds::largest_scale)
       .at_most(bounds::largest_scale)
       .description("scale factors along x, y, z, applied first");
-  d.add("rotate", &StartParameters::rotate)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .description("rotation about x, then y, then z, applied after `scale`");
-  d.add("translate", &StartParameters::translate)
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .description("translation, applied last");
+  declare_placement(d);
   d.add("perturbation", &StartParameters::perturbation)
       .unit("m")
       .at_least(0)
@@ -219,6 +211,11 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .plugin("contact")
       .or_list()
       .description("contact model or a list of them; none by default");
+  d.add_node("obstacles", &ExperimentParameters::obstacles)
+      .description(
+          "what the cloth collides with; each goes to the contact model that takes its keys, which `drape "
+          "describe` of the model lists");
+  declare_friction(d);
   d.add_section("newton", &ExperimentParameters::newton)
       .description("Newton parameters of every method; a method's own take precedence");
   d.add_node("methods", &ExperimentParameters::methods)

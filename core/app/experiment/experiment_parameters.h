@@ -121,6 +121,8 @@ struct ExperimentParameters {
   ScheduleParameters schedule;
   std::vector<ConfigNode> energies;
   ConfigNode refiner, contact;
+  std::vector<ConfigNode> obstacles;  ///< as written; contact_configs gives each to a contact model
+  double friction = 0;                ///< μ
   NewtonParameters newton;
   ConfigNode methods;
   std::vector<ConfigNode> metrics;

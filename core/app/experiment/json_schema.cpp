@@ -90,6 +90,7 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   Json required = Json::array();
   const ConfigNode defaults = schema.write(schema.fresh().get());
   for (const Parameter& p : schema.parameters) {
+    if (p.from_experiment) continue;
     Json& property = properties[p.name] = parameter_schema(p, registry);
     if (p.required)
       required.push_back(p.name);
@@ -99,6 +100,22 @@ Json json_schema(const Schema& schema, const Registry* registry) {
   Json json = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   if (!required.empty()) json["required"] = required;
   return json;
+}
+
+Json obstacles_schema(const Registry& registry) {
+  Json alternatives = Json::array();
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    for (const Parameter& p : model->schema.parameters)
+      if (p.from_experiment && p.section) {
+        Json identified = Json::array();
+        for (const Parameter& key : p.section->parameters)
+          if (key.identifies_item) identified.push_back(Json{{"required", Json::array({key.name})}});
+        Json item = json_schema(*p.section, &registry);
+        item["allOf"] = Json::array({Json{{"anyOf", identified}}});
+        item["description"] = "of contact model " + model->name + ": " + p.description;
+        alternatives.push_back(std::move(item));
+      }
+  return {{"type", "array"}, {"items", {{"anyOf", alternatives}}}};
 }
 
 Json named_plugins_schema(const std::string& kind, const Registry& registry) {

@@ -35,51 +35,81 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
       increment_count_(e.parameters.schedule.steps),
       equilibrates_(e.parameters.schedule.equilibrate) {
   auto parameters = std::make_shared<ExperimentParameters>(e.parameters);
+  ConfigErrors errors;
+  ExperimentParameters resolved;
+  experiment_schema().read(&resolved, e.resolved, errors);
+  const std::vector<ContactConfig> contacts = contact_configs(*e.registry, resolved, errors);
+  throw_first(errors);
   std::size_t first = 0;
   for (std::size_t k = 0; k < e.parameters.schedule.keys.size(); ++k) {
     const std::string& name = e.parameters.schedule.keys[k].parameter;
-    std::vector<std::string> words = words_of(name), within;
-    Section& section = section_of(e, words, within);
-    const bool of_plugin = section.plugin.entry != nullptr;
-    const auto path = ParameterPath::find(of_plugin ? section.plugin.entry->schema : experiment_schema(),
-                                          of_plugin ? section.plugin.values.get() : parameters.get(), within);
-    if (!path) throw std::runtime_error("the schedule's key \"" + name + "\" names no parameter");
-    section.keys.push_back({k, first, *path});
+    for (const Target& target : targets_of(e, contacts, words_of(name))) {
+      Section& section = section_of(e, contacts, target);
+      const bool of_plugin = section.plugin.entry != nullptr;
+      const auto path =
+          ParameterPath::find(of_plugin ? section.plugin.entry->schema : experiment_schema(),
+                              of_plugin ? section.plugin.values.get() : parameters.get(), target.words);
+      if (!path) throw std::runtime_error("the schedule's key \"" + name + "\" names no parameter");
+      section.keys.push_back({k, first, *path});
+    }
     first += keys_.count(k);
   }
   first_ = std::make_shared<const LoadState>(
       LoadState{keys_.first(), std::move(parameters), scene.energies, e.contacts});
 }
 
-/// `rest` receives the words that follow in the struct that the section's parameters are in.
-LoadSchedule::Section& LoadSchedule::section_of(const Experiment& e, const std::vector<std::string>& words,
-                                                std::vector<std::string>& rest) {
-  static const std::vector<std::string> kinds = {"material", "pins", "handles", "energies", "contact"};
-  const auto kind =
-      static_cast<Section::Kind>(std::find(kinds.begin(), kinds.end(), words[0]) - kinds.begin());
-  const bool is_plugin = kind == Section::energy || kind == Section::contact;
-  std::size_t item = 0, used = 0;
-  const ConfigNode* node = e.resolved.find(words[0]);
-  if (is_plugin) {
-    used = 1;
-    if (node->kind == ConfigNode::Kind::list) {
-      const auto index = words.size() > 1 ? node->index_of(words[1]) : std::nullopt;
-      if (!index) throw std::runtime_error("the schedule's keys name no item of \"" + words[0] + "\"");
-      item = *index;
-      node = &node->items[item];
-      used = 2;
-    }
+std::vector<LoadSchedule::Target> LoadSchedule::targets_of(const Experiment& e,
+                                                           const std::vector<ContactConfig>& contacts,
+                                                           const std::vector<std::string>& words) {
+  const std::string& key = words[0];
+  const auto words_from = [&](std::size_t used) {
+    return std::vector<std::string>(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
+  };
+  const auto item = [&] {
+    const auto index = words.size() > 1 ? e.resolved.find(key)->index_of(words[1]) : std::nullopt;
+    if (!index) throw std::runtime_error("the schedule's keys name no item of \"" + key + "\"");
+    return *index;
+  };
+  std::vector<Target> targets;
+  if (key == "friction") {
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      if (contacts[k].node.find(key)) targets.push_back({Section::contact, k, words});
+  } else if (key == "obstacles") {
+    const std::size_t of_experiment = item();
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+      for (std::size_t i = 0; i < contacts[k].obstacles.size(); ++i) {
+        if (contacts[k].obstacles[i] != of_experiment) continue;
+        std::vector<std::string> within = words_from(2);
+        within.insert(within.begin(), {key, std::to_string(i)});
+        targets.push_back({Section::contact, k, std::move(within)});
+      }
+  } else if (key == "energies" || key == "contact") {
+    const bool is_list = e.resolved.find(key)->kind == ConfigNode::Kind::list;
+    targets.push_back({key == "contact" ? Section::contact : Section::energy, is_list ? item() : 0,
+                       words_from(is_list ? 2 : 1)});
+  } else {
+    targets.push_back({key == "pins"      ? Section::pins
+                       : key == "handles" ? Section::handles
+                                          : Section::material,
+                       0, words});
   }
-  rest.assign(words.begin() + static_cast<std::ptrdiff_t>(used), words.end());
+  return targets;
+}
+
+LoadSchedule::Section& LoadSchedule::section_of(const Experiment& e,
+                                                const std::vector<ContactConfig>& contacts,
+                                                const Target& target) {
   for (Section& section : sections_)
-    if (section.kind == kind && section.item == item) return section;
+    if (section.kind == target.kind && section.item == target.item) return section;
   ConfigErrors errors;
   PluginParameters plugin;
-  if (is_plugin)
-    plugin =
-        read_plugin_parameters(*e.registry, kind == Section::energy ? "energy" : "contact", *node, errors);
+  if (target.kind == Section::energy)
+    plugin = read_plugin_parameters(*e.registry, "energy", e.resolved.find("energies")->items[target.item],
+                                    errors);
+  if (target.kind == Section::contact)
+    plugin = read_plugin_parameters(*e.registry, "contact", contacts[target.item].node, errors);
   throw_first(errors);
-  return sections_.emplace_back(Section{kind, item, std::move(plugin)});
+  return sections_.emplace_back(Section{target.kind, target.item, std::move(plugin)});
 }
 
 bool LoadSchedule::differs(const Section& section, const std::vector<double>& a,

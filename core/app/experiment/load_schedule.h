@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/schedule_keys.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/parameter_path.h"
@@ -56,8 +57,18 @@ class LoadSchedule {
     std::vector<Key> keys = {};
   };
 
-  Section& section_of(const Experiment& experiment, const std::vector<std::string>& words,
-                      std::vector<std::string>& rest);
+  /// Where a key's parameter is, with the words of its path in the struct there.
+  struct Target {
+    Section::Kind kind;
+    std::size_t item;  // of the energies or contact models
+    std::vector<std::string> words;
+  };
+  /// One target; for `friction` one in every contact model that declares it.
+  static std::vector<Target> targets_of(const Experiment& experiment,
+                                        const std::vector<ContactConfig>& contacts,
+                                        const std::vector<std::string>& words);
+  Section& section_of(const Experiment& experiment, const std::vector<ContactConfig>& contacts,
+                      const Target& target);
   bool differs(const Section& section, const std::vector<double>& a, const std::vector<double>& b) const;
   /// Writes the section's values into a struct that has it.
   void write(const Section& section, const std::vector<double>& values, void* object) const;

@@ -2,6 +2,7 @@
 
 #include <set>
 
+#include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/method_choice.h"
 #include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/make.h"
@@ -47,7 +48,7 @@ class PluginMaker {
                          "\"energies\" must name at least one energy, as in "
                          "\"energies: [neo_hookean, hinge, gravity]\""});
 
-    e_.refiner = make_one<Refiner>("refiner", e_.parameters.refiner, "loop");
+    make_refiner();
     make_contacts();
 
     if (!e_.source.find("metrics"))
@@ -73,25 +74,25 @@ class PluginMaker {
     return object;
   }
 
-  template <class Interface>
-  std::shared_ptr<Interface> make_one(const std::string& key, const ConfigNode& node, const char* otherwise) {
+  void make_refiner() {
+    const ConfigNode& node = e_.parameters.refiner;
     ConfigNode resolved;
-    auto object = make_from<Interface>(
-        registry_, node.kind == ConfigNode::Kind::null ? scalar_node(otherwise) : node, errors_, &resolved);
-    set(key, resolved);
-    return object;
+    e_.refiner = make_from<Refiner>(
+        registry_, node.kind == ConfigNode::Kind::null ? scalar_node("loop") : node, errors_, &resolved);
+    set("refiner", resolved);
   }
 
   void make_contacts() {
-    const ConfigNode& contact = e_.parameters.contact;
-    if (contact.kind != ConfigNode::Kind::list) {
-      e_.contacts.push_back(make_one<ContactModel>("contact", contact, "none"));
-      return;
+    ConfigNode models, obstacles;
+    models.kind = obstacles.kind = ConfigNode::Kind::list;
+    obstacles.items = e_.parameters.obstacles;
+    for (const ContactConfig& config : contact_configs(registry_, e_.parameters, errors_)) {
+      e_.contacts.push_back(make<ContactModel>(config.node, models));
+      split_resolved(registry_, config, models.items.back(), obstacles.items);
     }
-    ConfigNode resolved;
-    resolved.kind = ConfigNode::Kind::list;
-    for (const ConfigNode& node : contact.items) e_.contacts.push_back(make<ContactModel>(node, resolved));
-    set("contact", resolved);
+    const bool is_list = e_.parameters.contact.kind == ConfigNode::Kind::list;
+    set("contact", is_list ? models : models.items[0]);
+    set("obstacles", obstacles);
   }
 
   void make_methods() {

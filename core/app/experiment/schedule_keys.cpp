@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/app/experiment/contact_configs.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/make.h"
@@ -15,7 +16,8 @@ namespace {
 using NodeKind = ConfigNode::Kind;
 
 /// Sections whose parameters may change; the others choose the discretisation and the methods.
-const std::vector<std::string> changeable = {"material", "energies", "contact", "pins", "handles"};
+const std::vector<std::string> changeable = {"material", "energies", "contact", "obstacles",
+                                             "friction", "pins",     "handles"};
 
 /// A number or a list of them; empty for anything else.
 std::vector<double> numbers_of(const ConfigNode& node) {
@@ -68,11 +70,9 @@ double duration_of(const ScheduleParameters& p) {
 void check_plugins(const Experiment& e, const ExperimentParameters& changed, ConfigErrors& errors) {
   for (std::size_t k = 0; k < std::min(changed.energies.size(), e.energies.size()); ++k)
     make_from<Energy>(*e.registry, changed.energies[k], errors, nullptr, e.energies[k].energy.get());
-  const ConfigNode& contact = changed.contact;
-  const bool one = contact.kind != NodeKind::list;
-  for (std::size_t k = 0; k < std::min(one ? 1 : contact.items.size(), e.contacts.size()); ++k)
-    make_from<ContactModel>(*e.registry, one ? contact : contact.items[k], errors, nullptr,
-                            e.contacts[k].get());
+  const std::vector<ContactConfig> contacts = contact_configs(*e.registry, changed, errors);
+  for (std::size_t k = 0; k < std::min(contacts.size(), e.contacts.size()); ++k)
+    make_from<ContactModel>(*e.registry, contacts[k].node, errors, nullptr, e.contacts[k].get());
 }
 
 }  // namespace
@@ -82,8 +82,8 @@ void KeyParameters::declare(Declaration<KeyParameters>& d) {
       .formerly("set")
       .required()
       .description(
-          "path of the parameter, as for --set, in material, energies, contact, pins or handles; an index or "
-          "a name selects an item of a list, as in energies.gravity.acceleration");
+          "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
+          "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration");
   d.add("times", &KeyParameters::times)
       .formerly("at")
       .at_least(-1e9)

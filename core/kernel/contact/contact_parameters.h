@@ -24,14 +24,21 @@ struct ContactParameters {
   }
 };
 
-template <class Derived>
-void declare_contact_parameters(Declaration<Derived>& d) {
-  d.add("friction", &Derived::friction)
+/// Declares `friction`: of an experiment, of a contact model, which takes the experiment's, or of an
+/// obstacle.
+template <class Struct>
+ParameterHandle declare_friction(Declaration<Struct>& d) {
+  return d.add("friction", &Struct::friction)
       .unit("1")
       .at_least(0)
       .at_most(bounds::largest_friction)
       .description("Coulomb's friction coefficient μ, where an obstacle does not have its own")
       .source("Li et al. 2020, section 5");
+}
+
+template <class Derived>
+void declare_contact_parameters(Declaration<Derived>& d) {
+  declare_friction(d).from_experiment();
   d.add("dhat", &Derived::dhat)
       .unit("m")
       .at_least(bounds::smallest_length)

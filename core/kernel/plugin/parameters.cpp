@@ -188,6 +188,16 @@ std::string renaming_of(const std::string& key, const std::string& in, const Sch
   return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
 }
 
+/// "did you mean …?" or the known keys, for an unknown one.
+std::string hint_for(const std::string& key, const Schema& schema) {
+  std::vector<std::string> known;
+  for (const Parameter& p : schema.parameters)
+    if (!p.from_experiment) known.push_back(p.name);
+  const std::string nearest = nearest_word(key, known);
+  if (!nearest.empty()) return "; did you mean \"" + nearest + "\"?";
+  return known.empty() ? "; it takes no keys" : "; known keys are " + joined(known);
+}
+
 }  // namespace
 
 void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
@@ -197,31 +207,27 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     errors.push_back({map.where, label + " must be a map of keys and values, not " + shown(map)});
     return;
   }
-  std::vector<std::string> known;
-  for (const Parameter& p : parameters) known.push_back(p.name);
   std::map<std::string, size_t> first_of;
   std::set<const Parameter*> renamed;  // written under a former name
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
-    const size_t index = size_t(std::find(known.begin(), known.end(), key) - known.begin());
+    const auto named = [&key = map.entries[i].first](const Parameter& p) { return p.name == key; };
+    const auto known = std::find_if(parameters.begin(), parameters.end(), named);
     if (first != i) {
       errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                   "; it is first set at " + map.key_locations[first].text()});
-    } else if (index == known.size()) {
+    } else if (known == parameters.end()) {
       const Parameter* parameter = nullptr;
       if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
         errors.push_back({map.key_locations[i], renaming});
         renamed.insert(parameter);
         continue;
       }
-      const std::string nearest = nearest_word(key, known);
-      const std::string hint = !nearest.empty() ? "; did you mean \"" + nearest + "\"?"
-                               : known.empty()  ? "; it takes no keys"
-                                                : "; known keys are " + joined(known);
-      errors.push_back({map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint});
+      errors.push_back(
+          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this)});
     } else {
-      read_parameter(parameters[index], object, node, errors);
+      read_parameter(*known, object, node, errors);
     }
   }
   for (const Parameter& p : parameters)

@@ -34,6 +34,8 @@ struct Parameter {
   bool or_list = false;              ///< a node: a list of nodes is accepted too
   std::string shorthand_key;         ///< a section: a bare word is read as the value of this key
   bool path = false;                 ///< text: a file, relative to the config's folder
+  bool from_experiment = false;      ///< a contact model's: its value stands at the top of the experiment
+  bool identifies_item = false;      ///< an obstacle's: only the obstacles of this contact model have the key
 
   // Type-erased access to the member of a struct; `read` receives only validated nodes.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
@@ -129,6 +131,16 @@ class ParameterHandle {
   }
   ParameterHandle& path() {
     p_.path = true;
+    return *this;
+  }
+  /// A contact model's parameter that is written at the top of the experiment, once for all models.
+  ParameterHandle& from_experiment() {
+    p_.from_experiment = true;
+    return *this;
+  }
+  /// A key that tells an obstacle of this contact model from those of others.
+  ParameterHandle& identifies_item() {
+    p_.identifies_item = true;
     return *this;
   }
 

@@ -10,7 +10,7 @@ namespace drape::ipc {
 void Ipc::Parameters::declare(Declaration<Parameters>& d) {
   using P = Parameters;
   d.add("self_contact", &P::self_contact).description("whether the cloth collides with itself");
-  d.add_sections("obstacles", &P::obstacles).description("triangle meshes that the cloth collides with");
+  declare_obstacles(d).description("triangle meshes that the cloth collides with");
   declare_contact_parameters(d);
   d.add_choice("broad_phase", &P::broad_phase, {{"bvh", BroadPhaseKind::bvh}, {"fcl", BroadPhaseKind::fcl}})
       .description("broad phase algorithm: own BVH or FCL's; the pairs are the same");

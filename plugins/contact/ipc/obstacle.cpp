@@ -23,7 +23,6 @@ std::string difference(const Triangles& first, const Triangles& other) {
 }
 
 ValidatedMeshes read_animation(const ObstacleParameters& p) {
-  if (!p.file.empty()) throw std::runtime_error("\"file\" and \"animation\" exclude each other");
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
   ValidatedMeshes frames;
   for (const std::string& file : p.animation) {
@@ -36,16 +35,16 @@ ValidatedMeshes read_animation(const ObstacleParameters& p) {
 }
 
 ValidatedMeshes frames_of(const ObstacleParameters& p) {
-  if (p.shape == "box") return {validated_box()};
-  if (p.shape == "sphere") return {validated_sphere(p.subdivisions)};
-  if (!p.animation.empty()) return read_animation(p);
-  if (p.file.empty())
-    throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read, or \"animation\"");
-  return {load_validated_mesh(p.file)};
+  const int named = int(!p.mesh.empty()) + int(p.meshed_shape.has_value()) + int(!p.animation.empty());
+  if (named != 1)
+    throw std::runtime_error("needs exactly one of \"mesh\", \"meshed_shape\" and \"animation\"");
+  if (p.meshed_shape == "box") return {validated_box()};
+  if (p.meshed_shape == "sphere") return {validated_sphere(p.subdivisions)};
+  return p.animation.empty() ? ValidatedMeshes{load_validated_mesh(p.mesh)} : read_animation(p);
 }
 
 std::string name_of(const ObstacleParameters& p, int number) {
-  return p.name.empty() ? p.shape + " " + std::to_string(number) : p.name;
+  return p.name.empty() ? p.meshed_shape.value_or("mesh") + " " + std::to_string(number) : p.name;
 }
 
 std::runtime_error fault_of(const std::string& name, const std::string& what) {
@@ -56,30 +55,34 @@ std::runtime_error fault_of(const std::string& name, const std::string& what) {
 
 void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
-  d.add("name", &P::name).description("name in messages; by default its shape and index");
-  d.add("shape", &P::shape)
-      .choices({"file", "box", "sphere"})
-      .description("a mesh from a file, a box centred at the origin, or an icosphere centred at the origin");
-  d.add("file", &P::file)
+  declare_obstacle(d);
+  d.add("mesh", &P::mesh)
+      .formerly("file")
       .path()
-      .description("shape file: the mesh (.obj, .off or .ply), relative to this file");
+      .identifies_item()
+      .description("a mesh file (.obj, .off or .ply), relative to this file");
+  d.add("meshed_shape", &P::meshed_shape)
+      .choices({"box", "sphere"})
+      .identifies_item()
+      .description("instead of mesh: a triangulated box or an icosphere, centred at the origin");
   d.add("size", &P::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .description("shape box: edge lengths");
+      .description("edge lengths of a box");
   d.add("radius", &P::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
-      .description("shape sphere: radius");
+      .description("radius of a sphere");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
-      .description("shape sphere: subdivisions of the icosahedron; it has 20 · 4^subdivisions triangles");
+      .description("of a sphere's icosahedron; the sphere has 20 · 4^subdivisions triangles");
   d.add("animation", &P::animation)
       .path()
-      .description("instead of file: the frames of an animation, meshes with the same triangles");
+      .identifies_item()
+      .description("instead of mesh: the frames of an animation, files of meshes with the same triangles");
   d.add("frame", &P::frame)
       .unit("1")
       .at_least(0)
@@ -91,22 +94,7 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .unit("1")
       .at_least(1 / bounds::largest_scale)
       .at_most(bounds::largest_scale)
-      .description("scale factor, applied first");
-  d.add("rotate", &P::rotate)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .description("rotation about the x, then y, then z axis, applied second");
-  d.add("translate", &P::translate)
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .description("translation, applied last");
-  d.add("friction", &P::friction)
-      .unit("1")
-      .at_least(0)
-      .at_most(bounds::largest_friction)
-      .description("its friction coefficient μ; null: the model's");
+      .description("scale factor, applied before `rotate` and `translate`");
 }
 
 Eigen::Matrix3d Pose::linear() const { return scale * rotation_matrix(rotate); }
@@ -133,7 +121,7 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
 }
 
 bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParameters& b) {
-  return a.shape == b.shape && a.file == b.file && a.subdivisions == b.subdivisions &&
+  return a.mesh == b.mesh && a.meshed_shape == b.meshed_shape && a.subdivisions == b.subdivisions &&
          a.animation == b.animation && a.cages == b.cages;
 }
 
@@ -142,9 +130,9 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
   ObstacleGeometry& geometry = body.geometry;
   geometry.frames = meshes.frames;
   geometry.pose = {p.scale, p.rotate, p.translate};
-  if (p.shape == "box") {
+  if (p.meshed_shape == "box") {
     geometry.local_scale = p.size;
-  } else if (p.shape == "sphere") {
+  } else if (p.meshed_shape == "sphere") {
     geometry.local_scale.setConstant(p.radius);
   } else if (!p.animation.empty()) {
     const std::size_t last = meshes.frames.size() - 1;

@@ -5,16 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/contact/obstacle_parameters.h"
 #include "core/kernel/contact/obstacle_surface.h"
-#include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {
 
-/// One obstacle in a config: a mesh and its transform.
-struct ObstacleParameters {
-  std::string name, shape = "file", file;
+/// One obstacle in a config: a mesh and its transform. Exactly one of `mesh`, `meshed_shape` and `animation`
+/// says which mesh.
+struct ObstacleParameters : CommonObstacleParameters {
+  std::string mesh;                         ///< a file
+  std::optional<std::string> meshed_shape;  ///< "box" or "sphere"
   Eigen::Vector3d size{1, 1, 1};
   double radius = 0.5;
   int subdivisions = 4;
@@ -22,8 +24,6 @@ struct ObstacleParameters {
   double frame = 0;
   CageParameters cages;
   double scale = 1;
-  Eigen::Vector3d rotate{0, 0, 0}, translate{0, 0, 0};
-  std::optional<double> friction;
 
   static void declare(Declaration<ObstacleParameters>& d);
 };

@@ -32,7 +32,7 @@ TriangleMesh horned() {
 ObstacleParameters with_cages(const std::string& file, int count) {
   ObstacleParameters p;
   p.name = "horned";
-  p.file = file;
+  p.mesh = file;
   p.cages.count = count;
   return p;
 }
@@ -102,6 +102,6 @@ TEST_CASE("ipc: a level of the cloth collides with the cage of its index") {
   CHECK(on(5).vertices == itself.vertices);
   CHECK(enclosure_fault(validated(on(0)), validated(itself)).empty());
   p.obstacles[0].animation = {"a.ply"};
-  p.obstacles[0].file.clear();
+  p.obstacles[0].mesh.clear();
   CHECK_THROWS_WITH(Ipc(p), Contains("\"horned\"") && Contains("without \"animation\""));
 }

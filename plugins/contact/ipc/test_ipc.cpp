@@ -24,7 +24,7 @@ using Vector = Eigen::Vector3d;
 ObstacleParameters box_obstacle(const Vector& size, const Vector& translate) {
   ObstacleParameters box;
   box.name = "table";
-  box.shape = "box";
+  box.meshed_shape = "box";
   box.size = size;
   box.translate = translate;
   return box;
@@ -33,7 +33,7 @@ ObstacleParameters box_obstacle(const Vector& size, const Vector& translate) {
 ObstacleParameters sphere_obstacle(double radius, int subdivisions, const Vector& translate) {
   ObstacleParameters sphere;
   sphere.name = "ball";
-  sphere.shape = "sphere";
+  sphere.meshed_shape = "sphere";
   sphere.radius = radius;
   sphere.subdivisions = subdivisions;
   sphere.translate = translate;
@@ -178,8 +178,8 @@ TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are 
 
   ObstacleParameters missing;
   missing.name = "bunny";
-  CHECK_THROWS_WITH(obstacle_of(missing), Catch::Contains("\"bunny\"") && Catch::Contains("\"file\""));
-  missing.file = "no/such/bunny.off";
+  CHECK_THROWS_WITH(obstacle_of(missing), Catch::Contains("\"bunny\"") && Catch::Contains("\"mesh\""));
+  missing.mesh = "no/such/bunny.off";
   CHECK_THROWS_WITH(obstacle_of(missing),
                     Catch::Contains("\"bunny\"") && Catch::Contains("no/such/bunny.off"));
 
@@ -190,8 +190,10 @@ TEST_CASE("ipc: obstacles are valid and placed correctly, and named if they are 
 
 TEST_CASE("ipc: made from a config") {
   const auto model = make_plugin_from<ContactModel>(
-      "{type: ipc, friction: 0.2, stiffness: 5, broad_phase: fcl, obstacles: [{shape: sphere, radius: 0.3, "
-      "subdivisions: 1, translate: [0, 0, -1]}, {name: table, shape: box, size: [2, 2, 0.1], friction: "
+      "{type: ipc, friction: 0.2, stiffness: 5, broad_phase: fcl, obstacles: [{meshed_shape: sphere, radius: "
+      "0.3, "
+      "subdivisions: 1, translate: [0, 0, -1]}, {name: table, meshed_shape: box, size: [2, 2, 0.1], "
+      "friction: "
       "0.5}]}");
   const auto contact = model->bind(Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way)), Material());
   const std::vector<TriangleMesh> meshes = contact->obstacles();
@@ -199,9 +201,9 @@ TEST_CASE("ipc: made from a config") {
   CHECK(meshes[0].vertices.rows() == 42);
   CHECK(meshes[0].vertices.col(2).maxCoeff() == Approx(-0.7).margin(0.05));
   CHECK(meshes[1].vertices.col(2).maxCoeff() == Approx(0.05));
-  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{shape: ball}]}"),
-                    Catch::Contains("shape") && Catch::Contains("sphere"));
-  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{name: x, file: no.obj}]}"),
+  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{meshed_shape: ball}]}"),
+                    Catch::Contains("\"meshed_shape\"") && Catch::Contains("sphere"));
+  CHECK_THROWS_WITH(make_plugin_from<ContactModel>("{type: ipc, obstacles: [{name: x, mesh: no.obj}]}"),
                     Catch::Contains("\"x\"") && Catch::Contains("no.obj"));
 }
 

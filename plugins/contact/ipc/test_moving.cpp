@@ -27,7 +27,7 @@ Vector any(double size) { return {uniform(-size, size), uniform(-size, size), un
 ObstacleParameters box(const Vector& size, const Vector& translate = Vector::Zero()) {
   ObstacleParameters p;
   p.name = "block";
-  p.shape = "box";
+  p.meshed_shape = "box";
   p.size = size;
   p.translate = translate;
   return p;
@@ -259,8 +259,8 @@ TEST_CASE("ipc: an animation is interpolated linearly and never passes through t
   CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("other.ply has other vertices in triangle 7"));
   write_mesh(wrong.animation.back(), grid({0.3, 0.3}, 5, 6, Diagonals::one_way));
   CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("other.ply has 40 triangles and not 50"));
-  wrong.file = "x.obj";
-  CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("exclude each other"));
+  wrong.mesh = "x.obj";
+  CHECK_THROWS_WITH(obstacle_of(wrong), Catch::Contains("exactly one of \"mesh\""));
 }
 
 TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any number of threads") {
@@ -270,7 +270,7 @@ TEST_CASE("ipc: one of many obstacles moves, bit for bit the same with any numbe
   from[1].name = "mover";
   ObstacleParameters ball;
   ball.name = "ball";
-  ball.shape = "sphere";
+  ball.meshed_shape = "sphere";
   ball.radius = 0.05;
   ball.subdivisions = 3;
   ball.translate = {-0.1, 0, -0.2};
@@ -312,7 +312,7 @@ TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
   const Level level = square(3, 0.2);
   ObstacleParameters ball;
   ball.name = "ball";
-  ball.shape = "sphere";
+  ball.meshed_shape = "sphere";
   ball.translate = {0, 0, 3};
   ball.subdivisions = 1;
   const auto before = bound({ball}, level);

@@ -23,7 +23,7 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
   Solid s;
   s.kind = p.shape;
   s.name = (p.name.empty() ? "shape " + std::to_string(index) : p.name) + ": " + to_string(p.shape);
-  s.centre = p.centre;
+  s.centre = p.translate;
   s.rotate = p.rotate;
   s.plane = p.normal;
   s.friction = p.friction.value_or(friction);
@@ -50,18 +50,13 @@ std::string to_string(SolidKind kind) {
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
-  d.add("name", &ShapeParameters::name)
-      .description("name in messages; empty: its index")
-      .source("this project");
+  declare_obstacle(d).formerly("centre");
   d.add_choice("shape", &ShapeParameters::shape, kind_names)
       .required()
-      .description("capsule: all points within radius of a segment; half_space: all points behind a plane")
-      .source("this project");
-  d.add("centre", &ShapeParameters::centre)
-      .unit("m")
-      .at_least(-bounds::largest_coordinate)
-      .at_most(bounds::largest_coordinate)
-      .description("centre; of a half_space any point of its plane")
+      .identifies_item()
+      .description(
+          "centred at the origin; capsule: all points within radius of a segment; half_space: all points "
+          "behind a plane")
       .source("this project");
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
@@ -81,34 +76,21 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
       .at_most(bounds::largest_length)
       .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
       .source("this project");
-  d.add("rotate", &ShapeParameters::rotate)
-      .unit("degree")
-      .at_least(-bounds::largest_angle)
-      .at_most(bounds::largest_angle)
-      .description("rotation about the x, then y, then z axis")
-      .source("this project");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
-      .description("outward normal of a half_space, of any length")
+      .description("outward normal of a half_space, of any length; a half_space has no `rotate`")
       .source("this project");
-  d.add("friction", &ShapeParameters::friction)
-      .at_least(0)
-      .at_most(bounds::largest_friction)
-      .description("friction coefficient μ; null: the model's")
-      .source("Li et al. 2020, section 5");
 }
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
-  d.add_sections("shapes", &Parameters::shapes)
-      .required()
-      .description("the obstacles")
-      .source("this project");
+  declare_obstacles(d).description("solids that the cloth collides with").source("this project");
+  d.moved("shapes", "obstacles");
   declare_contact_parameters(d);
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
-  for (const ShapeParameters& shape : p_.shapes) {
+  for (const ShapeParameters& shape : p_.obstacles) {
     solids_.push_back(solid_of(shape, static_cast<int>(solids_.size()), p_.friction));
     const Solid& solid = solids_.back();
     if (solid.kind == SolidKind::cylinder && solid.radius > max_radius_over_dhat * p_.dhat)

@@ -1,26 +1,21 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/kernel/contact/contact_parameters.h"
+#include "core/kernel/contact/obstacle_parameters.h"
 #include "core/kernel/model/contact_model.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {
 
 /// One obstacle in a config.
-struct ShapeParameters {
-  std::string name;
+struct ShapeParameters : CommonObstacleParameters {
   SolidKind shape = SolidKind::sphere;
-  Eigen::Vector3d centre{0, 0, 0};
   double radius = 0.1;
   Eigen::Vector3d size{0.2, 0.2, 0.2};
   double height = 0.2;
-  Eigen::Vector3d rotate{0, 0, 0};
   Eigen::Vector3d normal{0, 0, 1};
-  std::optional<double> friction;
   static void declare(Declaration<ShapeParameters>& d);
 };
 
@@ -31,7 +26,7 @@ std::string to_string(SolidKind kind);
 class Shapes final : public ContactModel {
  public:
   struct Parameters : ContactParameters {
-    std::vector<ShapeParameters> shapes;
+    std::vector<ShapeParameters> obstacles;
     static void declare(Declaration<Parameters>& d);
   };
 

@@ -25,7 +25,7 @@ Vector3d any(double size) { return {uniform(-size, size), uniform(-size, size), 
 std::unique_ptr<BoundContact> bound(const std::vector<ShapeParameters>& shapes, const Level& level,
                                     double friction = 0) {
   Shapes::Parameters p;
-  p.shapes = shapes;
+  p.obstacles = shapes;
   p.dhat = dhat;
   p.friction = friction;
   return Shapes(p).bind(level, Material());
@@ -40,7 +40,7 @@ StepLimit max_step(const BoundContact& before, const BoundContact& after, const 
 
 ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, double part) {
   ShapeParameters p = to;
-  p.centre = from.centre + part * (to.centre - from.centre);
+  p.translate = from.translate + part * (to.translate - from.translate);
   p.radius = from.radius + part * (to.radius - from.radius);
   p.size = from.size + part * (to.size - from.size);
   p.height = from.height + part * (to.height - from.height);
@@ -61,10 +61,10 @@ ShapeParameters level_with(SolidKind kind, double gap) {
   p.shape = kind;
   p.radius = p.height = 0.1;
   p.size = {0.3, 0.3, 0.1};
-  p.centre.z() = -gap;
-  if (kind == SolidKind::sphere) p.centre.z() -= 0.1;
-  if (kind == SolidKind::box || kind == SolidKind::cylinder) p.centre.z() -= 0.05;
-  if (kind == SolidKind::capsule) p.centre.z() -= 0.15;
+  p.translate.z() = -gap;
+  if (kind == SolidKind::sphere) p.translate.z() -= 0.1;
+  if (kind == SolidKind::box || kind == SolidKind::cylinder) p.translate.z() -= 0.05;
+  if (kind == SolidKind::capsule) p.translate.z() -= 0.15;
   return p;
 }
 
@@ -78,12 +78,12 @@ TEST_CASE("shapes: a solid leaves a tenth of dhat, or most of a smaller gap") {
     for (const double gap : {0.01, 2e-5}) {
       const ShapeParameters from = level_with(kind, gap);
       ShapeParameters to = from;
-      to.centre.z() += 0.1;
+      to.translate.z() += 0.1;
       const StepLimit limit = max_step(*bound(from, level), *bound(to, level), x);
       const double left = 0.8 * std::min(gap, dhat / 8);
       CHECK(limit.fraction == Approx((gap - left) / 0.1).epsilon(gap > dhat ? 2e-3 : 0.1));
       CHECK_THAT(limit.by, Catch::StartsWith("cloth triangle ") && Catch::EndsWith(to_string(kind)));
-      to.centre.z() = from.centre.z() - 3;
+      to.translate.z() = from.translate.z() - 3;
       CHECK(max_step(*bound(from, level), *bound(to, level), x).fraction == 1);
       CHECK(max_step(*bound(from, level), *bound(from, level), x).fraction == 1);
     }
@@ -100,7 +100,7 @@ TEST_CASE("shapes: solids that slide and rotate below the cloth are not limited"
   for (const SolidKind kind : kinds) {
     const ShapeParameters from = level_with(kind, 1e-4);
     ShapeParameters to = from;
-    to.centre.x() += 0.2;
+    to.translate.x() += 0.2;
     to.rotate.z() = 100;
     INFO(to_string(kind));
     CHECK(max_step(*bound(from, level), *bound(to, level), level.rest.vertices).fraction == 1);
@@ -118,7 +118,7 @@ TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step 
     ShapeParameters from;
     from.shape = kinds[i % 5];
     do {
-      from.centre = any(0.3);
+      from.translate = any(0.3);
       from.rotate = any(180);
       from.normal = any(1);
       from.radius = i % 2 ? 0.002 : uniform(0.03, 0.1);  // a needle
@@ -126,7 +126,7 @@ TEST_CASE("shapes: no solid's motion passes through the cloth; a shortened step 
       from.size = i % 3 ? Vector3d(0.3, 0.2, 0.002) : Vector3d(0.05, 0.08, 0.1);
     } while (crosses(from));
     ShapeParameters to = from;
-    to.centre = i % 3 == 0 ? Vector3d(from.centre + any(0.02)) : Vector3d(any(0.1) - from.centre);
+    to.translate = i % 3 == 0 ? Vector3d(from.translate + any(0.02)) : Vector3d(any(0.1) - from.translate);
     to.rotate += i % 4 ? any(60) : any(720);
     to.normal += any(0.7);
     if (i % 7 == 0) to.radius = uniform(0.01, 0.2), to.size *= 1.5;
@@ -163,7 +163,7 @@ TEST_CASE("shapes: an edge that is highest during a rotation does not pass throu
   for (const bool passes : {true, false}) {
     ShapeParameters from = level_with(SolidKind::box, 0);
     from.size.setConstant(0.1);
-    from.centre.z() = -apex + (passes ? -1.1e-4 : 0.5 * lower);
+    from.translate.z() = -apex + (passes ? -1.1e-4 : 0.5 * lower);
     from.rotate.y() = 43;
     ShapeParameters to = from;
     to.rotate.y() = 47;
@@ -190,7 +190,7 @@ TEST_CASE("shapes: the reference of tangential displacements is advected by soli
   for (const SolidKind kind : kinds) {
     const ShapeParameters from = level_with(kind, 0);
     ShapeParameters to = from;
-    to.centre += Vector3d(0.01, 0.003, 0);
+    to.translate += Vector3d(0.01, 0.003, 0);
     const auto before = bound(from, level, 0.3);
     Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
     const Positions start = reference;

@@ -36,7 +36,7 @@ ShapeParameters some(SolidKind kind) {
   ShapeParameters p;
   p.name = "thing";
   p.shape = kind;
-  p.centre = {0.03, -0.02, 0.05};
+  p.translate = {0.03, -0.02, 0.05};
   p.radius = 0.06;
   p.size = {0.1, 0.14, 0.08};
   p.height = 0.1;
@@ -50,13 +50,13 @@ ShapeParameters level_with(SolidKind kind) {
   ShapeParameters p = some(kind);
   p.rotate.setZero();
   p.normal = {0, 0, 2};
-  p.centre = {0, 0, kind == SolidKind::half_space ? 0 : kind == SolidKind::box ? -0.04 : -0.05};
+  p.translate = {0, 0, kind == SolidKind::half_space ? 0 : kind == SolidKind::box ? -0.04 : -0.05};
   return p;
 }
 
 Shapes::Parameters with(const std::vector<ShapeParameters>& shapes, double friction = 0) {
   Shapes::Parameters p;
-  p.shapes = shapes;
+  p.obstacles = shapes;
   p.dhat = dhat;
   p.min_gap_fraction = min_gap_fraction;
   p.stiffness = kappa;
@@ -68,7 +68,7 @@ Shapes::Parameters with(const std::vector<ShapeParameters>& shapes, double frict
 Solid solid_of(const ShapeParameters& p) {
   Solid s;
   s.kind = p.shape;
-  s.centre = p.centre;
+  s.centre = p.translate;
   const Vector3d angle = p.rotate * (M_PI / 180);
   s.axes = (Eigen::AngleAxisd(angle.z(), Vector3d::UnitZ()) *
             Eigen::AngleAxisd(angle.y(), Vector3d::UnitY()) * Eigen::AngleAxisd(angle.x(), Vector3d::UnitX()))
@@ -343,12 +343,12 @@ TEST_CASE("shapes: forces are continuous during sliding") {
   const Level level = square(4, 0.03);
   for (const SolidKind kind : kinds) {
     ShapeParameters p = level_with(kind);
-    if (kind == SolidKind::sphere) p.centre.z() = -p.radius;
+    if (kind == SolidKind::sphere) p.translate.z() = -p.radius;
     const bool lies = kind == SolidKind::capsule || kind == SolidKind::cylinder;
     for (const bool lying : {false, true}) {
       if (lying && !lies) continue;
-      if (lying) p.rotate = {0, 90, 0}, p.centre = {0, 0, -p.radius};
-      if (kind == SolidKind::capsule && !lying) p.centre.z() = -p.radius - p.height / 2;
+      if (lying) p.rotate = {0, 90, 0}, p.translate = {0, 0, -p.radius};
+      if (kind == SolidKind::capsule && !lying) p.translate.z() = -p.radius - p.height / 2;
       const auto bound = Shapes(with({p})).bind(level, Material());
       const auto largest_jump = [&](int steps) {
         double jump = 0, force = 0;
@@ -411,7 +411,7 @@ TEST_CASE("shapes: max_step names the blocking pair") {
   ShapeParameters p = level_with(SolidKind::sphere);
   p.name = "ball";
   p.radius = 0.002;
-  p.centre = {0.01, -0.02, -0.002};
+  p.translate = {0.01, -0.02, -0.002};
   const auto bound = Shapes(with({p})).bind(level, Material());
   const Positions x0 = lifted(level, 0.01), x1 = lifted(level, -0.09);
   const StepLimit limit = bound->build_candidates(x0, x1)->max_step();
@@ -437,9 +437,9 @@ TEST_CASE("shapes: collisions at a state do not depend on the motion of the cand
   const Level level = square(9, 0.16);
   std::vector<ShapeParameters> all;
   for (const SolidKind kind : kinds) all.push_back(some(kind));
-  all[4].centre.z() = -0.2;
+  all[4].translate.z() = -0.2;
   for (int i = 0; i < 4; ++i)
-    all[i].centre.head<2>() = Eigen::Vector2d(i % 2 ? 0.1 : -0.1, i / 2 ? 0.1 : -0.1);
+    all[i].translate.head<2>() = Eigen::Vector2d(i % 2 ? 0.1 : -0.1, i / 2 ? 0.1 : -0.1);
   const auto bound = Shapes(with(all, 0.3)).bind(level, Material());
   double height = 0.4;
   Positions x0 = lifted(level, height);
@@ -476,7 +476,7 @@ TEST_CASE("shapes: friction is at most μ times the normal force") {
   for (const SolidKind kind :
        {SolidKind::half_space, SolidKind::box, SolidKind::cylinder, SolidKind::sphere}) {
     ShapeParameters p = level_with(kind);
-    if (kind == SolidKind::sphere) p.centre.z() = -p.radius;
+    if (kind == SolidKind::sphere) p.translate.z() = -p.radius;
     if (kind == SolidKind::box) p.friction = 0.3;  // its own
     const auto bound = Shapes(with({p}, kind == SolidKind::box ? 0.0 : 0.3)).bind(level, Material());
     const Positions x = lifted(level, 0.4 * dhat);

@@ -17,7 +17,8 @@ cloth: {shape: rectangle, size: [0.3, 0.25], columns: 5, rows: 4}
 levels: 1
 start: {translate: [0, 0, 0.01]}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]
-contact: {type: shapes, shapes: [{name: floor, shape: half_space}]}
+contact: shapes
+obstacles: [{name: floor, shape: half_space}]
 methods: {newton: {}}
 )");
 

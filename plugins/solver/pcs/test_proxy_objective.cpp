@@ -186,7 +186,8 @@ levels: 3
 material: {thickness: 1e-3, membrane_modulus: 1e3, bending_modulus: 1e5}
 start: {translate: [0, 0, 0.01]}
 energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.3}, gravity]
-contact: {type: shapes, shapes: [{name: floor, shape: half_space}]}
+contact: shapes
+obstacles: [{name: floor, shape: half_space}]
 methods: {pcs: {}}
 )");
   const Problem problem = s.scene->problem();

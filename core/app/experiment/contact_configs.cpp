@@ -1,0 +1,141 @@
+#include "core/app/experiment/contact_configs.h"
+
+#include <algorithm>
+
+#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+const RegistryEntry* model_of(const Registry& registry, const ConfigNode& node) {
+  const ConfigNode* type = node.kind == NodeKind::map ? node.find("type") : &node;
+  return type ? registry.find("contact", type->scalar) : nullptr;
+}
+
+/// The model's declared list of obstacles, or null.
+const Parameter* obstacles_of(const RegistryEntry& model) {
+  for (const Parameter& p : model.schema.parameters)
+    if (p.from_experiment && p.section) return &p;
+  return nullptr;
+}
+
+/// The first key of an obstacle, in its present or a former name, by which the model knows it; "" without
+/// one.
+std::string known_key(const RegistryEntry& model, const ConfigNode& obstacle) {
+  const Parameter* list = obstacles_of(model);
+  if (!list) return "";
+  for (const Parameter& p : list->section->parameters) {
+    if (!p.identifies_item) continue;
+    if (obstacle.find(p.name)) return p.name;
+    for (const std::string& former : p.former_names)
+      if (obstacle.find(former)) return former;
+  }
+  return "";
+}
+
+/// "obstacles[2] (ball)".
+std::string label_of(const ConfigNode& obstacle, std::size_t index) {
+  const ConfigNode* name = obstacle.find("name");
+  return "obstacles[" + std::to_string(index) + "]" +
+         (name && !name->scalar.empty() ? " (" + excerpt(name->scalar) + ")" : "");
+}
+
+/// Why no model of an experiment takes the obstacle, with a remedy.
+std::string refusal(const Registry& registry, const ConfigNode& obstacle, std::size_t index) {
+  std::vector<std::string> keys;
+  for (const RegistryEntry* model : registry.of_kind("contact")) {
+    if (const std::string key = known_key(*model, obstacle); !key.empty())
+      return label_of(obstacle, index) + ": no contact model of this experiment takes \"" + key + "\"; add " +
+             model->name + " to \"contact\"";
+    const Parameter* list = obstacles_of(*model);
+    for (std::size_t k = 0; list && k < list->section->parameters.size(); ++k)
+      if (const Parameter& p = list->section->parameters[k]; p.identifies_item) keys.push_back(p.name);
+  }
+  if (keys.empty()) return label_of(obstacle, index) + ": no contact model that is loaded takes obstacles";
+  return label_of(obstacle, index) + " must be a map with " + quoted_choice(keys);
+}
+
+/// A model's own section, as a map with `type`, without what stands at the top of the experiment.
+ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, ConfigErrors& errors) {
+  ConfigNode own;
+  own.where = written.where;
+  if (written.kind != NodeKind::map) own.add("type", written);
+  for (std::size_t i = 0; i < written.entries.size(); ++i) {
+    const auto& [key, value] = written.entries[i];
+    const bool moved =
+        std::any_of(model.schema.parameters.begin(), model.schema.parameters.end(),
+                    [&name = key](const Parameter& p) { return p.from_experiment && p.name == name; });
+    if (moved) {
+      errors.push_back({written.key_locations[i], "\"" + key + "\" in " + model.name +
+                                                      " is now at the top of the experiment: \"" + key +
+                                                      "\", once for all contact models"});
+      continue;
+    }
+    own.add(key, value);
+    own.key_locations.back() = written.key_locations[i];
+  }
+  return own;
+}
+
+}  // namespace
+
+std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& p,
+                                           ConfigErrors& errors) {
+  std::vector<ConfigNode> written =
+      p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
+  if (p.contact.kind == NodeKind::null) written = {ConfigNode::of("none")};
+  std::vector<ContactConfig> configs;
+  std::vector<const RegistryEntry*> models;
+  for (const ConfigNode& node : written) {
+    models.push_back(model_of(registry, node));
+    configs.push_back({models.back() ? own_section(*models.back(), node, errors) : node, {}});
+  }
+  for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+    const auto takes = std::find_if(models.begin(), models.end(), [&](const RegistryEntry* model) {
+      return model && !known_key(*model, p.obstacles[i]).empty();
+    });
+    if (takes != models.end())
+      configs[takes - models.begin()].obstacles.push_back(i);
+    else if (std::find(models.begin(), models.end(), nullptr) ==
+             models.end())  // else the model's name is wrong
+      errors.push_back({p.obstacles[i].where, refusal(registry, p.obstacles[i], i)});
+  }
+  for (std::size_t k = 0; k < configs.size(); ++k) {
+    if (!models[k]) continue;
+    for (const Parameter& parameter : models[k]->schema.parameters) {
+      if (!parameter.from_experiment) continue;
+      ConfigNode value = ConfigNode::of(p.friction);
+      if (parameter.section) {
+        value = ConfigNode();
+        value.kind = NodeKind::list;
+        for (const std::size_t i : configs[k].obstacles) value.items.push_back(p.obstacles[i]);
+      }
+      configs[k].node.add(parameter.name, std::move(value));
+    }
+  }
+  return configs;
+}
+
+void split_resolved(const Registry& registry, const ContactConfig& config, ConfigNode& resolved,
+                    std::vector<ConfigNode>& obstacles) {
+  const RegistryEntry* model = model_of(registry, resolved);
+  if (!model) return;
+  ConfigNode own;
+  for (const auto& [key, value] : resolved.entries) {
+    const auto parameter = std::find_if(model->schema.parameters.begin(), model->schema.parameters.end(),
+                                        [&name = key](const Parameter& p) { return p.name == name; });
+    if (parameter == model->schema.parameters.end() || !parameter->from_experiment) {
+      own.add(key, value);
+      continue;
+    }
+    for (std::size_t k = 0; k < value.items.size(); ++k)
+      obstacles.at(config.obstacles.at(k)) = value.items[k];
+  }
+  resolved = std::move(own);
+}
+
+}  // namespace drape

@@ -1,0 +1,97 @@
+#include "core/app/experiment/contact_configs.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/app/experiment/load_schedule.h"
+#include "core/kernel/mesh/generate.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Two models, whose obstacles are mixed in the list.
+const std::string mixed = R"(name: mixed
+cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
+levels: 1
+start: {translate: [0, 0, 1]}
+energies: [neo_hookean, gravity]
+contact: [shapes, {type: ipc, dhat: 2e-3}]
+obstacles:
+  - {name: plate, meshed_shape: box, size: [0.1, 0.1, 0.1]}
+  - {name: ball, shape: sphere, radius: 0.1}
+  - {name: floor, shape: half_space, translate: [0, 0, -1], friction: 0}
+  - {name: shell, meshed_shape: sphere, subdivisions: 1, translate: [1, 0, 0]}
+friction: 0.25
+methods: {newton: {}}
+)";
+
+std::vector<std::string> names_in(const ConfigNode& obstacles) {
+  std::vector<std::string> names;
+  for (const ConfigNode& obstacle : obstacles.items) names.push_back(obstacle.find("name")->scalar);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("Each contact model gets the obstacles that have its keys, in the list's order, and the friction") {
+  const Experiment e = experiment_from(mixed);
+  ConfigErrors errors;
+  const std::vector<ContactConfig> configs = contact_configs(test_registry(), e.parameters, errors);
+  REQUIRE(errors.empty());
+  REQUIRE(configs.size() == 2);
+  CHECK((configs[0].obstacles == std::vector<std::size_t>{1, 2}));
+  CHECK((configs[1].obstacles == std::vector<std::size_t>{0, 3}));
+  CHECK((names_in(*configs[0].node.find("obstacles")) == std::vector<std::string>{"ball", "floor"}));
+  CHECK((names_in(*configs[1].node.find("obstacles")) == std::vector<std::string>{"plate", "shell"}));
+  for (const ContactConfig& config : configs) CHECK(config.node.find("friction")->scalar == "0.25");
+
+  const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
+  CHECK(e.contacts[0]->bind(level, Material())->obstacles().size() == 2);
+  CHECK(e.contacts[1]->bind(level, Material())->obstacles()[1].vertices.rows() == 42);
+}
+
+TEST_CASE("A saved experiment has obstacles and friction once, and reads back the same") {
+  const Experiment e = experiment_from(mixed);
+  const ConfigNode *obstacles = e.resolved.find("obstacles"), *models = e.resolved.find("contact");
+  CHECK((names_in(*obstacles) == std::vector<std::string>{"plate", "ball", "floor", "shell"}));
+  CHECK(obstacles->items[1].find("translate"));  // a default
+  CHECK(e.resolved.find("friction")->scalar == "0.25");
+  REQUIRE(models->items.size() == 2);
+  CHECK(models->items[1].find("dhat")->scalar == "0.002");
+  for (const ConfigNode& model : models->items) {
+    CHECK(!model.find("friction"));
+    CHECK(!model.find("obstacles"));
+  }
+  CHECK(experiment_from(to_yaml(e.resolved)).resolved.one_line() == e.resolved.one_line());
+}
+
+TEST_CASE("A key of the friction changes every contact model, one of an obstacle only its own") {
+  const Solved s = scene_from(mixed + R"(schedule:
+  steps: 2
+  keys:
+    - {parameter: friction, times: [0, 1], values: [0.25, 0.5]}
+    - {parameter: obstacles.shell.translate.0, times: [0, 1], values: [1, 2]}
+)");
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const LoadState& first = *schedule.first();
+  REQUIRE((first.values == std::vector<double>{0.25, 1}));
+  const auto rougher = schedule.at({0.5, 1});
+  CHECK(rougher->contacts[0] != first.contacts[0]);
+  CHECK(rougher->contacts[1] != first.contacts[1]);
+  const auto moved = schedule.at({0.25, 1.5});
+  CHECK(moved->contacts[0] == first.contacts[0]);
+  CHECK(moved->contacts[1] != first.contacts[1]);
+  const LevelModel& before = *s.scene->models[0];
+  const auto after = schedule.model(*moved, 0, before);
+  const std::vector<TriangleMesh> meshes = after->contacts()[1]->obstacles();
+  CHECK(meshes[0].vertices == before.contacts()[1]->obstacles()[0].vertices);
+  CHECK(meshes[1].vertices.col(0).mean() == Approx(1.5));
+}
+
+TEST_CASE("The keys that a contact model's section is said to know are its own") {
+  CHECK_THROWS_WITH(
+      experiment_from("name: a\nenergies: [gravity]\nmethods: {newton: {}}\n"
+                      "contact: {type: ipc, colour: 1}\n"),
+      Catch::Contains("unknown key \"colour\" in ipc; known keys are type, self_contact, dhat,"));
+}
