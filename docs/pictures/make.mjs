@@ -14,6 +14,6 @@ const picture = async (selector, name, margin = 12) => {
     width: box.width + 2 * margin, height: box.height + 2 * margin}});
 };
 await page.locator('#error-target').selectOption('own');
-await picture('#errors-section figure', 'speed_against_error.png');
+await picture('#errors-section .charts', 'speed_against_error.png');
 await picture('#viewer', 'viewer.png');
 await chrome.close();

@@ -121,6 +121,59 @@ test('keys and pointer turn all views together', async () => {
   await page.context().close();
 });
 
+/// Entries of a plot's legend.
+const legendOf = (page, id) => page.evaluate(name => Chart.getChart(name).legend.legendItems.map(item => item.text), id);
+
+/// Heads of the tables that are shown and wider than the page.
+const wideTables = page => page.evaluate(() => [...document.querySelectorAll('.scroll')]
+  .filter(frame => frame.scrollWidth > frame.clientWidth).map(frame => frame.querySelector('thead').textContent));
+
+test('opens on fine energy and distance over time, a line a method, and no table is wider than the page', async () => {
+  run(folder, 'run', contactConfig, '--out', 'timed', '--quiet', '--threads', '1', '--method', 'all', '--set', 'snapshots=4');
+  const timed = pathToFileURL(path.join(folder, 'timed/report.html')).href;
+  const {page, heard} = await openPage(chrome, timed);
+  const methods = ['pcs', 'cascadic', 'newton'];
+  for (const id of ['fine-energy', 'errors']) {
+    assert.deepEqual(await legendOf(page, id), methods);
+    assert.ok(await drawnShare(page, '#' + id) > .01, id);
+    const titles = await page.evaluate(name => ['x', 'y'].map(k => Chart.getChart(name).options.scales[k].title.text), id);
+    assert.deepEqual(titles, ['time [s]', id === 'errors' ? 'distance, RMS [diagonal]' : 'energy gap, relative']);
+    const levels = await page.evaluate(name => Chart.getChart(name).data.datasets.map(set =>
+      [...new Set(set.data.map(point => point.level))].join()), id);
+    assert.ok(levels[0].startsWith('0') && levels[1].startsWith('0'), levels.join('; '));
+    assert.equal(levels[2], '1');  // the direct method's coarse level leads nowhere
+  }
+  // Without a reference the plots open on the methods' own ends.
+  assert.equal(await page.locator('#error-target').inputValue(), 'own');
+  await page.locator('#error-measure').selectOption('hausdorff');
+  assert.match(await page.evaluate(() => Chart.getChart('errors').options.scales.y.title.text), /^Hausdorff/);
+  for (const width of [1200, 700, 360]) {
+    await page.setViewportSize({width, height: 900});
+    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+    await until('tables fit ' + width, async () => (await wideTables(page)).length === 0);
+    if (width === 1200) assert.equal(await page.locator('.stacked').count(), 0);
+  }
+  assert.ok(await page.locator('.stacked').count() > 0);  // the last width is too narrow for rows
+  assert.deepEqual(heard.errors, []);
+  await page.context().close();
+
+  // More methods than a legend has entries.
+  const file = path.join(folder, 'timed/results.json'), results = JSON.parse(fs.readFileSync(file));
+  const errors = path.join(folder, 'timed/errors.csv'), rows = fs.readFileSync(errors, 'utf8');
+  let more = rows;
+  for (let k = 0; k < 5; ++k) {
+    results.methods['cascadic' + k] = results.methods.cascadic;
+    more += rows.split('\n').filter(row => row.startsWith('cascadic,')).map(row => row.replace('cascadic', 'cascadic' + k) + '\n').join('');
+  }
+  fs.writeFileSync(file, JSON.stringify(results));
+  fs.writeFileSync(errors, more);
+  run(folder, 'report', 'timed');
+  const crowded = await openPage(chrome, timed);
+  assert.deepEqual(await legendOf(crowded.page, 'errors'), [...methods, 'cascadic0', 'cascadic1', '3 more']);
+  assert.deepEqual(crowded.heard.errors, []);
+  await crowded.page.context().close();
+});
+
 test('dark, narrow, printed, and without WebGL', async () => {
   const {page, heard} = await openPage(chrome, report, {colorScheme: 'dark', viewport: {width: 400, height: 800}});
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);

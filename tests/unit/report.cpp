@@ -14,6 +14,7 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/colours.h"
 #include "core/app/view/html.h"
+#include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/topology.h"
@@ -216,10 +217,13 @@ TEST_CASE("a report that is told to stop skips the remaining pictures, with a no
   const SampleRun run;
   write_file(run.folder / "results.json", run.results.dump());
   int asked = 0;
-  const auto leave = [&] { return ++asked > 100; };  // a lit picture asks 64 times
+  constexpr int most = 3 * 29 * 22;  // a picture of 900×700 asks twice for each of its 29×22 tiles
+  const auto leave = [&] { return ++asked > most; };
+  set_thread_count(1);  // the thread that draws asks; helpers would take tiles from it
   const PictureSet set = draw_pictures(read_run(run.folder), leave);
+  set_thread_count(0);
   CHECK(set.pictures.size() == 1);
-  CHECK(asked == 101);
+  CHECK(asked == most + 1);
   REQUIRE(set.notes.size() == 1);
   CHECK_THAT(set.notes.front(), Catch::Contains("drape report " + run.folder.string()));
 }
@@ -421,23 +425,26 @@ TEST_CASE("errors are read, drawn and described; a run without them says so") {
   write_file(run.folder / "errors.csv",
              "method,level,iteration,seconds,iterations,flops,vertices,own_rms,own_hausdorff,own_d_H_fit,"
              "own_energy_gap,reference_rms,reference_hausdorff,reference_d_H_fit,reference_energy_gap\n"
+             "newton,0,2,1.5,2,1e8,169,0.5,0.5,9,0.5,,,,\n"
              "newton,1,3,2.5,3,1e9,625,0,0,0,0,,,,\n"
              "pcs,0,3,0.5,3,1e6,169,0.25,0.5,7,0.125,0.3,0.6,8,-0.01\n"
              "pcs,1,9,0.7");  // cut short
   run.results["reference"] = {{"method", "newton"}, {"force_tolerance", 1e-5}};
+  for (Json& level : run.results["methods"]["newton"]["levels"]) level["from_initial_state"] = true;
   CHECK(contains(run.page(),
                  "The reference is <b>newton</b>'s finest state, solved on to a force residual of 1.00e-5."));
   const RunData data = read_run(run.folder);
-  REQUIRE(data.errors.size() == 2);
+  REQUIRE(data.errors.size() == 3);
   CHECK(data.errors[0].method == "pcs");
   CHECK(data.errors[0].rows[0].cost[2].value() == 1e6);
   CHECK_FALSE(data.errors[0].rows[0].error[1].of("silhouette_mismatch"));  // the file has no such column
   CHECK(data.errors[0].rows[0].error[1].of("energy_gap").value() == -0.01);
-  CHECK(!data.errors[1].rows[0].error[1].of("rms"));
+  CHECK(!data.errors[2].rows[0].error[1].of("rms"));
   CHECK(Json::parse(chart_data(data))["measures"][0] ==
         Json{{"name", "rms"}, {"label", "distance, RMS [diagonal]"}});
   const Json drawn = Json::parse(chart_data(data))["errors"];
   REQUIRE(drawn.size() == 2);
+  CHECK(drawn[1]["level"] == 1);  // the direct method's last state does not build on level 0
   CHECK(drawn[0]["own"]["rms"] == Json{0.25});
   CHECK(drawn[0]["seconds"] == Json{0.5});
   CHECK(drawn[1]["reference"]["rms"] == Json{nullptr});

@@ -98,9 +98,17 @@ Json bars_json(const RunData& run, NamedNumbers LevelRecord::*member) {
   return {{"labels", labels}, {"names", names}, {"values", values}};
 }
 
+/// Whether the method's last state builds on the level.
+bool leads_to_the_end(const RunData& run, const ErrorSeries& series) {
+  for (const MethodRecord& method : run.methods)
+    if (method.name == series.method) return series.level >= method.first_level();
+  return true;
+}
+
 Json errors_json(const RunData& run) {
   Json all = Json::array();
   for (const ErrorSeries& series : run.errors) {
+    if (!leads_to_the_end(run, series)) continue;
     Json entry = {{"method", series.method}, {"level", series.level}};
     for (std::size_t w = 0; w < error_costs.size(); ++w)
       for (const ErrorRow& row : series.rows) entry[error_costs[w]].push_back(rounded(row.cost[w]));

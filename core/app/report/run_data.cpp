@@ -11,6 +11,13 @@ OptionalNumber MethodRecord::sum(OptionalNumber LevelRecord::*member) const {
   return sum;
 }
 
+int MethodRecord::first_level() const {
+  int first = levels.empty() ? 0 : levels.front().level;
+  for (const LevelRecord& level : levels)
+    if (level.from_initial_state) first = level.level;
+  return first;
+}
+
 const LevelRecord* MethodRecord::level(int index) const {
   for (const LevelRecord& r : levels) {
     if (r.level == index) return &r;

@@ -60,6 +60,8 @@ struct MethodRecord {
 
   /// Cost of the last state: the sum of the known values over the levels that it builds on.
   OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
+  /// The coarsest level that the last state builds on.
+  int first_level() const;
   /// The sum of the known values over all levels.
   OptionalNumber sum(OptionalNumber LevelRecord::*member) const;
   const LevelRecord* level(int index) const;

@@ -99,9 +99,7 @@ std::vector<CostPoint> error_curve(const RunData& run, const std::string& method
                                    std::size_t target, const std::string& measure) {
   int begin = 0;
   for (const MethodRecord& m : run.methods)
-    if (m.name == method)
-      for (const LevelRecord& level : m.levels)
-        if (level.from_initial_state) begin = level.level;
+    if (m.name == method) begin = m.first_level();
   std::vector<CostPoint> curve;
   for (const ErrorSeries& series : run.errors) {
     if (series.method != method || series.level < begin) continue;

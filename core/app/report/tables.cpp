@@ -18,7 +18,12 @@ using Row = std::vector<Cell>;
 
 std::string status_badge(const std::string& status) {
   const std::string kind = succeeded(status) ? "good" : status.empty() ? "none" : "poor";
-  return "<span class=\"status " + kind + "\">" + (status.empty() ? "–" : escape(status)) + "</span>";
+  std::string text;
+  for (const char c : status.empty() ? "–" : escape(status)) {
+    text += c;
+    if (c == '_') text += "<wbr>";  // a narrow table breaks long ones there
+  }
+  return "<span class=\"status " + kind + "\">" + text + "</span>";
 }
 
 /// Contact quantities of a state; empty without contact.

@@ -37,11 +37,21 @@ const drape = (() => {
     return options;
   }
 
-  /// Chart.js has no dashes in its legend.
-  function lineLabels(chart) {
-    return Chart.defaults.plugins.legend.labels.generateLabels(chart)
+  /// Entries of a legend, at most so many: the last one then counts those that it leaves out. Chart.js has no
+  /// dashes in its legend.
+  const lineLabels = most => chart => {
+    const items = Chart.defaults.plugins.legend.labels.generateLabels(chart)
       .filter(item => item.text && item.text !== 'tolerance')
       .map(item => Object.assign(item, {lineDash: chart.data.datasets[item.datasetIndex].borderDash}));
+    if (items.length <= most) return items;
+    const rest = {text: (items.length - most + 1) + ' more', datasetIndex: undefined, strokeStyle: 'transparent',
+      fillStyle: 'transparent'};
+    return [...items.slice(0, most - 1), Object.assign({}, items[most - 1], rest)];
+  };
+
+  /// Hides or shows a line; the entry that counts the rest has none.
+  function toggleLine(event, item, legend) {
+    if (item.datasetIndex !== undefined) Chart.defaults.plugins.legend.onClick.call(legend, event, item, legend);
   }
 
   function save(name, type, text) {
@@ -90,8 +100,8 @@ const drape = (() => {
       ...sets.flatMap(set => set.data.map(p => [set.label, p.x, p.y, ...extra.map(key => p[key])]))];
   }
 
-  /// Draws a plot, or redraws it; `count` is the number of its points.
-  function show(id, config, count) {
+  /// Draws a plot, or redraws it; `count` is the number of its points, `most` that of its legend's entries.
+  function show(id, config, count, most = Infinity) {
     const canvas = document.getElementById(id);
     if (!canvas) return;
     const figure = canvas.closest('figure'), first = !charts.has(id);
@@ -111,8 +121,8 @@ const drape = (() => {
     config.options.responsive = true;
     config.options.maintainAspectRatio = false;
     config.options.plugins = Object.assign({
-      legend: {position: 'bottom', labels: {color: colour('--ink'), usePointStyle: true, pointStyle: 'line',
-        boxWidth: 34, font: {size: 11}, generateLabels: lineLabels}},
+      legend: {position: 'bottom', onClick: toggleLine, labels: {color: colour('--ink'), usePointStyle: true,
+        pointStyle: 'line', boxWidth: 34, font: {size: 11}, generateLabels: lineLabels(most)}},
     }, config.options.plugins);
     charts.set(id, new Chart(canvas, config));
     if (!figure.querySelector('p.data'))
@@ -122,14 +132,16 @@ const drape = (() => {
   const tooltip = {callbacks: {label: item => item.dataset.label + ': ' + short(item.parsed.x) + ', ' +
     short(item.parsed.y)}};
 
-  /// Choices above a plot, by the name of its select element; calls `draw` when one changes.
-  function choices(id, draw) {
+  /// Choices above a plot, by the name of its select element; calls `draw` when one changes. Opens on the first
+  /// target that has data.
+  function choices(id, draw, hasData) {
     const select = name => document.getElementById(id + '-' + name);
     for (const [name, words] of [['measure', measures], ['target', targets], ['cost', costKinds]]) {
       if (!select(name)) continue;
       for (const [value, text] of Object.entries(words)) select(name).add(new Option(text, value));
       select(name).addEventListener('change', draw);
     }
+    select('target').value = Object.keys(targets).find(hasData) || Object.keys(targets)[0];
     return () => Object.fromEntries(['measure', 'target', 'cost'].map(name => [name, select(name).value]));
   }
 
@@ -150,26 +162,45 @@ const drape = (() => {
     return copy.textContent.trim().replace(/^–$/, '').replace(/\u202f/g, '');
   }
 
-  /// Expands spanning cells. A column of medians gives three: median, lowest and highest.
-  function cellsOf(table) {
-    const grid = [], spread = [];
+  /// The cells by row and column; one that spans several stands in each.
+  function gridOf(table) {
+    const grid = [];
     [...table.rows].forEach((row, r) => {
       grid[r] = grid[r] || [];
       for (const cell of row.cells) {
         let c = 0;
         while (grid[r][c] !== undefined) ++c;
-        const range = cell.querySelector('[data-spread]');
-        if (range) spread[c] = true;
         for (let i = 0; i < cell.rowSpan; ++i)
-          for (let j = 0; j < cell.colSpan; ++j)
-            (grid[r + i] = grid[r + i] || [])[c + j] = range ? range.dataset.spread.split(' ') : wordsOf(cell);
+          for (let j = 0; j < cell.colSpan; ++j) (grid[r + i] = grid[r + i] || [])[c + j] = cell;
       }
     });
-    const heads = table.tHead ? table.tHead.rows.length : 1;
-    const names = grid[0].map((_, c) => [...new Set(grid.slice(0, heads).map(row => row[c]))].join(' ').trim());
-    const wide = (row, c) => Array.isArray(row[c]) ? row[c] : [row[c], '', ''];
-    return [names.flatMap((name, c) => spread[c] ? [name, name + ', lowest', name + ', highest'] : [name]),
-      ...grid.slice(heads).map(row => names.flatMap((_, c) => spread[c] ? wide(row, c) : [row[c]]))];
+    const heads = table.tHead ? table.tHead.rows.length : 1, body = grid.slice(heads);
+    const names = grid[0].map((_, c) =>
+      [...new Set(grid.slice(0, heads).map(row => wordsOf(row[c])))].join(' ').trim());
+    return {names, body};
+  }
+
+  /// Names and values. A column of medians gives three: median, lowest and highest.
+  function cellsOf(table) {
+    const {names, body} = gridOf(table);
+    const spreadOf = cell => cell && cell.querySelector('[data-spread]');
+    const ranged = names.map((_, c) => body.some(row => spreadOf(row[c])));
+    const values = (cell, c) => {
+      const range = spreadOf(cell), words = cell && wordsOf(cell);
+      return range ? range.dataset.spread.split(' ') : ranged[c] ? [words, '', ''] : [words];
+    };
+    return [names.flatMap((name, c) => ranged[c] ? [name, name + ', lowest', name + ', highest'] : [name]),
+      ...body.map(row => names.flatMap((_, c) => values(row[c], c)))];
+  }
+
+  /// No table is wider than the page: its columns move together or, if that is not enough, every row becomes a block
+  /// of values below their names.
+  function fitTables() {
+    for (const frame of document.querySelectorAll('.scroll')) {
+      frame.classList.remove('compact', 'stacked');
+      for (const name of ['compact', 'stacked'])
+        if (frame.scrollWidth > frame.clientWidth) frame.classList.add(name);
+    }
   }
 
   document.querySelectorAll('.scroll').forEach((frame, k) => {
@@ -179,8 +210,14 @@ const drape = (() => {
     frame.setAttribute('aria-label', 'table: ' + title);
     const below = document.createElement('div');
     frame.after(below);
-    offer(below, 'table-' + (k + 1), 'the table: ' + title, () => cellsOf(frame.querySelector('table')));
+    const table = frame.querySelector('table'), {names, body} = gridOf(table);
+    for (const row of body)
+      row.forEach((cell, c) => { cell.dataset.name = names[c]; });
+    offer(below, 'table-' + (k + 1), 'the table: ' + title, () => cellsOf(table));
   });
+  fitTables();
+  addEventListener('resize', fitTables);
+  document.addEventListener('toggle', fitTables, true);  // a closed part of the page has no width
 
   return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, costKinds};
 })();

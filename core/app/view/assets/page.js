@@ -74,14 +74,36 @@
       s => Object.assign(lineStyle(Object.assign({iteration: s.time}, s)), {pointRadius: 2.5}), false);
   }
 
-  /// Levels that build on each other continue the last one's line; every method has its colour.
+  /// One line per method, through the levels that its last state builds on; levels end in larger points.
+  function errorLines(id, measure, target, cost) {
+    const datasets = data.methods.map(method => {
+      const points = data.errors.filter(series => series.method === method).flatMap(series => {
+        const errors = (series[target] || {})[measure] || [];
+        return series[cost].map((x, k) => ({x, y: errors[k], level: series.level}));
+      }).filter(p => p.x > 0 && p.y > 0);
+      const style = methodStyle({method, level: data.finest, iteration: points});
+      return Object.assign(style, {data: points, showLine: true, borderWidth: method === data.methods[0] ? 3 : 1.8,
+        pointRadius: points.map((p, k) => points[k + 1] && points[k + 1].level === p.level ? 1.5 : 4.5)});
+    }).filter(set => set.data.length > 0);
+    const label = item => item.dataset.label + ', level ' + item.raw.level + ': ' + short(item.parsed.x) + ', ' +
+      short(item.parsed.y);
+    show(id, {
+      type: 'scatter',
+      data: {datasets},
+      options: {
+        scales: {x: axis(drape.costKinds[cost], true), y: axis(drape.measures[measure], true)},
+        plugins: {tooltip: {callbacks: {label}}},
+      },
+    }, datasets.flatMap(set => set.data).length, 6);
+  }
+
   function drawErrors() {
     const {measure, target, cost} = chosenError();
-    const series = data.errors.map(s => Object.assign({error: (s[target] || {})[measure] || []}, s));
-    lines('errors', cost, 'error', [drape.costKinds[cost], drape.measures[measure]], true, false, series,
-      s => Object.assign(lineStyle(Object.assign({iteration: s[cost]}, s)), {pointRadius: 2.5}));
+    errorLines('fine-energy', 'energy_gap', target, cost);
+    errorLines('errors', measure, target, cost);
   }
-  const chosenError = drape.choices('error', drawErrors);
+  const chosenError = drape.choices('error', drawErrors, target => data.errors.some(series =>
+    Object.values(series[target] || {}).some(errors => errors.some(error => error !== null))));
 
   function draw() {
     drawErrors();

@@ -12,7 +12,8 @@
       borderDash: several ? dashes[m % dashes.length] : []};
   }
 
-  const chosen = drape.choices('error', drawErrors);
+  const chosen = drape.choices('error', drawErrors, target =>
+    Object.values(((data.errors || {}).seconds || {})[target] || {}).some(plot => plot.curves.some(c => c.length)));
   const ranges = document.getElementById('error-ranges');
   ranges.addEventListener('change', drawErrors);
 
