@@ -16,7 +16,7 @@
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmark programs, to results/*.json; benchmarks alone builds them
 # make hard     the study of the hard cases (docs/results/hard-cases.md)
-# make pictures the README's pictures, from the runs of the studies sphere and table1 that `make results` has left; FROM=
+# make pictures the pictures of README and docs, from the runs of the studies sphere and table1 that `make results` has left; FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of paths)
@@ -113,8 +113,7 @@ pictures: build setup
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	$(BUILD)/bin/drape report $(SPHERE)
 	@tests/browser/install $(BUILD)/tests/browser
-	DRAPE_BIN=$(BUILD)/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser \
-	  node docs/pictures/make.mjs $(SPHERE)/report.html
+	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE)
 	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp $(SPHERE)/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
 	@for run in $(patsubst %/finished.txt,%,$(wildcard $(FROM)table1/bunny/*/finished.txt)); do $(BUILD)/bin/drape report $$run || exit; \
 	  for picture in $$run/pictures/$${run##*/}_l[03].png; do to=docs/pictures/bunny_$${picture##*/}; \

@@ -1,7 +1,10 @@
 // `drape export` and `drape view`: what they write is read again.
 
 #include <catch2/catch.hpp>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
@@ -48,6 +51,18 @@ std::string refused(const std::string& arguments) {
   CHECK(ended.out == "");
   CHECK(fs::is_empty(folder.path));
   return ended.err;
+}
+
+/// Width and height [pixels], from the header.
+std::pair<int, int> size_of_png(const std::string& bytes) {
+  REQUIRE(bytes.size() > 24);
+  CHECK(bytes.substr(1, 3) == "PNG");
+  const auto number = [&](std::size_t at) {
+    int value = 0;
+    for (std::size_t k = at; k < at + 4; ++k) value = 256 * value + static_cast<unsigned char>(bytes[k]);
+    return value;
+  };
+  return {number(16), number(20)};
 }
 
 /// The largest difference of the accessor's vertices, in glTF's axes, and the mesh's [m].
@@ -133,13 +148,85 @@ TEST_CASE("the other formats have the cloth of the finest level, or of the one t
   CHECK((exported("out.vtp") == text_of(finished_run() / "levels/pcs_l1.vtp")));
 }
 
+TEST_CASE("a .png is the report's picture of a state, at any width") {
+  const Scratch folder;
+  fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
+  REQUIRE(drape_with("report run", folder.path).exit_code == 0);
+  const auto reported = [&](const std::string& name) { return text_of(folder / ("run/pictures/" + name)); };
+  CHECK((exported("a.png", "--width 900") == reported("pcs_l1.png")));
+  CHECK((exported("a.png", "--width 900 --level 0 --method newton") == reported("newton_l0.png")));
+  CHECK((exported("a.png", "--width 900 --outline") == reported("pcs_l0_on_l1.png")));
+  CHECK((reported("pcs_l0_on_l1.png") != reported("pcs_l1.png")));
+  const std::string small = exported("a.png", "--width 90");
+  CHECK((size_of_png(small) == std::pair(90, 70)));
+  CHECK((exported("a.png", "--width 90 --view -1,0.5,1") != small));
+  CHECK((exported("a.png", "--width 90 --view 0.55,-1,0.68") == small));
+}
+
+TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse to fine") {
+  const Json levels = Json::parse(text_of(finished_run() / "results.json"))["methods"]["pcs"]["levels"];
+  std::vector<std::size_t> recorded;
+  for (const Json& level : levels) recorded.push_back(level["snapshots"]["iterations"].size());
+  REQUIRE(recorded.size() == 2);
+  const auto frames = [](const std::string& options) {
+    const Scratch folder;
+    const Ended ended = drape_with(
+        "export " + finished_run().string() + " --to film.png --frames --width 90 " + options, folder.path);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code == 0);
+    std::vector<std::string> pictures;
+    char name[32];
+    for (;; pictures.push_back(text_of(folder / name))) {
+      std::snprintf(name, sizeof name, "film_%04zu.png", pictures.size());
+      if (!fs::exists(folder / name)) break;
+    }
+    CHECK_THAT(ended.out, StartsWith("written: film_0000.png to film_00") && EndsWith(".png\n"));
+    CHECK(std::distance(fs::directory_iterator(folder.path), {}) == std::ptrdiff_t(pictures.size()));
+    return pictures;
+  };
+  const std::vector<std::string> all = frames("");
+  REQUIRE(all.size() == recorded[0] + recorded[1]);
+  CHECK((size_of_png(all.back()) == std::pair(90, 70)));
+  CHECK((all.front() != all[recorded[0] - 1]));
+  CHECK((all.front() != all.back()));
+  CHECK(frames("--level 0").size() == recorded[0]);
+}
+
+TEST_CASE("an export replaces no file unless it is asked to") {
+  const std::string run = finished_run().string();
+  const Scratch folder;
+  for (const std::string name : {"a.glb", "a.obj", "a.ply", "a.vtp", "a.png"}) {
+    INFO(name);
+    const std::string arguments = "export " + run + " --to " + name + (name == "a.png" ? " --width 90" : "");
+    folder.write(name, "mine");
+    const Ended ended = drape_with(arguments, folder.path);
+    CHECK(ended.exit_code == 2);
+    CHECK(ended.err ==
+          "error: " + name + ": exists already; name another file, or replace it with --overwrite\n");
+    CHECK(text_of(folder / name) == "mine");
+    CHECK(drape_with(arguments + " --overwrite", folder.path).exit_code == 0);
+    CHECK((text_of(folder / name) != "mine"));
+  }
+  folder.write("film_0003.png", "mine");  // before any picture is drawn
+  CHECK(drape_with("export " + run + " --to film.png --frames --width 90", folder.path).exit_code == 2);
+  CHECK_FALSE(fs::exists(folder / "film_0000.png"));
+}
+
 TEST_CASE("an export that cannot be is refused, with what there is") {
   const std::string run = finished_run().string();
   CHECK(refused("nowhere --to a.glb") == "error: nowhere: no results.json here; give the folder of a run\n");
   CHECK(refused(run + " --to a.fbx") ==
-        "error: --to a.fbx: the formats are .glb (glTF 2.0), .obj, .ply and .vtp\n");
+        "error: --to a.fbx: the formats are .glb (glTF 2.0), .obj, .ply, .vtp and .png (pictures)\n");
   CHECK(refused(run + " --to a.obj --frames") ==
-        "error: --frames makes an animation, which .obj cannot hold; take .glb\n");
+        "error: --frames makes an animation, which .obj cannot hold; take .glb, or .png for numbered "
+        "pictures\n");
+  for (const std::string option : {"--width 90", "--view 0,0,1", "--outline"})
+    CHECK(refused(run + " --to a.glb " + option) ==
+          "error: --width, --view and --outline are of pictures; take .png\n");
+  CHECK_THAT(refused(run + " --to a.png --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
+  for (const std::string direction : {"0,0,0", "1,2", "1,2,x", "1,2,3,4", "1,,2"})
+    CHECK_THAT(refused(run + " --to a.png --view " + direction),
+               Contains("must be a direction, as in 1,-1,0.5, not " + direction));
   CHECK(refused(run + " --to a.ply --level 2") == "error: --level 2: the levels of pcs are 0, 1\n");
   CHECK(refused(run + " --to a.ply --method cascadic") ==
         "error: --method cascadic: the run's methods are pcs, newton\n");

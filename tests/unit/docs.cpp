@@ -133,7 +133,8 @@ TEST_CASE("docs/README.md is the map of every page, and a page shows every pictu
     INFO(name);
     if (entry.path().extension() == ".md" && name != "README.md")
       CHECK(map.find("](" + name + ")") != std::string::npos);
-    if (entry.path().extension() == ".png") CHECK(all.find(name + ")") != std::string::npos);
+    const bool picture = entry.path().extension() == ".png" || entry.path().extension() == ".webp";
+    if (picture) CHECK(all.find(name + ")") != std::string::npos);
   }
 }
 

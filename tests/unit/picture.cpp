@@ -102,6 +102,10 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
     }
   }
   CHECK(reach > 0.9);
+  const Camera above = Camera::around({&sheet.vertices}, {0, 0, 2}, 1);
+  const Eigen::Vector4d far_side = above.projection * above.view * Eigen::Vector4d(0.5, 1, 0, 1);
+  CHECK(far_side[0] / far_side[3] == Approx(0).margin(1e-12));  // y is up
+  CHECK(far_side[1] / far_side[3] == Approx(1 / 1.06));
   const Camera map = Camera::facing(sheet, 1);
   const Eigen::Vector4d corner = map.projection * map.view * Eigen::Vector4d(1, 1, 0, 1);
   CHECK(corner[0] == Approx(1 / 1.06));  // x to the right and y up, the margin around

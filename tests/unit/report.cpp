@@ -240,7 +240,7 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
                  "<h2>Where the curvature changes</h2>\n<p>Difference in mean curvature. Drawn on the flat "
                  "rest shape."));
   CHECK(contains(page, "<b>pcs</b>, level 0 to 1: d<sub>H</sub><sup>fit</sup> = 13.6"));
-  REQUIRE(set.pictures.size() == 2 * (2 + 1 + 2));
+  REQUIRE(set.pictures.size() == 2 * (2 + 1 + 1 + 2));
   for (const auto& [name, picture] : set.pictures) {
     INFO(name);
     const std::string file = read_file(run.folder / "pictures" / name);
@@ -253,11 +253,13 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
       CHECK(contrast(picture.image) > 5);
     }
   }
-  CHECK(occurrences(page, "<img width") == 10);
+  CHECK(occurrences(page, "<img width") == 12);
+  CHECK(contains(page, "<b>pcs</b>, level 1, with the outline of level 0"));
   CHECK(occurrences(page, "alt=\"\"") == 0);
   const auto pixels = [&set](const char* name) { return set.find(name)->image.pixels; };
   CHECK(pixels("pcs_l1.png") == pixels("pcs_l1.png"));
   CHECK(pixels("pcs_l1.png") != pixels("newton_l1.png"));
+  CHECK(pixels("pcs_l1.png") != pixels("pcs_l0_on_l1.png"));
   CHECK(pixels("pcs_l1.png") != pixels("pcs_l1_folds.png"));
 }
 
@@ -309,6 +311,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     CHECK(contains(page, "Not drawn"));
     const PictureSet pictures = draw_pictures(read_run(run.folder));
     CHECK(pictures.find("pcs_l1.png") == nullptr);
+    CHECK(pictures.find("pcs_l0_on_l1.png") == nullptr);
     REQUIRE(pictures.find("pcs_l0.png"));
     CHECK(contrast(pictures.find("pcs_l0.png")->image) > 5);
   }

@@ -1,6 +1,9 @@
 #include "core/app/files/file_name.h"
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 
@@ -25,6 +28,13 @@ std::string fault_of_file_name(const std::string& name) {
   if (name.size() > most_bytes)
     return "has " + std::to_string(name.size()) + " bytes, and may have " + std::to_string(most_bytes);
   return "";
+}
+
+void refuse_existing(const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::exists(file, error))
+    throw std::runtime_error(printable(file.string()) +
+                             ": exists already; name another file, or replace it with --overwrite");
 }
 
 }  // namespace drape

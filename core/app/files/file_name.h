@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace drape {
@@ -7,5 +8,8 @@ namespace drape {
 /// Why file names cannot begin with this name, as in "has 300 bytes, and may have 200"; "" if they can.
 /// Checked before a run rather than left to the file system in its middle.
 std::string fault_of_file_name(const std::string& name);
+
+/// Throws std::runtime_error, which names the option --overwrite, if a file or folder of that path exists.
+void refuse_existing(const std::filesystem::path& file);
 
 }  // namespace drape

@@ -13,6 +13,12 @@ namespace {
 constexpr double half_angle_tangent = 0.22;  // of the vertical field of view, 25°: little distortion
 constexpr double margin = 1.06;              // of the picture's size to the cloth's
 
+/// What is up in a picture: z, unless the camera looks along it.
+Eigen::Vector3d up_of(const Eigen::Vector3d& towards) {
+  const bool along_z = std::abs(towards.normalized()[2]) > 0.9999;
+  return along_z ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+}
+
 /// Rows: right, up and towards the camera.
 Eigen::Matrix3d camera_frame(const Eigen::Vector3d& towards, const Eigen::Vector3d& up) {
   Eigen::Matrix3d frame;
@@ -45,7 +51,7 @@ Eigen::Matrix4d view_matrix(const Eigen::Matrix3d& frame, const Eigen::Vector3d&
 
 Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
                       double aspect) {
-  const Eigen::Matrix3d frame = camera_frame(direction, Eigen::Vector3d::UnitZ());
+  const Eigen::Matrix3d frame = camera_frame(direction, up_of(direction));
   const Eigen::AlignedBox3d box = bounds_in(frame, states);
   const double tangent_v = half_angle_tangent / margin, tangent_u = tangent_v * aspect;
 

@@ -17,7 +17,8 @@ struct Camera {
   Eigen::Matrix4d view;        ///< world to eye
   Eigen::Matrix4d projection;  ///< eye to clip
 
-  /// Perspective from `direction` (towards the camera), z up, as close as possible with all points in view.
+  /// Perspective from `direction` (towards the camera), z up, or y up along z, as close as possible with all
+  /// points in view.
   static Camera around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
                        double aspect);
   /// Orthographic, perpendicular to a nearly flat mesh.

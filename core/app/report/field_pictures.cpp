@@ -138,11 +138,11 @@ class FieldPictureMaker {
     const std::string name = threshold_picture(declared, method, level);
     for (auto pair = method.consistency.rbegin(); pair != method.consistency.rend(); ++pair) {
       const PairFields* f = fields(method, pair->coarse, pair->fine);
-      const TriangleMesh* state = canvas_.state(method.name, level);
+      const TriangleMesh* state = canvas_.scene().state(method.name, level);
       if (!f || pair->coarse != level || !f->find(declared.other_field) || !state) continue;
       TriangleMesh mesh = *state;
       Positions normals = smooth_normals(mesh);
-      const auto triangles = [this](Eigen::Index count) { return canvas_.triangles_of(count); };
+      const auto triangles = [this](Eigen::Index count) { return canvas_.scene().triangles_of(count); };
       if (!split_to(f->mesh.vertices.rows(), f->mesh.triangles, triangles, mesh, normals)) continue;
       const Colours colours = fold_colours(*f->find(declared.other_field), threshold);
       canvas_.draw(name, {mesh, &normals, &colours});

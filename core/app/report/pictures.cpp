@@ -10,8 +10,6 @@ namespace drape {
 
 namespace {
 
-constexpr int most_vertices_with_edges = 4000;  // more lines would merge
-
 std::string file_part(std::string name) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
@@ -22,9 +20,19 @@ std::string file_part(std::string name) {
 void draw_states(const RunData& run, PictureCanvas& canvas) {
   for (const MethodRecord& method : run.methods)
     for (const LevelRecord& level : method.levels)
-      if (const TriangleMesh* state = canvas.state(method.name, level.level))
-        canvas.draw(state_picture(method, level.level),
-                    {.mesh = *state, .edges = state->vertices.rows() <= most_vertices_with_edges});
+      if (const TriangleMesh* state = canvas.scene().state(method.name, level.level))
+        canvas.draw(state_picture(method, level.level), plain_cloth(*state));
+}
+
+/// Each method's finest state with the outline of its coarsest, over the pictures of the states.
+void draw_outlines(const RunData& run, PictureCanvas& canvas, const PictureSet& set) {
+  for (const MethodRecord& method : run.methods) {
+    const std::optional<LevelPair> levels = widest_levels(method);
+    if (!levels) continue;
+    const TriangleMesh* coarse = canvas.scene().state(method.name, levels->coarse);
+    const Picture* fine = set.find(state_picture(method, levels->fine));
+    if (coarse && fine) canvas.draw_outlined(outline_picture(method, *levels), fine->image, *coarse);
+  }
 }
 
 }  // namespace
@@ -36,6 +44,11 @@ const Picture* PictureSet::find(const std::string& name) const {
 
 std::string state_picture(const MethodRecord& method, int level) {
   return file_part(method.name) + "_l" + std::to_string(level) + ".png";
+}
+
+std::string outline_picture(const MethodRecord& method, const LevelPair& levels) {
+  return file_part(method.name) + "_l" + std::to_string(levels.coarse) + "_on_l" +
+         std::to_string(levels.fine) + ".png";
 }
 
 std::string threshold_picture(const MetricPicture& picture, const MethodRecord& method, int level) {
@@ -58,6 +71,16 @@ const ConsistencyRecord* widest_pair(const MethodRecord& method) {
   return widest;
 }
 
+std::optional<LevelPair> widest_levels(const MethodRecord& method) {
+  std::optional<LevelPair> widest;
+  for (const LevelRecord& level : method.levels) {
+    if (level.mesh.empty()) continue;
+    if (!widest) widest = {level.level, level.level};
+    widest->fine = level.level;
+  }
+  return widest && widest->fine > widest->coarse ? widest : std::nullopt;
+}
+
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave) {
   PictureSet set;
   make_folder(run.folder / "pictures");
@@ -66,6 +89,7 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave)
   PictureCanvas canvas(run, leave, set);
   try {
     draw_states(run, canvas);
+    draw_outlines(run, canvas, set);
     draw_fields(run, canvas, set);
   } catch (const PictureLeft&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,13 +39,22 @@ struct PictureSet {
 inline constexpr double difference_quantile = 0.98;
 inline constexpr double threshold_quantile = 0.88;
 
+/// Two levels of a method.
+struct LevelPair {
+  int coarse = 0, fine = 0;
+};
+
 std::string state_picture(const MethodRecord& method, int level);
+std::string outline_picture(const MethodRecord& method, const LevelPair& levels);
 std::string threshold_picture(const MetricPicture& picture, const MethodRecord& method, int level);
 std::string difference_picture(const MetricPicture& picture, const MethodRecord& method,
                                const ConsistencyRecord& pair);
 
 /// The pair whose difference is shown: the coarsest against the finest level.
 const ConsistencyRecord* widest_pair(const MethodRecord& method);
+
+/// The coarsest and the finest level with a final state; none for fewer than two.
+std::optional<LevelPair> widest_levels(const MethodRecord& method);
 
 /// Draws all pictures of a run and writes them to DIR/pictures. A missing or unreadable mesh becomes a note.
 /// Once `leave` (may be empty) returns true, it skips the remaining pictures, with a note. Throws

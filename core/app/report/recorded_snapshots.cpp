@@ -26,4 +26,18 @@ Snapshots recorded_snapshots(const std::filesystem::path& folder, const nlohmann
   return snapshots;
 }
 
+std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
+                                          const LevelRecord& level, Eigen::Index n, std::size_t least) {
+  const auto results = nlohmann::ordered_json::parse(read_file(run.folder / "results.json"));
+  const nlohmann::ordered_json& entry =
+      results.at("methods").at(method.name).at("levels").at(&level - method.levels.data());
+  const Snapshots snapshots = recorded_snapshots(run.folder, entry, n);
+  if (snapshots.count < least)
+    throw std::runtime_error("--frames: the run has no snapshots of level " + std::to_string(level.level) +
+                             "; run the experiment with snapshots: 8");
+  std::vector<Positions> all;
+  for (std::size_t k = 0; k < snapshots.count; ++k) all.push_back(snapshots.positions(k, n));
+  return all;
+}
+
 }  // namespace drape

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
+#include "core/app/report/run_data.h"
 #include "core/kernel/mesh/triangle_mesh.h"
 
 namespace drape {
@@ -22,5 +24,11 @@ struct Snapshots {
 /// recorded none. Throws std::runtime_error for a file that is missing or has another size.
 Snapshots recorded_snapshots(const std::filesystem::path& folder, const nlohmann::ordered_json& level,
                              Eigen::Index n);
+
+/// The positions of all snapshots of a level of n vertices, in order. Throws std::runtime_error, for the
+/// option
+/// --frames, if there are fewer than `least`.
+std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
+                                          const LevelRecord& level, Eigen::Index n, std::size_t least);
 
 }  // namespace drape

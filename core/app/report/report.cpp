@@ -75,6 +75,28 @@ std::string state_grid(const RunData& run, const Gallery& gallery) {
   return text + "</div>\n";
 }
 
+/// What the coarsest states foretold of the finest ones; empty for a run without two levels.
+std::string outline_grid(const RunData& run, const Gallery& gallery) {
+  std::string figures;
+  std::size_t count = 0;
+  for (const MethodRecord& method : run.methods) {
+    const std::optional<LevelPair> levels = widest_levels(method);
+    if (!levels) continue;
+    ++count;
+    figures += gallery.shown(
+        outline_picture(method, *levels),
+        method.name + ": the cloth at level " + std::to_string(levels->fine) + " with the outline of level " +
+            std::to_string(levels->coarse),
+        label(method, levels->fine) + ", with the outline of level " + std::to_string(levels->coarse));
+  }
+  if (count == 0) return "";
+  return "<h3>Outline of the preview</h3>\n<p>The finest state of each method, and as a blue line the "
+         "outline "
+         "of its coarsest state. The closer the line follows the cloth, the better the preview showed its "
+         "shape.</p>\n" +
+         grid_open(count) + figures + "</div>\n";
+}
+
 std::string difference_grid(const RunData& run, const Gallery& gallery, const FieldPictures& pictures) {
   const MetricPicture& declared = pictures.declared;
   const std::string end = number_text(pictures.scale);
@@ -196,7 +218,7 @@ void write_report(const std::filesystem::path& run_directory, const std::functio
                   {"summary", summary_table(run)},
                   {"troubles", troubles(run)},
                   {"levels", level_table(run)},
-                  {"states", state_grid(run, gallery)},
+                  {"states", state_grid(run, gallery) + outline_grid(run, gallery)},
                   {"notes", notes(set)},
                   {"view", view.section},
                   {"view_scripts", view.scripts},

@@ -1,11 +1,12 @@
 #include "core/app/report/run_export.h"
 
+#include <algorithm>
 #include <stdexcept>
-#include <vector>
+#include <utility>
 
 #include "core/app/experiment/method_choice.h"
+#include "core/app/files/file_name.h"
 #include "core/app/files/gltf.h"
-#include "core/app/picture/render.h"
 #include "core/app/picture/surface.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/report/run_data.h"
@@ -55,16 +56,10 @@ GltfState gltf_state(const TriangleMesh& mesh) {
 /// The snapshots before the final state. Throws std::runtime_error if the run has none.
 std::vector<GltfState> earlier_states(const RunData& run, const MethodRecord& method,
                                       const LevelRecord& level, const TriangleMesh& last) {
-  const auto results = nlohmann::ordered_json::parse(read_file(run.folder / "results.json"));
-  const nlohmann::ordered_json& entry =
-      results.at("methods").at(method.name).at("levels").at(&level - method.levels.data());
-  const Snapshots snapshots = recorded_snapshots(run.folder, entry, last.vertices.rows());
-  if (snapshots.count < 2)
-    throw std::runtime_error("--frames: the run has no snapshots of level " + std::to_string(level.level) +
-                             "; run the experiment with snapshots: 8");
+  std::vector<Positions> snapshots = snapshot_positions(run, method, level, last.vertices.rows(), 2);
+  snapshots.pop_back();
   std::vector<GltfState> states;
-  for (std::size_t k = 0; k + 1 < snapshots.count; ++k)
-    states.push_back(gltf_state({snapshots.positions(k, last.vertices.rows()), last.triangles}));
+  for (Positions& x : snapshots) states.push_back(gltf_state({std::move(x), last.triangles}));
   return states;
 }
 
@@ -109,24 +104,41 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   return glb_bytes(surfaces, scenes);
 }
 
+/// Throws std::runtime_error for a file of an unknown format, and for options that its format does not have.
+void check_options(const fs::path& file, const ExportOptions& options) {
+  const std::string extension = file.extension().string();
+  const std::vector<std::string> known = {".glb", ".obj", ".ply", ".vtp", ".png"};
+  if (std::find(known.begin(), known.end(), extension) == known.end())
+    throw std::runtime_error("--to " + file.string() +
+                             ": the formats are .glb (glTF 2.0), .obj, .ply, .vtp and .png (pictures)");
+  if (options.frames && extension != ".glb" && extension != ".png")
+    throw std::runtime_error("--frames makes an animation, which " + extension +
+                             " cannot hold; take .glb, or .png for numbered pictures");
+  const PictureOptions& picture = options.picture;
+  if (extension != ".png" && (picture.width || picture.direction || picture.outline))
+    throw std::runtime_error("--width, --view and --outline are of pictures; take .png");
+}
+
 }  // namespace
 
-void export_run(const fs::path& folder, const fs::path& file, const ExportOptions& options) {
+std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, const ExportOptions& options) {
+  check_options(file, options);
   const std::string extension = file.extension().string();
-  const bool is_glb = extension == ".glb";
-  if (!is_glb && extension != ".obj" && extension != ".ply" && extension != ".vtp")
-    throw std::runtime_error("--to " + file.string() +
-                             ": the formats are .glb (glTF 2.0), .obj, .ply and .vtp");
-  if (options.frames && !is_glb)
-    throw std::runtime_error("--frames makes an animation, which " + extension + " cannot hold; take .glb");
   const RunData run = read_run(folder);
   const MethodRecord& method = chosen_method(run, options.method);
   std::vector<const LevelRecord*> levels = recorded_levels(method, options.level);
-  if (!is_glb || options.frames) levels = {levels.back()};
-  if (is_glb) return write_file(file, gltf_of(run, method, levels, options.frames));
-  const TriangleMesh mesh = read_mesh(run.folder / levels[0]->mesh);
-  if (extension == ".vtp") return write_vtp(file, mesh);
-  write_mesh(file, mesh);
+  const bool all_levels = extension == ".glb" ? !options.frames : extension == ".png" && options.frames;
+  if (!all_levels) levels = {levels.back()};
+  if (extension == ".png")
+    return export_pictures(run, method, levels, options.frames, options.picture, file, options.overwrite);
+  if (!options.overwrite) refuse_existing(file);
+  if (extension == ".glb")
+    write_file(file, gltf_of(run, method, levels, options.frames));
+  else if (extension == ".vtp")
+    write_vtp(file, read_mesh(run.folder / levels[0]->mesh));
+  else
+    write_mesh(file, read_mesh(run.folder / levels[0]->mesh));
+  return {file};
 }
 
 }  // namespace drape

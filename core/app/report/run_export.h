@@ -3,21 +3,28 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "core/app/report/picture_export.h"
 
 namespace drape {
 
 /// What `export_run` writes.
 struct ExportOptions {
   std::string method;        ///< empty: see default_method
-  std::optional<int> level;  ///< empty: every level of a .glb, or the finest
-  bool frames = false;       ///< animate the recorded snapshots of the level, in a .glb
+  std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
+  bool frames = false;  ///< the recorded snapshots: of one level, as an animation in a .glb; or as pictures
+  PictureOptions picture;  ///< of a .png alone
+  bool overwrite = false;  ///< replace existing files
 };
 
-/// Writes states of a method from a run's folder, by the file's extension. A .glb has each level as a scene,
-/// the obstacles included, and opens on the finest; its texture coordinates are the first two coordinates of
-/// the rest shape [m]. A .obj, .ply or .vtp has the cloth of one level. Throws std::runtime_error with one
-/// line for a folder without results, for a state that was not recorded, and for options that do not fit.
-void export_run(const std::filesystem::path& folder, const std::filesystem::path& file,
-                const ExportOptions& options);
+/// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
+/// each level as a scene, the obstacles included, and opens on the finest; its texture coordinates are the
+/// first two coordinates of the rest shape [m]. A .obj, .ply or .vtp has the cloth of one level; for a .png
+/// see export_pictures. Throws std::runtime_error with one line for a folder without results, for a state
+/// that was not recorded, for options that do not fit, and for a file that exists.
+std::vector<std::filesystem::path> export_run(const std::filesystem::path& folder,
+                                              const std::filesystem::path& file,
+                                              const ExportOptions& options);
 
 }  // namespace drape
