@@ -93,7 +93,7 @@ def test_metrics_refiners_and_solvers(small):
 
 
 def test_a_solver_steps_and_stops(small):
-    small["methods"] = {"python_newton": {}}
+    small["methods"], small["reference"] = {"python_newton": {}}, {}
     experiment = drape.Experiment(small)
     solver = experiment.solver("python_newton")
     first = next(solver)

@@ -1,5 +1,6 @@
 #include "core/app/experiment/make_plugins.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/app/experiment/contact_configs.h"
@@ -66,6 +67,14 @@ class PluginMaker {
     return type ? type->scalar : "";
   }
 
+  /// Whether a solver declares the section that the experiment's own `newton` fills in.
+  static bool takes_newton(const RegistryEntry* solver) {
+    if (!solver) return false;
+    const auto& parameters = solver->schema.parameters;
+    return std::any_of(parameters.begin(), parameters.end(),
+                       [](const Parameter& p) { return p.name == "newton"; });
+  }
+
   template <class Interface>
   std::shared_ptr<Interface> make(const ConfigNode& node, ConfigNode& resolved_list) {
     ConfigNode resolved;
@@ -116,7 +125,7 @@ class PluginMaker {
           type.where = written.where;
           node.add("type", type);
         }
-        if (common && registry_.find("solver", name_of(node))) {
+        if (common && takes_newton(registry_.find("solver", name_of(node)))) {
           ConfigNode base;
           base.add("newton", *common);
           fill_in(node, base);
