@@ -49,6 +49,7 @@ void for_developers(CLI::App& command) { command.group("For developers of drape"
 std::vector<std::string> command_words(int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty() || words[0] != "help") return words;
+  if (words.size() > 1 && words[1].starts_with("-")) return words;  // `help --help` is help's own page
   words.erase(words.begin());
   words.emplace_back("--help");
   return words;
