@@ -20,7 +20,8 @@ name: cases
 base: e.yaml
 set: {levels: 1}
 methods: [newton]
-time_limit: 6
+time_limit: )" + std::to_string(6 * test_slowdown()) +
+                             R"(
 ablation:
   - {name: easy}
   - name: unheld
