@@ -126,7 +126,7 @@ TEST_CASE("Without contact and limits the refined state is the prolonged one, wi
   Positions expected = cloth.target(x);
   REQUIRE(expected(7, 2) != 0.25);
   expected(7, 2) = 0.25;
-  CHECK((refined.x - expected).cwiseAbs().maxCoeff() < 1e-15);  // this sum may round otherwise than the library's
+  CHECK((refined.x - expected).cwiseAbs().maxCoeff() < 1e-15);  // rounded otherwise than in the library
 }
 
 TEST_CASE("If contact and limits allow, the refined state is the prolonged one") {
