@@ -339,7 +339,7 @@ TEST_CASE("collisions are the sum over the pairs within dhat, in their order") {
   REQUIRE(count < 5000);
   REQUIRE(smallest > 0);
   CHECK(all->contact_count() == count);
-  CHECK(all->smallest_gap() == smallest);
+  CHECK(all->smallest_gap() == Approx(smallest).epsilon(1e-9));
   CHECK(all->value(many.x) == Approx(value).epsilon(1e-12));
   CHECK((gradient_of(*all, many.x) - gradient).norm() <= 1e-12 * gradient.norm());
   CHECK((dense(hessian_of(*all, many.x, Projection::clamp)) - hessian).norm() <= 1e-12 * hessian.norm());
