@@ -149,6 +149,21 @@ def ratios():
     return table(["what", "over", "ratio"], rows, ["ratios.json"], "llr")
 
 
+def linear_solvers():
+    """Seconds of one numeric factorisation by each solver, and what CHOLMOD's takes of ours."""
+    rows = []
+    for r in read("linear_solvers.json")["rows"]:
+        own, cholmod = r["supernodal"], r["cholmod"]
+        cell = lambda solver: f"{figure(solver['factorisation_seconds'], 2)} ({figure(solver['gflops_per_second'], 2)})"  # noqa: E731
+        ratios_of = r["cholmod_over_supernodal"]
+        rows.append([r["scene"], str(r["vertices"]), str(r["threads"]), cell(own), cell(cholmod),
+                     figure(ratios_of["factorisation"], 2), figure(ratios_of["solve"], 2),
+                     "yes" if cholmod["same_bits_as_with_one_thread"] else "no"])
+    # No comment for docs_figures: cells join two values of the record.
+    return table(["scene", "vertices", "threads", "supernodal [s] (GFlop/s)", "cholmod [s] (GFlop/s)", "cholmod / supernodal",
+                  "of a solve", "cholmod: bits of one thread"], rows, [], "lrrrrrrl")[1:]
+
+
 def changes():
     rows = []
     for r in read("changes.json")["rows"]:
@@ -253,6 +268,7 @@ BLOCKS = {
     "progressions": progressions,
     "ratios": ratios,
     "changes": changes,
+    "linear solvers": linear_solvers,
     "python": python,
     "scale": scale,
     "studies": studies,

@@ -34,12 +34,13 @@ constexpr int repeats = 5;
 /// A factorisation that takes longer [s] is measured once.
 constexpr double long_factorisation = 5;
 
-/// The library that gives CHOLMOD its matrix products.
+/// The library that gives CHOLMOD its matrix products, with its folder, which says whose it is.
 std::string blas() {
   Dl_info info;
   void* const symbol = dlsym(RTLD_DEFAULT, "dgemm_");
   if (!symbol || !dladdr(symbol, &info)) return "unknown";
-  return std::filesystem::canonical(info.dli_fname);
+  const std::filesystem::path path = std::filesystem::canonical(info.dli_fname);
+  return path.parent_path().filename() / path.filename();
 }
 
 /// Sets OpenBLAS's number of threads and returns it; 1 with another BLAS, which keeps its own.

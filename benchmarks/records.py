@@ -76,4 +76,4 @@ def record_files():
 
 def idle(stamp):
     """Nothing else ran before, nor, but for the study's own threads, at its end."""
-    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["threads"] + 0.3
+    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["threads"] + 0.5
