@@ -5,9 +5,9 @@ import gc
 import numpy
 import pytest
 import scipy.sparse
-import scipy.sparse.linalg
 
 import drape
+import prototypes
 
 CONTACT = {
     "name": "contact",
@@ -138,18 +138,10 @@ def test_wrong_shapes_and_types(scene):
 
 def newton(model, x, tolerance):
     """Projected Newton with backtracking, on free vertices."""
-    free = numpy.flatnonzero(numpy.repeat(~model.fixed, 3))
     for _ in range(500):
         if model.force_residual(x) < tolerance:
             return x
-        g = model.gradient(x).ravel()
-        h = scipy.sparse.csc_matrix(model.hessian(x, "clamp"))[free][:, free]
-        p = numpy.zeros_like(g)
-        p[free] = -scipy.sparse.linalg.spsolve(h + 1e-9 * scipy.sparse.identity(len(free)), g[free])
-        energy, length = model.energy(x), 1.0
-        while model.energy(x + length * p.reshape(-1, 3)) > energy + 1e-4 * length * (g @ p):
-            length /= 2
-        x = x + length * p.reshape(-1, 3)
+        x, _ = prototypes.newton_step(model, x, 1e-9)
     raise AssertionError("Newton does not converge")
 
 

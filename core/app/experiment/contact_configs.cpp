@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/parameter_path.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
@@ -66,10 +67,8 @@ ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, Co
   if (written.kind != NodeKind::map) own.add("type", written);
   for (std::size_t i = 0; i < written.entries.size(); ++i) {
     const auto& [key, value] = written.entries[i];
-    const bool moved =
-        std::any_of(model.schema.parameters.begin(), model.schema.parameters.end(),
-                    [&name = key](const Parameter& p) { return p.from_experiment && p.name == name; });
-    if (moved) {
+    const Parameter* parameter = parameter_named(model.schema, key);
+    if (parameter && parameter->from_experiment) {
       errors.push_back({written.key_locations[i], "\"" + key + "\" in " + model.name +
                                                       " is now at the top of the experiment: \"" + key +
                                                       "\", once for all contact models"});
@@ -126,9 +125,8 @@ void split_resolved(const Registry& registry, const ContactConfig& config, Confi
   if (!model) return;
   ConfigNode own;
   for (const auto& [key, value] : resolved.entries) {
-    const auto parameter = std::find_if(model->schema.parameters.begin(), model->schema.parameters.end(),
-                                        [&name = key](const Parameter& p) { return p.name == name; });
-    if (parameter == model->schema.parameters.end() || !parameter->from_experiment) {
+    const Parameter* parameter = parameter_named(model->schema, key);
+    if (!parameter || !parameter->from_experiment) {
       own.add(key, value);
       continue;
     }

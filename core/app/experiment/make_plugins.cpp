@@ -1,12 +1,12 @@
 #include "core/app/experiment/make_plugins.h"
 
-#include <algorithm>
 #include <set>
 
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/method_choice.h"
 #include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/parameter_path.h"
 
 namespace drape {
 
@@ -69,10 +69,7 @@ class PluginMaker {
 
   /// Whether a solver declares the section that the experiment's own `newton` fills in.
   static bool takes_newton(const RegistryEntry* solver) {
-    if (!solver) return false;
-    const auto& parameters = solver->schema.parameters;
-    return std::any_of(parameters.begin(), parameters.end(),
-                       [](const Parameter& p) { return p.name == "newton"; });
+    return solver && parameter_named(solver->schema, "newton");
   }
 
   template <class Interface>

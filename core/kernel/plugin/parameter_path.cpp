@@ -2,15 +2,11 @@
 
 namespace drape {
 
-namespace {
-
 const Parameter* parameter_named(const Schema& schema, const std::string& name) {
   for (const Parameter& p : schema.parameters)
     if (p.name == name) return &p;
   return nullptr;
 }
-
-}  // namespace
 
 std::optional<ParameterPath> ParameterPath::find(const Schema& outermost, void* object,
                                                  const std::vector<std::string>& words) {

@@ -8,6 +8,9 @@
 
 namespace drape {
 
+/// The parameter of this name; null without one.
+const Parameter* parameter_named(const Schema& schema, const std::string& name);
+
 /// One declared parameter of a struct, resolved once by its path and then written often. Refers to the
 /// schema.
 class ParameterPath {
