@@ -7,6 +7,7 @@ import re
 import subprocess
 
 import numpy
+import pandas
 import pytest
 
 import drape
@@ -68,9 +69,20 @@ def test_every_fault_is_listed_with_its_place(tmp_path):
     assert [(f.file, f.line) for f in faults] == [(str(file), 2), (str(file), 3)]
     assert faults[0].column == 1 and "levels" in faults[0].message
     assert "density" in faults[1].message
+    assert [f.key for f in faults] == ["levls", "material.density"]
     assert str(raised.value).count("\n") == 1
     with pytest.raises(drape.ConfigError):
         experiment.run(progress=False)
+
+
+def test_a_fault_of_a_dict_names_its_key():
+    experiment = drape.Experiment({"name": "faulty", "obstacles": [{"shape": "sphere", "radius": -1}], "levls": 2})
+    with pytest.raises(drape.ConfigError) as raised:
+        experiment.check()
+    keys = {fault.key for fault in raised.value.faults}
+    assert {"levls", "obstacles.0.radius"} <= keys
+    assert all(fault.file == "" and fault.line == 0 for fault in raised.value.faults)
+    assert "obstacles.0.radius: " in str(raised.value)
 
 
 def test_what_is_no_experiment_is_refused(small, tmp_path):
@@ -133,7 +145,6 @@ def test_tables(experiment):
     assert result.consistency.row_count == 3 and "d_H_fit" in result.consistency
     assert any(c.startswith("reference.") for c in result.errors)
     assert "<table>" in result.levels._repr_html_()
-    pandas = pytest.importorskip("pandas")
     assert isinstance(result.levels.to_pandas(), pandas.DataFrame)
 
 

@@ -32,22 +32,20 @@ def public(names):
     return {n for n in names if not n.startswith("__") or n in ("__version__", "__commit__")}
 
 
-def test_the_stubs_name_everything():
+def test_the_stubs_name_every_function_and_class():
     assert public(names_in(stub().body)) == public(vars(drape._core))
 
 
-def test_the_stubs_classes_have_the_same_members():
-    classes = [node for node in stub().body if isinstance(node, ast.ClassDef)]
-    assert len(classes) > 12
-    for node in classes:
-        if node.name == "RunAborted":
-            continue
-        own = {n for n in vars(getattr(drape._core, node.name)) if not n.startswith("__")}
-        assert public(names_in(node.body)) == own, node.name
+def test_stubtest_finds_the_same_members_and_signatures(tmp_path):
+    # Classes of pybind11 have a metaclass and an __init__ of their own that no stub can name.
+    allowed = tmp_path / "allowed"
+    allowed.write_text("drape\\._core\\.[A-Z]\\w*\ndrape\\._core\\.[A-Z]\\w*\\.__init__\n")
+    ended = subprocess.run([sys.executable, "-m", "mypy.stubtest", "drape._core", "--allowlist", allowed,
+                            "--ignore-unused-allowlist"], cwd=tmp_path, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
 def test_mypy_accepts_the_package_and_its_use(tmp_path):
-    pytest.importorskip("mypy")
     ended = subprocess.run([sys.executable, "-m", "mypy", "--cache-dir", tmp_path], cwd=SOURCE, capture_output=True,
                            text=True)
     assert ended.returncode == 0, ended.stdout + ended.stderr

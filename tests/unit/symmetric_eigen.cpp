@@ -1,41 +1,40 @@
 #include "core/kernel/linear_algebra/symmetric_eigen.h"
 
-#include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
 #include <random>
+
+#include "tests/support/eigenvalues.h"
 
 using namespace drape;
 
 namespace {
 
 /// V diag(values) Vᵀ with random orthonormal V.
-template <int N>
-Eigen::Matrix<double, N, N> with_eigenvalues(const Eigen::Matrix<double, N, 1>& values, unsigned seed) {
+Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& values, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  Eigen::Matrix<double, N, N> a;
-  for (int i = 0; i < N * N; ++i) a.data()[i] = normal(random);
-  const Eigen::Matrix<double, N, N> v = Eigen::HouseholderQR<Eigen::Matrix<double, N, N>>(a).householderQ();
-  const Eigen::Matrix<double, N, N> m = v * values.asDiagonal() * v.transpose();
+  Eigen::MatrixXd a(values.size(), values.size());
+  for (int i = 0; i < a.size(); ++i) a.data()[i] = normal(random);
+  const Eigen::MatrixXd v = eigenpairs_of(a + a.transpose()).vectors;
+  const Eigen::MatrixXd m = v * values.asDiagonal() * v.transpose();
   return (m + m.transpose()) / 2;
 }
 
 /// Random, repeated, tiny beside large, and vanishing eigenvalues.
-template <int N>
-std::vector<Eigen::Matrix<double, N, N>> matrices() {
-  std::vector<Eigen::Matrix<double, N, N>> all;
-  using Values = Eigen::Matrix<double, N, 1>;
-  for (unsigned seed = 1; seed <= 8; ++seed) all.push_back(with_eigenvalues<N>(Values::Random(), seed));
-  Values v = Values::LinSpaced(-1, 1);
-  all.push_back(with_eigenvalues<N>(v.array().sign(), 10));
-  all.push_back(with_eigenvalues<N>(v.array().pow(15), 11));
+std::vector<Eigen::MatrixXd> matrices(int size) {
+  std::vector<Eigen::MatrixXd> all;
+  for (unsigned seed = 1; seed <= 8; ++seed)
+    all.push_back(with_eigenvalues(Eigen::VectorXd::Random(size), seed));
+  Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(size, -1, 1);
+  all.push_back(with_eigenvalues(v.array().sign(), 10));
+  all.push_back(with_eigenvalues(v.array().pow(15), 11));
   v.setZero();
-  all.push_back(with_eigenvalues<N>(v, 12));
+  all.push_back(with_eigenvalues(v, 12));
   v[0] = -3;
-  all.push_back(with_eigenvalues<N>(v, 13));
+  all.push_back(with_eigenvalues(v, 13));
   all.push_back(1e-20 * all[0]);
   all.push_back(1e20 * all[0]);
-  all.push_back(Eigen::Matrix<double, N, N>(Values::Random().asDiagonal()));
+  all.push_back(Eigen::MatrixXd(Eigen::VectorXd::Random(size).asDiagonal()));
   return all;
 }
 
@@ -47,7 +46,7 @@ template <int N, class T>
 
 template <int N>
 void check_map() {
-  const auto all = matrices<N>();
+  const auto all = matrices(N);
   const int count = static_cast<int>(all.size());
   for (int m = 0; m < count; ++m) {
     INFO("matrix " << m << " of size " << N);
@@ -62,11 +61,9 @@ void check_map() {
     keep_positive(four);
     for (int lane = -1; lane < 4; ++lane) {
       const auto& original = all[(m + std::max(lane, 0)) % count];
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> eigen(original);
-      const Eigen::Matrix<double, N, N> expected = eigen.eigenvectors() *
-                                                   eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-                                                   eigen.eigenvectors().transpose();
-      Eigen::Matrix<double, N, N> found;
+      const auto [values, vectors] = eigenpairs_of(original);
+      const Eigen::MatrixXd expected = vectors * values.cwiseMax(0).asDiagonal() * vectors.transpose();
+      Eigen::MatrixXd found(N, N);
       for (int j = 0; j < N; ++j)
         for (int i = 0; i < N; ++i) found(i, j) = lane < 0 ? one(i, j) : four(i, j)[lane];
       CHECK((found - expected).norm() <= 1e-12 * original.norm());
@@ -90,7 +87,7 @@ TEST_CASE("map_eigenvalues ends, whatever it is given") {
 }
 
 TEST_CASE("The certificate of positive semidefiniteness holds for every lane") {
-  const auto certified = [](const Eigen::Matrix<double, 6, 6>& m, double other_lane) {
+  const auto certified = [](const Eigen::MatrixXd& m, double other_lane) {
     SymmetricMatrix<6, Pack<2>> a;
     for (int j = 0; j < 6; ++j)
       for (int i = 0; i <= j; ++i) {
@@ -99,13 +96,13 @@ TEST_CASE("The certificate of positive semidefiniteness holds for every lane") {
       }
     return positive_semidefinite(a);
   };
-  Eigen::Matrix<double, 6, 1> values;
+  Eigen::VectorXd values(6);
   values << 1, 2, 3, 0, 0, 0.5;
-  CHECK(certified(with_eigenvalues<6>(values, 1), 1));
-  CHECK_FALSE(certified(with_eigenvalues<6>(values, 1), -1));
+  CHECK(certified(with_eigenvalues(values, 1), 1));
+  CHECK_FALSE(certified(with_eigenvalues(values, 1), -1));
   for (const double negative : {-1e-10, -1e-6, -1.0}) {
     values[3] = negative;
-    CHECK_FALSE(certified(with_eigenvalues<6>(values, 1), 1));
+    CHECK_FALSE(certified(with_eigenvalues(values, 1), 1));
   }
-  CHECK_FALSE(certified(Eigen::Matrix<double, 6, 6>::Constant(NAN), 1));
+  CHECK_FALSE(certified(Eigen::MatrixXd::Constant(6, 6, NAN), 1));
 }

@@ -170,3 +170,15 @@ TEST_CASE("a value that a path sets has the path as its location") {
   CHECK(c.key_locations[0].text() == "--set b.c");
   CHECK(node.key_locations[1].text() == "--set b.c");
 }
+
+TEST_CASE("every location knows the path of its key, as --set takes it") {
+  ConfigNode node = parsed("a: {b: 1, list: [2, {c: 3}]}");
+  node.name_keys();
+  const ConfigNode& a = *node.find("a");
+  CHECK(node.where.key.empty());
+  CHECK(a.find("b")->where.key == "a.b");
+  CHECK(a.key_locations[1].key == "a.list");
+  CHECK(a.find("list")->items[1].find("c")->where.key == "a.list.1.c");
+  CHECK(Location{"", 0, 0, "a.b"}.text() == "a.b");
+  CHECK(Location{"f", 2, 0, "a.b"}.text() == "f:2");
+}

@@ -38,6 +38,7 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors) {
   Experiment e;
   e.source = std::move(source);
+  e.source.name_keys();
   e.registry = &registry;
   set_first_keys(e.source);
   static const Schema schema = schema_of<ExperimentParameters>();

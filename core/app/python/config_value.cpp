@@ -9,7 +9,7 @@ namespace {
 /// Deepest nesting, as of YAML files; a list that contains itself ends here.
 constexpr int max_depth = 100;
 
-ConfigNode node_of(const py::handle& value, int depth) {
+ConfigNode nested_node(const py::handle& value, int depth) {
   if (depth > max_depth) throw py::value_error("the experiment is nested too deeply");
   if (value.is_none()) return {};
   if (py::isinstance<py::bool_>(value)) return ConfigNode::of(value.cast<bool>());
@@ -26,23 +26,23 @@ ConfigNode node_of(const py::handle& value, int depth) {
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
       if (!py::isinstance<py::str>(key))
         throw py::type_error("a key of an experiment must be a str, not " + std::string(py::repr(key)));
-      node.add(key.cast<std::string>(), node_of(entry, depth + 1));
+      node.add(key.cast<std::string>(), nested_node(entry, depth + 1));
     }
     return node;
   }
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     node.kind = ConfigNode::Kind::list;
-    for (const py::handle item : value) node.items.push_back(node_of(item, depth + 1));
+    for (const py::handle item : value) node.items.push_back(nested_node(item, depth + 1));
     return node;
   }
-  if (py::hasattr(value, "tolist")) return node_of(value.attr("tolist")(), depth + 1);  // numpy's
+  if (py::hasattr(value, "tolist")) return nested_node(value.attr("tolist")(), depth + 1);  // numpy's
   if (py::hasattr(value, "__fspath__")) return ConfigNode::of(value.attr("__fspath__")().cast<std::string>());
   throw py::type_error("an experiment cannot hold " + std::string(py::repr(value)));
 }
 
 }  // namespace
 
-ConfigNode node_of(const py::handle& value) { return node_of(value, 0); }
+ConfigNode node_of(const py::handle& value) { return nested_node(value, 0); }
 
 py::object value_of(const ConfigNode& node) {
   return py::module_::import("json").attr("loads")(json_value(node).dump());
@@ -53,8 +53,8 @@ void throw_errors(const ConfigErrors& errors) {
   const py::module_ types = py::module_::import("drape.errors");
   py::list faults;
   for (const ConfigError& error : errors)
-    faults.append(
-        types.attr("ConfigFault")(error.message, error.where.file, error.where.line, error.where.column));
+    faults.append(types.attr("ConfigFault")(error.message, error.where.file, error.where.line,
+                                            error.where.column, error.where.key));
   const py::object type = types.attr("ConfigError");
   PyErr_SetObject(type.ptr(), type(faults).ptr());
   throw py::error_already_set();

@@ -32,11 +32,11 @@ constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
                               {"smallest_gap", &LevelRecord::smallest_gap}};
 
 /// The quantities that one or both sides have, beside level_keys.
-struct Quantities {
+struct ComparedQuantities {
   std::vector<RowQuantity> rows;
   std::vector<MetricColumn> states, pairs;
 
-  Quantities(const RunCollection& before, const RunCollection& after) {
+  ComparedQuantities(const RunCollection& before, const RunCollection& after) {
     std::vector<DeclaredMetric> metrics = before.metrics();
     merge(metrics, after.metrics());
     states = columns_of(metrics, MetricScope::state, Shown::summary);
@@ -85,8 +85,8 @@ struct Sheet {
   }
 };
 
-void add_method(Sheet& sheet, const Quantities& quantities, const std::string& prefix, const RunData& run,
-                const MethodRecord& method) {
+void add_method(Sheet& sheet, const ComparedQuantities& quantities, const std::string& prefix,
+                const RunData& run, const MethodRecord& method) {
   const std::string name = prefix + method.name;
   sheet.converged.emplace_back(name, has_converged(method.status));
   for (const RowQuantity& f : quantities.rows) sheet.add(name, f.name, f.of(run, method));
@@ -107,7 +107,7 @@ void add_method(Sheet& sheet, const Quantities& quantities, const std::string& p
                 column.name, pair.metrics.of(column.name));
 }
 
-Sheet sheet_of(const RunCollection& collection, const Quantities& quantities, bool named) {
+Sheet sheet_of(const RunCollection& collection, const ComparedQuantities& quantities, bool named) {
   Sheet sheet;
   for (const RunRecord& run : collection.runs) {
     std::string prefix;
@@ -148,7 +148,7 @@ std::string change_of(const Change& c) {
 std::vector<Bound> parse_bounds(const std::vector<std::string>& texts, const RunCollection& before,
                                 const RunCollection& after) {
   std::vector<Bound> bounds;
-  const std::vector<std::string> known = Quantities(before, after).names();
+  const std::vector<std::string> known = ComparedQuantities(before, after).names();
   for (const std::string& text : texts) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
@@ -173,7 +173,7 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
                        const std::vector<Bound>& bounds)
     : bounds_(bounds.size()) {
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;
-  const Quantities quantities(before, after);
+  const ComparedQuantities quantities(before, after);
   const Sheet a = sheet_of(before, quantities, named), b = sheet_of(after, quantities, named);
   for (const auto& [where, key, value] : a.entries)
     if (const double* now = b.find(where, key)) {

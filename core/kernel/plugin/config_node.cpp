@@ -65,7 +65,7 @@ std::string Location::text() const {
     if (number <= 0) break;
     text += (text.empty() ? "" : ":") + std::to_string(number);
   }
-  return text;
+  return text.empty() ? key : text;
 }
 
 std::string ConfigError::text() const {
@@ -96,6 +96,17 @@ void ConfigNode::add(const std::string& key, ConfigNode value) {
   kind = Kind::map;
   key_locations.push_back(value.where);
   entries.emplace_back(key, std::move(value));
+}
+
+void ConfigNode::name_keys(const std::string& own) {
+  const std::string before = own.empty() ? "" : own + ".";
+  where.key = own;
+  for (std::size_t i = 0; i < items.size(); ++i) items[i].name_keys(before + std::to_string(i));
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    auto& [key, value] = entries[i];
+    value.name_keys(before + key);
+    key_locations[i].key = before + key;
+  }
 }
 
 std::string ConfigNode::one_line() const {

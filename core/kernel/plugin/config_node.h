@@ -13,7 +13,8 @@ struct Location {
   std::string file;
   int line = 0;
   int column = 0;
-  std::string text() const;  ///< "file:line:column", without the parts that are unknown
+  std::string key = {};  ///< path in its config, as `--set` takes it: "obstacles.0.radius"; empty if unknown
+  std::string text() const;  ///< "file:line:column", without the parts that are unknown; the key if all are
 };
 
 /// A node of a config: a scalar's text, a list or a map, with its location. It hides the syntax of the file;
@@ -36,6 +37,8 @@ struct ConfigNode {
   std::optional<std::size_t> index_of(const std::string& word) const;
 
   void add(const std::string& key, ConfigNode value);  ///< appends an entry, making a null node a map
+
+  void name_keys(const std::string& own = "");  ///< sets each location's key; own: this node's
 
   std::string one_line() const;  ///< as YAML; ambiguous texts are quoted
 

@@ -7,16 +7,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class ConfigFault:
-    """One fault: a message with a remedy, and where it is; line and column count from 1, 0 is unknown."""
+    """One fault: a message with a remedy, and where it is; line and column count from 1, 0 is unknown.
+
+    `key` is its path in the experiment, as `Experiment.set` takes it ("obstacles.0.radius"); "" is unknown.
+    """
 
     message: str
     file: str
     line: int
     column: int
+    key: str = ""
 
     def __str__(self) -> str:
         place = [self.file] if self.file else []
         place += [str(n) for n in (self.line, self.column) if n > 0]
+        place = place or [self.key] * bool(self.key)
         return ":".join(place) + (": " if place else "") + self.message
 
 
