@@ -51,6 +51,15 @@ TEST_CASE("Each contact model gets the obstacles that have its keys, in the list
   CHECK(e.contacts[1]->bind(level, Material())->obstacles()[1].vertices.rows() == 42);
 }
 
+TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
+  ExperimentParameters p = experiment_from(mixed).parameters;
+  p.obstacles[3] = p.obstacles[1];
+  ConfigErrors errors;
+  contact_configs(test_registry(), p, errors);
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0].message == "\"ball\" is also the name of obstacles[1]; give each obstacle its own");
+}
+
 TEST_CASE("A saved experiment has obstacles and friction once, and reads back the same") {
   const Experiment e = experiment_from(mixed);
   const ConfigNode *obstacles = e.resolved.find("obstacles"), *models = e.resolved.find("contact");

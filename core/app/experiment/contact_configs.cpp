@@ -1,6 +1,7 @@
 #include "core/app/experiment/contact_configs.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/parameter_path.h"
@@ -80,6 +81,18 @@ ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, Co
   return own;
 }
 
+/// A path of keys finds an obstacle by its name, so no two have the same.
+void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors) {
+  std::map<std::string, std::size_t> named;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const ConfigNode* name = obstacles[i].find("name");
+    if (!name || name->kind != NodeKind::scalar || name->scalar.empty()) continue;
+    if (const auto [first, is_new] = named.try_emplace(name->scalar, i); !is_new)
+      errors.push_back({name->where, "\"" + excerpt(name->scalar) + "\" is also the name of obstacles[" +
+                                         std::to_string(first->second) + "]; give each obstacle its own"});
+  }
+}
+
 }  // namespace
 
 std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& p,
@@ -93,6 +106,7 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
     models.push_back(model_of(registry, node));
     configs.push_back({models.back() ? own_section(*models.back(), node, errors) : node, {}});
   }
+  check_names(p.obstacles, errors);
   for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
     const auto takes = std::find_if(models.begin(), models.end(), [&](const RegistryEntry* model) {
       return model && !known_key(*model, p.obstacles[i]).empty();
