@@ -10,9 +10,11 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/kernel/linear_algebra/block_matrix.h"
 #include "core/kernel/model/refiner.h"
 #include "core/kernel/plugin/abi.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/solve/newton_parameters.h"
 #include "tests/support/folders.h"
 
 using namespace drape;
@@ -46,6 +48,19 @@ struct TemporaryFolder {
 constexpr DrapePluginDescriptor ours = DRAPE_ABI_DESCRIPTOR(nullptr);
 
 }  // namespace
+
+TEST_CASE("whoever changes a class that plugins see is told to raise the ABI number") {
+  // If a size differs: raise DRAPE_ABI_NUMBER, then write the new number and the new size here.
+  CHECK(DRAPE_ABI_NUMBER == 11);
+  CHECK(sizeof(ConfigNode) == 192);
+  CHECK(sizeof(Parameter) == 432);
+  CHECK(sizeof(TriangleMesh) == 32);
+  CHECK(sizeof(Topology) == 168);
+  CHECK(sizeof(Level) == 392);
+  CHECK(sizeof(Material) == 40);
+  CHECK(sizeof(BlockMatrix) == 40);
+  CHECK(sizeof(NewtonParameters) == 88);
+}
 
 TEST_CASE("a plugin's entries are registered, made and destroyed") {
   Registry registry;
