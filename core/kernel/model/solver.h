@@ -94,7 +94,6 @@ struct LevelResult {
 };
 
 struct NewtonState;
-struct MethodState;
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
 class Observer {
