@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/mesh/check.h"

@@ -1,6 +1,5 @@
 #include "plugins/contact/shapes/shape_scene.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -14,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 2048;
+constexpr int grain = 2048;     // triangles per task
 constexpr double inset = 5e-5;  // of a cylinder's prism, over d̂
-constexpr double half = 0.5;    // weight factor of edges and of triangles
+constexpr double half = 0.5;    // weight factor of pairs of edges and of pairs with a triangle
 
 /// A bounding ball of an element's linear motion.
 struct Ball {
