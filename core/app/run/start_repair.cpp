@@ -52,8 +52,7 @@ class StartProbe {
       : scene_(scene), components_(scene.hierarchy.levels[0].topology.components()) {
     for (const auto& contact : scene.model(0).contacts())
       for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
-    const Positions& x = scene.starts[0];
-    diagonal_ = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+    diagonal_ = bounding_box_diagonal(scene.starts[0]);
   }
 
   double diagonal() const { return diagonal_; }

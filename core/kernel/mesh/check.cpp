@@ -193,7 +193,7 @@ std::vector<std::string> check_coordinates(const Positions& x) {
                        " m; at most " + three_digits(largest_coordinate) + " m can be computed with");
   }
   if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
-  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box_diagonal(x);
   const double distance = x.cwiseAbs().maxCoeff();
   const double rounding = distance * std::numeric_limits<double>::epsilon();
   if (diagonal < smallest_diagonal)

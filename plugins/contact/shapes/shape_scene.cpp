@@ -150,8 +150,7 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   ShapeScene s;
   s.cloth = Surface::of(level.rest, level.topology);
   s.vertex_area = level.vertex_area;
-  const Positions& rest = level.rest.vertices;
-  s.diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  s.diagonal = bounding_box_diagonal(level.rest.vertices);
   s.solids = solids;
   s.barrier = barrier;
   s.min_gap_fraction = min_gap_fraction;
