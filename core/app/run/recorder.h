@@ -61,7 +61,8 @@ class Recorder : public Observer {
   void method_finished(const std::vector<LevelResult>& results,
                        const std::optional<MethodFailure>& failure = std::nullopt);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
-  /// method's finest state and of every snapshot. False if it was stopped.
+  /// method's finest state and of every snapshot. After a `cancelled` run it solves nothing further. Returns
+  /// false if the observer requested a stop meanwhile.
   bool measure_errors(Observer& observer, bool cancelled);
   void run_finished(bool complete);
 
