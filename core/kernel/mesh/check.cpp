@@ -79,7 +79,6 @@ bool check_indices(const TriangleMesh& mesh, Faults& faults) {
 }
 
 void check_shapes(const TriangleMesh& mesh, Faults& faults) {
-  constexpr double smallest_height = 1e-12;  // relative; far above round-off, far below any usable triangle
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (repeats_vertex(mesh.triangles, t)) {
       faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex");

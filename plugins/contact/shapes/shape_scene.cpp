@@ -118,13 +118,7 @@ class Finder {
     return features_.side > 0 ? std::min(1.0, features_.side / length) : 1;
   }
 
-  static std::vector<int> marked(const std::vector<char>& marks) {
-    std::vector<int> result;
-    for (std::size_t i = 0; i < marks.size(); ++i)
-      if (marks[i]) result.push_back(static_cast<int>(i));
-    return result;
-  }
-
+  /// The triangles' vertices or edges, of which there are `count`, that are near; ascending, each once.
   template <class IsNear>
   static std::vector<int> elements_near(const std::vector<int>& triangles, const Triangles& corners,
                                         int count, const IsNear& is_near) {
@@ -132,8 +126,8 @@ class Finder {
     for (const int i : triangles)
       for (int k = 0; k < 3; ++k) marks[corners(i, k)] = 1;
     std::vector<int> result;
-    for (const int i : marked(marks))
-      if (is_near(i)) result.push_back(i);
+    for (int i = 0; i < count; ++i)
+      if (marks[i] && is_near(i)) result.push_back(i);
     return result;
   }
 
