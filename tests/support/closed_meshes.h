@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/kernel/mesh/split_triangles.h"
 #include "core/kernel/model/midpoint.h"
 
 // Closed meshes to blow up, triangles counter-clockwise seen from outside.

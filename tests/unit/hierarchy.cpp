@@ -4,6 +4,7 @@
 
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/split_triangles.h"
 #include "core/kernel/model/midpoint.h"
 
 using namespace drape;

@@ -21,8 +21,9 @@ void check_selection(const std::string& word, std::size_t number, const VertexSe
                                    std::to_string(coarsest.vertex_count() - 1)});
 }
 
-/// Soft positions: κ_B/2 Σ m_k ‖x_k − x̃_k‖² (supplement, section 4). Departure: each handle's masses are
-/// scaled to their sum on the coarsest level, where one vertex stands for many: all levels are equally stiff.
+/// Soft positions: κ_B/2 Σ m_k ‖x_k − x̃_k‖² (supplement, section 4). Departure: the masses of each handle are
+/// scaled to their sum on the coarsest level, where one vertex stands for many. All levels are therefore
+/// equally stiff.
 class Handles final : public Energy {
  public:
   Handles(const ExperimentParameters& p, const Level& coarsest)
@@ -85,11 +86,12 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
       if (v >= 0 && v < coarsest.vertex_count()) selected.push_back(v);
     return selected;
   }
+  constexpr double rounding = 1e-12;  // round-off must not exclude vertices on a region's boundary
   for (int i = 0; i < level.vertex_count(); ++i) {
     const Eigen::Vector3d p = level.rest.vertices.row(i);
-    const bool in_ball = (p - selection.point).norm() <= selection.radius * (1 + 1e-12);
-    const bool in_box = (p.array() >= selection.lower.array() - 1e-12).all() &&
-                        (p.array() <= selection.upper.array() + 1e-12).all();
+    const bool in_ball = (p - selection.point).norm() <= selection.radius * (1 + rounding);
+    const bool in_box = (p.array() >= selection.lower.array() - rounding).all() &&
+                        (p.array() <= selection.upper.array() + rounding).all();
     if (selection.region == "border" ? level.topology.on_border[i]
         : selection.region == "ball" ? in_ball
                                      : in_box)
@@ -117,8 +119,8 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
                                                 : Eigen::Vector3d(start.row(v)),
                       static_cast<int>(k)};
   std::vector<DirichletVertex> dirichlet;
-  for (const DirichletVertex& h : by_vertex)
-    if (h.vertex >= 0) dirichlet.push_back(h);
+  for (const DirichletVertex& d : by_vertex)
+    if (d.vertex >= 0) dirichlet.push_back(d);
   return dirichlet;
 }
 

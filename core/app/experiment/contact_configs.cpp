@@ -114,7 +114,7 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
     if (takes != models.end())
       configs[takes - models.begin()].obstacles.push_back(i);
     else if (std::find(models.begin(), models.end(), nullptr) ==
-             models.end())  // else the model's name is wrong
+             models.end())  // else a model's name is wrong
       errors.push_back({p.obstacles[i].where, refusal(registry, p.obstacles[i], i)});
   }
   for (std::size_t k = 0; k < configs.size(); ++k) {

@@ -17,7 +17,7 @@ struct DeclaredMetric {
   MetricDeclaration declaration;
 };
 
-/// Of an experiment's metrics, by name; of two with one name, the first.
+/// The declarations of an experiment's metrics. Of two metrics with one name, the first counts.
 std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics);
 
@@ -26,14 +26,15 @@ nlohmann::ordered_json json_of(const std::vector<DeclaredMetric>& metrics);
 /// Reads them again. Entries of another form, as of an edited file, are skipped or have default members.
 std::vector<DeclaredMetric> declared_metrics(const nlohmann::ordered_json& json);
 
-/// Columns of a scope that are at least so widely shown, in the order of declaration; each name once.
+/// Columns of a scope that are shown at least as widely as `least`, in the order of declaration; each name
+/// once.
 std::vector<MetricColumn> columns_of(const std::vector<DeclaredMetric>& metrics, MetricScope scope,
                                      Shown least);
 
 /// Adds the metrics, columns and pictures that are not in `all` yet, as of another run.
 void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& more);
 
-/// Whether a is better than b. Of values of which lower is better the one nearer to zero is: a difference of
+/// Whether a is better than b. Where lower is better, the value nearer to zero is, because a difference of
 /// energies may be negative. False if neither direction is better.
 bool beats(Better better, double a, double b);
 

@@ -48,12 +48,12 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
     check_name("name", e.parameters.name, name->where, errors);
   make_plugins(registry, errors, e);
   check_schedule(e, errors);
-  // The common newton section is read once for itself and once in each method: say each fault once.
-  std::set<std::string> said;
+  // The common newton section is read once for itself and once in each method: report each fault once.
+  std::set<std::string> seen;
   ConfigErrors once;
   for (const ConfigError& error : errors)
-    if (said.insert(error.text()).second) once.push_back(error);
-  // In the order of the file; what was given beside it comes after.
+    if (seen.insert(error.text()).second) once.push_back(error);
+  // In the order of the file; faults of values from the command line come after.
   std::stable_sort(once.begin(), once.end(), [&](const ConfigError& a, const ConfigError& b) {
     const auto order = [&](const Location& l) {
       return std::tuple(l.file != e.source.where.file, l.line, l.column);

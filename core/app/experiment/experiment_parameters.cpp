@@ -64,8 +64,7 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .path()
       .description(
           "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels "
-          "split "
-          "it at edge midpoints");
+          "split it at edge midpoints");
   d.add("scale", &StartParameters::scale)
       .at_least(-bounds::largest_scale)
       .at_most(bounds::largest_scale)
@@ -100,8 +99,7 @@ void declare_selection(Declaration<Condition>& d) {
       .choices({"nearest", "ball", "box", "border", "vertices"})
       .description(
           "selects vertices by their rest positions: the coarsest level's vertex nearest to `point`, all "
-          "within "
-          "`radius` of `point`, all in a box, the boundary, or coarsest-level indices");
+          "within `radius` of `point`, all in a box, the boundary, or coarsest-level indices");
   d.add("point", member(&VertexSelection::point))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
@@ -133,8 +131,7 @@ void declare_selection(Declaration<Condition>& d) {
       .at_most(bounds::largest_coordinate)
       .description(
           "translation from the rest position to the target, applied after `rotate`; without both, the "
-          "target "
-          "is the start position");
+          "target is the start position");
   d.add("rotate", member(&VertexSelection::rotate))
       .formerly("turn")
       .unit("degree")

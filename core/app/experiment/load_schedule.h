@@ -63,7 +63,8 @@ class LoadSchedule {
     std::size_t item;  // of the energies or contact models
     std::vector<std::string> words;
   };
-  /// One target; for `friction` one in every contact model that declares it.
+  /// Finds the parameter that the words of a key's path name: one target, but for `friction` one in every
+  /// contact model that declares it.
   static std::vector<Target> targets_of(const Experiment& experiment,
                                         const std::vector<ContactConfig>& contacts,
                                         const std::vector<std::string>& words);

@@ -14,7 +14,7 @@ namespace {
 
 ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
 
-/// Entries of `base` that `over` lacks are added to it, maps within maps likewise.
+/// Adds the entries of `base` that `over` lacks, also in maps within maps.
 void fill_in(ConfigNode& over, const ConfigNode& base) {
   if (over.kind == ConfigNode::Kind::null) {
     const Location where = over.where;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -36,7 +37,8 @@ TriangleMesh make_cloth(const Experiment& e) {
     for (std::size_t k = 0; k < c.loops.size(); ++k) {
       const auto& p = c.loops[k].points;
       if (p.size() % 2 != 0)
-        throw std::runtime_error("loop " + std::to_string(k) + " has an odd number of coordinates");
+        throw std::runtime_error("loop " + std::to_string(k) +
+                                 " has an odd number of coordinates; give x and y of each point");
       auto& loop = loops.emplace_back();
       for (std::size_t i = 0; i + 1 < p.size(); i += 2) loop.emplace_back(p[i], p[i + 1]);
     }
@@ -63,7 +65,7 @@ class Noise {
   double at(double x, double y) const {
     double sum = 0;
     for (const Wave& w : waves_) sum += std::sin(w.kx * x + w.ky * y + w.phase);
-    return sum / std::sqrt(8.0);
+    return sum / std::sqrt(8.0);  // of the number of waves
   }
 
  private:
@@ -127,14 +129,14 @@ bool check_start(const Experiment& e, const Level& level, const Positions& x, Co
 
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors) {
-  constexpr std::size_t most_said = 3;
+  constexpr std::size_t max_listed = 3;  // of each contact model
   for (const auto& contact : model.contacts()) {
-    const std::vector<Intersection> touches = contact->intersections(start);
-    for (std::size_t k = 0; k < std::min(touches.size(), most_said); ++k)
+    const std::vector<Intersection> found = contact->intersections(start);
+    for (std::size_t k = 0; k < std::min(found.size(), max_listed); ++k)
       errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
-                                                    " touches: " + to_string(touches[k])});
-    if (touches.size() > most_said)
-      errors.push_back({e.location_of("start"), "… and " + std::to_string(touches.size() - most_said) +
+                                                    " touches: " + to_string(found[k])});
+    if (found.size() > max_listed)
+      errors.push_back({e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) +
                                                     " more pairs; move the start and the obstacle apart"});
   }
 }
@@ -188,7 +190,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     std::vector<DirichletVertex> dirichlet =
         dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
-    for (const DirichletVertex& h : dirichlet) start.row(h.vertex) = h.target.transpose();
+    for (const DirichletVertex& d : dirichlet) start.row(d.vertex) = d.target.transpose();
     if (!check_start(e, level, start, errors)) return nullptr;
     scene->starts.push_back(std::move(start));
     try {

@@ -66,7 +66,8 @@ double duration_of(const ScheduleParameters& p) {
   return duration;
 }
 
-/// Makes all plugins from parameters that differ from the experiment's in one key.
+/// Appends the faults of energies and contact models whose parameters differ from the experiment's in one
+/// key.
 void check_plugins(const Experiment& e, const ExperimentParameters& changed, ConfigErrors& errors) {
   for (std::size_t k = 0; k < std::min(changed.energies.size(), e.energies.size()); ++k)
     make_from<Energy>(*e.registry, changed.energies[k], errors, nullptr, e.energies[k].energy.get());
@@ -121,7 +122,7 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
 }
 
 void set_first_keys(ConfigNode& source) {
-  ConfigErrors said_later;
+  ConfigErrors ignored;  // check_schedule reports them
   const ConfigNode* schedule = source.find("schedule");
   const ConfigNode* keys = schedule ? schedule->find("keys") : nullptr;
   if (!keys || keys->kind != NodeKind::list) return;
@@ -130,7 +131,7 @@ void set_first_keys(ConfigNode& source) {
     if (!parameter || !values || values->kind != NodeKind::list || values->items.empty()) continue;
     const std::string& path = parameter->scalar;
     if (std::find(changeable.begin(), changeable.end(), path.substr(0, path.find('.'))) != changeable.end())
-      set_path(source, path, values->items[0], parameter->where, said_later);
+      set_path(source, path, values->items[0], parameter->where, ignored);
   }
 }
 

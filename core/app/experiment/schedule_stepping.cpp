@@ -10,7 +10,7 @@ namespace {
 
 /// An increment is tried at most this often, in ever smaller fractions, before it waits for equilibrium.
 constexpr int max_tries = 30;
-constexpr double min_fraction = 1e-6;
+constexpr double min_fraction = 1e-6;  // of what remains of the increment
 
 /// Largest feasible motion of the obstacles from one model to the other with the cloth at x.
 StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, const Positions& x) {
@@ -96,7 +96,7 @@ StepLimit ScheduleStepping::try_fraction(double fraction, int level, const Posit
   const std::shared_ptr<const LevelModel> now = model(level);
   std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);
   if (std::string refused = strain_limit_violations(then->limits(), x, 1); !refused.empty())
-    return {0.5, std::move(refused)};
+    return {0.5, std::move(refused)};  // a limit gives no fraction: try half
   if (StepLimit limit = obstacle_step_limit(*now, *then, x); limit.fraction < 1) return limit;
   set_load(level, next);
   levels_[level] = {next, next, std::move(then)};

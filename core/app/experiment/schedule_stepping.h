@@ -23,12 +23,13 @@ class ScheduleStepping final : public LoadStepping {
   bool advance_by(double fraction, int level, const Positions& x) override;
 
  private:
-  /// A level's load, and the model that was made last, of the load `made_of`.
+  /// A level's load, and its model, which was made for the load `made_of`.
   struct LoadedLevel {
     std::shared_ptr<const LoadState> load, made_of;
     std::shared_ptr<const LevelModel> model;
   };
 
+  /// The load with these values of all keys. Throws std::runtime_error naming the pseudo-time and the fault.
   std::shared_ptr<const LoadState> load_at(std::vector<double> values) const;
   /// Applies a fraction of the remaining increment if a cloth at x allows it. Returns 1 if so, else an
   /// estimate of the feasible part of that fraction.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/app/experiment/experiment.h"
@@ -23,11 +24,14 @@ std::vector<double> estimated_vertices(const ExperimentParameters& p);
 /// Estimated peak memory of a run whose finest level has so many vertices [bytes].
 double estimated_memory(double vertices);
 
-std::string memory_text(double bytes);  ///< "2.3 GB"
+/// "2.3 GB".
+std::string memory_text(double bytes);
+
+/// Whether a run that may need more memory than this machine has is refused.
+enum class LargeMemory { refused, allowed };
 
 /// Appends an error for levels with more vertices than indices can count and, unless allowed, for a run that
 /// may need more memory than this machine has.
-enum class LargeMemory { refused, allowed };
 void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& errors);
 
 }  // namespace drape

@@ -34,7 +34,7 @@ struct Checkpoint {
 
 /// The checkpoint as bytes, with a checksum.
 std::string encode(const Checkpoint& checkpoint);
-/// The inverse of `encode`. Throws std::runtime_error for invalid bytes.
+/// The inverse of `encode`. Throws std::runtime_error for bytes that are damaged or of another format.
 Checkpoint decode(std::string_view bytes);
 /// `decode` without header and checksum, for untrusted bytes. Every value is valid for its type;
 /// require_fitting checks it against an experiment.

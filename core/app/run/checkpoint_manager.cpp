@@ -5,6 +5,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/run_data.h"
+#include "core/app/run/recorder_files.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
@@ -34,10 +35,6 @@ FileFingerprint fingerprint_of(const fs::path& path) {
     bytes = read_file(path);
   }
   return {path.string(), bytes.size(), checksum_of(bytes)};
-}
-
-std::string mesh_name(const std::string& method, int level) {
-  return "levels/" + method + "_l" + std::to_string(level) + ".ply";
 }
 
 nlohmann::ordered_json results_of(const fs::path& folder) {
@@ -182,9 +179,11 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
     for (const auto& [name, entry] : results["methods"].items()) state.method = name;
   const bool current = checkpoint && checkpoint->methods.at(checkpoint->method) == state.method;
   const std::optional<NewtonState>& under_way = current ? checkpoint->state.under_way : std::nullopt;
+  constexpr int max_levels = 32;  // more than an experiment can have
   std::vector<int> levels;
-  for (int l = 0; l < 32; ++l)
-    if (fs::exists(folder / mesh_name(state.method, l)) || (under_way && checkpoint->state.level == l))
+  for (int l = 0; l < max_levels; ++l)
+    if (fs::exists(folder / level_file(state.method, l, ".ply")) ||
+        (under_way && checkpoint->state.level == l))
       levels.push_back(l);
   const std::string whose = folder.string() + ": holds no state of method " + state.method;
   if (levels.empty()) throw std::runtime_error(whose + "; name another with --method");
@@ -194,7 +193,7 @@ SavedState saved_state(const fs::path& folder, const std::string& method, std::o
                              "; the last level that it has is " + std::to_string(levels.back()));
   state.x = under_way && checkpoint->state.level == state.level
                 ? under_way->so_far.x
-                : read_mesh(folder / mesh_name(state.method, state.level)).vertices;
+                : read_mesh(folder / level_file(state.method, state.level, ".ply")).vertices;
   return state;
 }
 

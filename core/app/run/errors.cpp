@@ -97,7 +97,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     try {
       states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
     } catch (const std::exception& error) {
-      fault(error.what());  // there is no copy of them
+      fault(error.what());  // the snapshots have no copy to restore them from
       continue;
     }
     if (states.size() != level.cost.size()) continue;

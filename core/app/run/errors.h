@@ -46,8 +46,8 @@ struct LevelSnapshots {
   std::uint32_t checksum = 0;  ///< of the file
 };
 
-/// Collects the snapshots of a run and measures them all once the methods have ended, so that no method's
-/// time has the measuring in it.
+/// Collects the snapshots of a run. It measures them once all methods have ended, because measuring must not
+/// count as time of a method.
 class ErrorTable {
  public:
   ErrorTable(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
@@ -57,20 +57,21 @@ class ErrorTable {
         measures_(error_measures(declared_metrics(experiment.metrics))) {}
 
   /// Adds a level's snapshots: writes their file, evaluates their energies and returns their entry for
-  /// results.json. `before` is the cost that the level builds on; `spent` all that the method
-  /// has done before it.
+  /// results.json. `before` is the cost that the level builds on, `spent` the cost of everything that the
+  /// method has done before the level.
   nlohmann::ordered_json add(const std::string& method, const LevelResult& result,
                              const std::vector<Snapshot>& snapshots, const Cost& before, const Cost& spent);
 
-  /// Measures every snapshot against the finest state of its method, where that converged, and against the
-  /// reference, and writes errors.csv, without those whose file is damaged or gone; `fault` is told. Ends
-  /// early, without the rest, when `stop` says so.
+  /// Measures every snapshot against the finest state of its method, if that converged, and against the
+  /// reference, if there is one, and writes errors.csv. Leaves out snapshots whose file is damaged or
+  /// missing, and reports them to `fault`. Once `stop` returns true it measures no more and writes what it
+  /// has.
   void write(const Positions* reference, const std::function<bool()>& stop,
              const std::function<void(const std::string&)>& fault);
 
   bool empty() const { return levels_.empty(); }
   const std::vector<LevelSnapshots>& levels() const { return levels_; }
-  /// Takes in what an earlier table of the same run had collected; its files are there.
+  /// Restores what an earlier table of the same run had collected. The snapshots' files must still exist.
   void restore(std::vector<LevelSnapshots> levels) { levels_ = std::move(levels); }
 
  private:

@@ -12,6 +12,9 @@ namespace drape {
 
 namespace {
 
+/// Intervals between updates of the line: a terminal follows the run, a log stays short [s].
+constexpr double terminal_interval = 0.1, log_interval = 10;
+
 /// "gravity.acceleration", "pins.0.translate, contact.dhat", "pins.0.translate and 3 more".
 std::string first_two(const std::vector<std::string>& names) {
   if (names.size() > 2) return names[0] + " and " + std::to_string(names.size() - 1) + " more";
@@ -44,7 +47,8 @@ void Progress::iteration(const IterationRow& row, const Positions&) {
   const double now = level_clock_.seconds();
   to_go_.note(now, done_);
   if (verbosity_ == Verbosity::iterations) std::fprintf(stderr, "%s\n", details(row).c_str());
-  if (verbosity_ != Verbosity::progress || now - last_draw_ < (terminal_ ? 0.1 : 10)) return;
+  if (verbosity_ != Verbosity::progress || now - last_draw_ < (terminal_ ? terminal_interval : log_interval))
+    return;
   last_draw_ = now;
   draw(row);
 }

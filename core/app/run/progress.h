@@ -46,7 +46,7 @@ class Progress : public Observer {
   std::string changing_, method_;
   Stopwatch level_clock_;
   double last_draw_ = 0;
-  int increment_ = 0;                              // that the residuals belong to
+  int increment_ = 0;                              // of the residuals
   double first_residual_ = 0, best_residual_ = 0;  // of the current increment; 0 before the first
   double done_ = 0;                                // fraction of the level, in [0, 1]
   TimeToGo to_go_;

@@ -51,8 +51,6 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
     : Recorder(folder, experiment, scene, std::ios::app) {
   cut_files(folder, state);
   results_ = Json::parse(state.results);
-  results_["metrics"] =
-      json_of(declared_metrics(experiment.metrics));  // not in checkpoints of earlier versions
   method_ = state.method;
   intersection_free_ = state.intersection_free;
   method_intersection_free_ = state.method_intersection_free;
@@ -105,10 +103,6 @@ void Recorder::log(Json entry) {
 
 void Recorder::save() const { folder_.write_text("results.json", json_text(results_, 1) + "\n"); }
 
-std::string Recorder::file_of(const std::string& method, int level, const char* extension) const {
-  return "levels/" + method + "_l" + std::to_string(level) + extension;
-}
-
 void Recorder::method_started(const std::string& method) {
   method_ = method;
   method_intersection_free_ = true;
@@ -133,15 +127,13 @@ void Recorder::level_started(int level) {
 Recorder::Json Recorder::intersections(int level, const Positions& x) {
   const auto& contacts = scene_.model(level).contacts();
   if (contacts.empty()) return nullptr;
+  constexpr std::size_t max_logged = 10;  // of each contact model
   std::size_t count = 0;
   for (const auto& contact : contacts) {
-    const std::vector<Intersection> touches = contact->intersections(x);
-    for (std::size_t k = 0; k < std::min<std::size_t>(touches.size(), 10); ++k)
-      log({{"event", "intersection"},
-           {"method", method_},
-           {"level", level},
-           {"pair", to_string(touches[k])}});
-    count += touches.size();
+    const std::vector<Intersection> found = contact->intersections(x);
+    for (std::size_t k = 0; k < std::min(found.size(), max_logged); ++k)
+      log({{"event", "intersection"}, {"method", method_}, {"level", level}, {"pair", to_string(found[k])}});
+    count += found.size();
   }
   if (count > 0) intersection_free_ = method_intersection_free_ = false;
   return count;
@@ -200,7 +192,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"force_residual", finite_or_null(r.force_residual)},
                 {"intersections", crossing},
                 {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
-                {"mesh", file_of(method_, r.level, ".ply")}};
+                {"mesh", level_file(method_, r.level, ".ply")}};
   return entry;
 }
 

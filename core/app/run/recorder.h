@@ -22,12 +22,13 @@ struct RecordedState {
 struct RecorderState {
   std::string results;  ///< contents of results.json
   std::string method;
-  bool intersection_free = true, method_intersection_free = true;
-  std::vector<RecordedState> states;  ///< all levels so far, in order
+  bool intersection_free = true;         ///< of all methods so far
+  bool method_intersection_free = true;  ///< of the current method
+  std::vector<RecordedState> states;     ///< all levels so far, in order
   SnapshotRecorder::State snapshots;
   std::vector<LevelSnapshots> measured;
-  Cost spent, last;
-  double overhead = 0;
+  Cost spent, last;     ///< of the method's levels before this one; of this level so far
+  double overhead = 0;  ///< time that recording took between the levels of the method [s]
   std::uint64_t steps_bytes = 0, log_bytes = 0;
 };
 
@@ -60,7 +61,8 @@ class Recorder : public Observer {
   void method_finished(const std::vector<LevelResult>& results,
                        const std::optional<MethodFailure>& failure = std::nullopt);
   /// Finds the reference, if necessary by a further solve under `observer`, and measures the errors of every
-  /// method's finest state and of every snapshot. False if it was stopped.
+  /// method's finest state and of every snapshot. After a `cancelled` run it solves nothing further. Returns
+  /// false if the observer requested a stop meanwhile.
   bool measure_errors(Observer& observer, bool cancelled);
   void run_finished(bool complete);
 
@@ -87,7 +89,6 @@ class Recorder : public Observer {
   /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][method_]; }
-  std::string file_of(const std::string& method, int level, const char* extension) const;
   Json state_entry(const LevelResult& result);
   /// Counts intersecting pairs and logs the first ones; null without contact.
   Json intersections(int level, const Positions& x);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 
 #include "core/kernel/mesh/file.h"
@@ -18,7 +19,7 @@ std::uint64_t size_of(const std::filesystem::path& file) {
   return bytes;
 }
 
-/// Truncates a file to so many bytes.
+/// Truncates a file to this many bytes.
 void cut(const std::filesystem::path& file, std::uint64_t bytes) {
   std::error_code error;
   std::filesystem::resize_file(file, bytes, error);
@@ -33,6 +34,10 @@ std::string json_text(const nlohmann::ordered_json& json, int indent) {
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+std::string level_file(const std::string& method, int level, const char* extension) {
+  return "levels/" + method + "_l" + std::to_string(level) + extension;
 }
 
 double wall_clock() {
@@ -106,7 +111,7 @@ Recorder::Names Recorder::write_state(const RecordedState& state) const {
   Names written;
   const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
   for (const char* extension : {".ply", ".vtp"}) {
-    const std::string name = file_of(state.method, state.level, extension);
+    const std::string name = level_file(state.method, state.level, extension);
     const bool ply = extension == std::string_view(".ply");
     if (write_where_other(folder_.file(name), ply ? ply_bytes(mesh) : vtp_text(mesh)))
       written.push_back(name);
@@ -119,7 +124,8 @@ Recorder::Names Recorder::write_collection(const std::string& method) const {
   std::vector<std::pair<double, std::string>> meshes;
   for (const RecordedState& state : states_)
     if (state.method == method)
-      meshes.emplace_back(state.level, file_of(method, state.level, ".vtp").substr(7));
+      meshes.emplace_back(state.level,  // the collection is in levels/ too
+                          level_file(method, state.level, ".vtp").substr(std::strlen("levels/")));
   const std::string name = "levels/" + method + ".pvd";
   return write_where_other(folder_.file(name), pvd_text(meshes)) ? Names{name} : Names();
 }

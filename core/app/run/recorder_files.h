@@ -21,12 +21,15 @@ nlohmann::ordered_json finite_or_null(double value);
 /// Status of a method that threw, and of its current level; no solver returns it.
 inline constexpr const char* failed = "failed";
 
+/// Name of a level's file in the run's folder, as in "levels/pcs_l2.ply".
+std::string level_file(const std::string& method, int level, const char* extension);
+
 /// Seconds since 1970.
 double wall_clock();
 
 /// Sizes of steps.csv and log.jsonl [bytes].
 std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
-/// Truncates them to the sizes of the state.
+/// Truncates steps.csv and log.jsonl to the sizes of the state.
 void cut_files(const RunFolder& folder, const RecorderState& state);
 
 /// Writes the rest shapes that differ from their files, and returns their names.

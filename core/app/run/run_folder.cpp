@@ -30,7 +30,7 @@ bool is_of_a_run(const RunFolder& folder) {
   return fs::exists(folder.file("results.json")) || fs::exists(folder.file(lock_name));
 }
 
-/// A non-empty file or folder with one of a run's names; "" without one.
+/// A file or non-empty folder with one of a run's names; "" without one.
 fs::path left_there(const RunFolder& folder) {
   for (const char* own : own_names) {
     const fs::path path = folder.file(own);

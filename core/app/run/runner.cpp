@@ -41,7 +41,7 @@ class RunObserver : public Observer {
     progress_.method_started(name);
     if (view_) view_->method_started(name);
   }
-  /// Shows the results of the method before the run was interrupted.
+  /// Shows the results that the method had when the run was interrupted.
   void catch_up(const MethodState& state) {
     for (const LevelResult& result : state.finished)
       if (view_) view_->level_started(result.level), view_->level_finished(result);
@@ -130,11 +130,9 @@ ConfigNode saved_config(const Experiment& experiment) {
   return config;
 }
 
-/// The message of the exception in flight. A WriteError concerns the whole run and is rethrown.
-std::string cause_in_method() {
+/// The message of the exception in flight.
+std::string message_in_flight() {
   try {
-    throw;
-  } catch (const WriteError&) {
     throw;
   } catch (const std::exception& error) {
     return *error.what() ? reason_of(error) : "an exception without a message";
@@ -151,10 +149,8 @@ bool with_folder(const RunFolder& folder, const RunOptions& options, const Actio
     return action();
   } catch (const RunAborted&) {
     throw;
-  } catch (const std::exception& error) {
-    cause = reason_of(error);
   } catch (...) {
-    cause = "an exception that is no std::exception";
+    cause = message_in_flight();
   }
   record_abort(folder, cause);
   if (options.view) options.view->run_finished("the run was aborted: " + cause);
@@ -215,8 +211,10 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     std::optional<MethodFailure> failure;
     try {
       results = resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
+    } catch (const WriteError&) {
+      throw;  // concerns the whole run
     } catch (...) {
-      failure = {std::min(observer.level(), problem.finest()), cause_in_method()};
+      failure = {std::min(observer.level(), problem.finest()), message_in_flight()};
       results = observer.finished();
       progress.method_failed(failure->level, failure->cause);
     }

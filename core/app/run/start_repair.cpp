@@ -14,7 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double tiny_gap = 1e-6;  // [m]
+/// A start with a smaller gap is moved too, although nothing intersects [m].
+constexpr double tiny_gap = 1e-6;
 /// Trial distances, relative to the cloth's diagonal, in a geometric series.
 constexpr double shortest_part = 1e-3, growth = 1.5;
 /// Bisections of the first free translation, to move no further than necessary.
@@ -22,9 +23,9 @@ constexpr int halvings = 5;
 
 /// Intersections and gaps of the translated initial state.
 struct Clearance {
-  std::vector<Intersection> touches;  ///< of the first level with any; the rest is then unknown
-  int level = 0;                      ///< that level
-  int contacts = 0;                   ///< pairs within d̂, on all levels
+  std::vector<Intersection> intersections;  ///< of the first level with any; the rest is then unknown
+  int level = 0;                            ///< that level
+  int contacts = 0;                         ///< pairs within d̂, on all levels
   double smallest_gap = std::numeric_limits<double>::infinity();
 };
 
@@ -52,8 +53,7 @@ class StartProbe {
       : scene_(scene), components_(scene.hierarchy.levels[0].topology.components()) {
     for (const auto& contact : scene.model(0).contacts())
       for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
-    const Positions& x = scene.starts[0];
-    diagonal_ = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+    diagonal_ = bounding_box_diagonal(scene.starts[0]);
   }
 
   double diagonal() const { return diagonal_; }
@@ -64,8 +64,8 @@ class StartProbe {
       const Positions x = scene_.starts[l].rowwise() + translation.transpose();
       clearance.level = static_cast<int>(l);
       for (const auto& contact : scene_.model(static_cast<int>(l)).contacts()) {
-        clearance.touches = contact->intersections(x);
-        if (!clearance.touches.empty()) return clearance;
+        clearance.intersections = contact->intersections(x);
+        if (!clearance.intersections.empty()) return clearance;
         const auto near = contact->build_candidates(x, x)->build_collisions(x);
         clearance.contacts += near->contact_count();
         clearance.smallest_gap = std::min(clearance.smallest_gap, near->smallest_gap());
@@ -94,7 +94,7 @@ class StartProbe {
 class TranslationSearch {
  public:
   TranslationSearch(const StartProbe& probe, const Clearance& start) : probe_(probe), persistent_(start) {
-    if (start.touches.empty()) best_contacts_ = start.contacts, found_ = true;
+    if (start.intersections.empty()) best_contacts_ = start.contacts, found_ = true;
   }
 
   void run() {
@@ -116,13 +116,13 @@ class TranslationSearch {
   bool found() const { return found_; }
   const Vector3d& translation() const { return translation_; }
   /// The pairs that intersected initially and after every trial.
-  const std::vector<Intersection>& persistent() const { return persistent_.touches; }
+  const std::vector<Intersection>& persistent() const { return persistent_.intersections; }
 
  private:
   /// Accepts a translation without intersections if it has fewer contacts than any before.
   bool is_better(const Vector3d& translation, bool or_as_good = false) {
     const Clearance clearance = probe_.at(translation);
-    if (!clearance.touches.empty()) {
+    if (!clearance.intersections.empty()) {
       intersect_persistent(clearance);
       return false;
     }
@@ -143,9 +143,9 @@ class TranslationSearch {
 
   void intersect_persistent(const Clearance& other) {
     if (other.level != persistent_.level) return;  // the triangles of another level are not comparable
-    std::erase_if(persistent_.touches, [&](const Intersection& touch) {
-      return std::none_of(other.touches.begin(), other.touches.end(),
-                          [&](const Intersection& now) { return same_pair(touch, now); });
+    std::erase_if(persistent_.intersections, [&](const Intersection& pair) {
+      return std::none_of(other.intersections.begin(), other.intersections.end(),
+                          [&](const Intersection& now) { return same_pair(pair, now); });
     });
   }
 
@@ -157,18 +157,19 @@ class TranslationSearch {
 };
 
 std::string pinned_text(const Clearance& start) {
-  return "the start of level " + std::to_string(start.level) + " touches: " + to_string(start.touches[0]) +
+  return "the start of level " + std::to_string(start.level) +
+         " touches: " + to_string(start.intersections[0]) +
          "; a cloth with pins is not moved: move the pins or the obstacle";
 }
 
 std::string hopeless_text(const Clearance& start, const TranslationSearch& search, double diagonal) {
-  const std::string ways = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
+  const std::string attempt = "moving the start by up to " + three_digits(diagonal) + " m up or to a side";
   const std::string level = " on level " + std::to_string(start.level);
   if (!search.persistent().empty())
-    return ways + " does not part " + to_string(search.persistent()[0]) + level +
+    return attempt + " does not part " + to_string(search.persistent()[0]) + level +
            "; change the start's shape or the obstacle";
-  return ways + " finds no position without intersections; at the start these intersect: " +
-         to_string(start.touches[0]) + level;
+  return attempt + " finds no position without intersections; at the start these intersect: " +
+         to_string(start.intersections[0]) + level;
 }
 
 void move(Experiment& experiment, const Vector3d& translation) {
@@ -185,10 +186,10 @@ void move(Experiment& experiment, const Vector3d& translation) {
 Vector3d repair_start(Experiment& experiment, const Scene& scene, ConfigErrors& errors) {
   const StartProbe probe(scene);
   const Clearance start = probe.at(Vector3d::Zero());
-  const bool touches = !start.touches.empty();
-  if (!touches && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
+  const bool intersects = !start.intersections.empty();
+  if (!intersects && !(start.smallest_gap < tiny_gap)) return Vector3d::Zero();
   if (!experiment.parameters.pins.empty()) {
-    if (touches) errors.push_back({experiment.location_of("start"), pinned_text(start)});
+    if (intersects) errors.push_back({experiment.location_of("start"), pinned_text(start)});
     return Vector3d::Zero();
   }
   TranslationSearch search(probe, start);

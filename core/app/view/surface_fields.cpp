@@ -118,8 +118,7 @@ Eigen::VectorXd contact_gap(const Level& level, const Positions& x,
 }
 
 double shown_gap(const Level& level) {
-  const Positions& rest = level.rest.vertices;
-  return shown_part_of_diagonal * (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  return shown_part_of_diagonal * bounding_box_diagonal(level.rest.vertices);
 }
 
 std::pair<double, double> field_range(const FieldKind& kind,

@@ -11,15 +11,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 1024, max_iterations = 256;
+constexpr int grain = 1024;  // pairs per task
+constexpr int max_iterations = 256;
 constexpr double tolerance = 0.02;  // fraction of the initial gap that may remain unused
 
 /// A pair and its linear motion, relative to vertex 0 and without the mean displacement: both leave distances
 /// unchanged and reduce round-off.
 struct Motion {
   PairKind kind;
-  double offset, rounding;
-  PairPositions x, p;
+  double offset;       // of the pair [m]
+  double rounding;     // bound on the round-off of a distance, with a wide margin [m]
+  PairPositions x, p;  // initial positions and displacements [m]
 
   Motion(const ContactPair& pair, const Positions& x0, const Positions& x1, const Positions& obstacles)
       : kind(pair.kind), offset(pair.offset), x(positions_of(pair, x0, obstacles)) {
@@ -40,7 +42,7 @@ struct Motion {
     return (distance - offset - rounding) * (1 - min_gap_fraction) > speed();
   }
 
-  /// An upper bound of the distance's rate.
+  /// An upper bound of the rate at which the distance shrinks [m per whole motion].
   double speed() const {
     double a = 0, b = 0;
     for (int k = 0; k < end(); ++k) {

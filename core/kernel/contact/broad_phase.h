@@ -27,11 +27,12 @@ class BroadPhase {
   /// there are more than `limit` pairs.
   virtual bool overlaps(long limit, AdjacencyList& pairs) const = 0;
 
-  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Throws std::runtime_error if
-  /// `other` is of another kind.
+  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Returns false, without rows,
+  /// if there are more than `limit` pairs. Throws std::runtime_error if `other` is of another kind.
   virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
 };
 
+/// An empty broad phase of this kind.
 std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind);
 
 }  // namespace drape

@@ -22,6 +22,7 @@ bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
   const int first_end = first_primitive_size(pair.kind);
   for (int k = 0; k < 4; ++k)
     largest[k >= first_end] = std::max(largest[k >= first_end], displacement.col(k).squaredNorm());
+  // The factor covers round-off.
   const double reach = (motion.dhat + std::sqrt(largest[0]) + std::sqrt(largest[1])) * (1 + 1e-12);
   if (box_distance(pair.kind, at) > reach) return false;
   return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
@@ -155,6 +156,7 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
       if (add(vertex_triangle(own, v, obstacle, t), 0)) list.vertex_triangles.push_back({v, t});
     });
     represented_vertices(obstacle, t, own, s, [&](int v) {
+      // The side of an equilateral triangle of the same area.
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
       add(vertex_triangle(obstacle, v, own, s),
           0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *

@@ -2,13 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <limits>
 
 namespace drape {
 namespace {
 
 using Eigen::Vector3d, Eigen::Vector4d;
 
-// Squared sine below which two directions count as parallel: parameters along both are then round-off.
+/// Squared sine below which two directions count as parallel: parameters along both are then round-off.
 constexpr double parallel_squared_sine = 1e-22;
 
 /// The parameter in [0, 1] of the point nearest to p on the segment from the origin to u.

@@ -65,7 +65,7 @@ struct Unmollified {
         rest -= p(i, j) * q.col(i);
       }
       p(j + 1, j) = rest.norm();
-      if (p(j + 1, j) > 1e-10 * whole)
+      if (p(j + 1, j) > 1e-10 * whole)  // otherwise the rest is round-off
         q.col(j + 1) = rest / p(j + 1, j);
       else
         p(j + 1, j) = 0;

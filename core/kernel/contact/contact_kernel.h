@@ -28,7 +28,9 @@ struct Contact {
   Eigen::Vector3d second_edge() const { return difference.col(2) - difference.col(1); }
 };
 
+/// Whether the pair's gap at x is below d̂ [m].
 bool is_within_dhat(const ContactPair& pair, const PairPositions& x, double dhat);
+/// The pair's contact at x for this d̂ [m]. The primitives must not touch.
 Contact contact_at(const ContactPair& pair, const PairPositions& x, double dhat);
 
 /// The gradient of a contact's energy over κ; column k is vertex k's [m²].

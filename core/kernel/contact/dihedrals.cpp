@@ -7,7 +7,8 @@
 namespace drape {
 namespace {
 
-constexpr double flat_angle = 1e-6;  // [rad]
+/// Smaller angles are round-off of the vertices [rad].
+constexpr double flat_angle = 1e-6;
 
 }  // namespace
 
@@ -53,7 +54,7 @@ double Dihedrals::sagitta(double angle, double curvature, double length) {
 
 OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihedrals& dihedrals,
                                               double dhat) {
-  constexpr double full = 0.25, none = 1;  // curvatures in 1/d̂ with coefficient 1, and with 0
+  constexpr double full = 0.25, none = 1;  // largest curvature with coefficient 1, smallest with 0 [1/d̂]
   const Eigen::Index n = dihedrals.vertex_angle.size(), count = surface.edges.rows();
   OperatorCoefficients c;
   c.edge.setZero(count);

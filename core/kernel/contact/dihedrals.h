@@ -8,18 +8,20 @@ namespace drape {
 
 /// Dihedral angles and curvatures of a surface at its edges and vertices.
 struct Dihedrals {
-  Eigen::VectorXd
-      edge_angle;  ///< between its triangles' normals; 0 if flat up to round-off, π on the boundary [rad]
+  /// Between the normals of each edge's triangles; 0 if flat up to round-off, π on the boundary [rad].
+  Eigen::VectorXd edge_angle;
   Eigen::VectorXd edge_curvature;  ///< angle over the triangles' mean height; 0 on the boundary [1/m]
   Eigen::VectorXd vertex_angle, vertex_curvature;  ///< the largest of the vertex's edges
   std::vector<char> edge_on_boundary, vertex_on_boundary;
 
+  /// Of a surface with its vertices at `vertices` (n×3) [m].
   static Dihedrals of(const Surface& surface, const Positions& vertices);
 
   /// How far the surface protrudes through a chord of this length laid across the edge [m].
   double edge_sagitta(int e, double length) const {
     return sagitta(edge_angle[e], edge_curvature[e], length);
   }
+  /// The same for a chord across the vertex [m].
   double vertex_sagitta(int v, double length) const {
     return sagitta(vertex_angle[v], vertex_curvature[v], length);
   }

@@ -15,7 +15,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Vector = Eigen::Vector3d;
 
-constexpr int grain = 256;
+constexpr int grain = 256;  // triangles per task
 
 /// The corners of a triangle, those that it shares with another one first.
 using Corners = std::array<Vector, 3>;

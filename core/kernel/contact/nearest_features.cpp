@@ -12,6 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
+/// Sums of coefficients below this are round-off of terms that cancel.
 constexpr double zero_coefficient = 1e-12;
 
 /// The parameter in [0, 1] of the segment's point nearest to p.

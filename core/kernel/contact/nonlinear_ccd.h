@@ -25,7 +25,8 @@ struct SeparatingPlane {
 template <class Widest, class Separation>
 double nonlinear_ccd(const Widest& widest, const Separation& separation, double min_gap,
                      double acceleration_bound, int max_iterations) {
-  constexpr double tolerance = 0.02, min_step = 1e-12;
+  constexpr double tolerance = 0.02;  // a separation this little above min_gap counts as min_gap
+  constexpr double min_step = 1e-12;  // of t; no progress beyond round-off
   double t = 0, next_step = 1;
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const SeparatingPlane plane = widest(t);

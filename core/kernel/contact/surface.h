@@ -14,10 +14,11 @@ struct Surface {
   Triangles triangle_edges;  ///< column k: the edge opposite vertex k
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges;
   std::vector<char> representative;  ///< bits per triangle: k for vertex k, 3 + k for the edge opposite it
-  Eigen::VectorXd vertex_area, edge_area,
-      triangle_area;                    ///< a third of the adjacent areas; its own, at rest [m²]
-  Eigen::VectorXd edge_length_squared;  ///< at rest [m²]
+  Eigen::VectorXd vertex_area, edge_area;  ///< a third of the adjacent rest areas [m²]
+  Eigen::VectorXd triangle_area;           ///< at rest [m²]
+  Eigen::VectorXd edge_length_squared;     ///< at rest [m²]
 
+  /// Of a mesh that has passed check_mesh, and its topology.
   static Surface of(const TriangleMesh& rest, const Topology& topology);
   /// Appends another surface. Its vertices, edges and triangles follow this one's.
   void append(const Surface& other);
@@ -31,6 +32,7 @@ struct Surface {
 struct SweptBoxes {
   std::vector<Box> vertices, triangles;
 
+  /// Bounds the motion of `surface` from x0 to x1 (n×3) [m].
   void update(const Surface& surface, const Positions& x0, const Positions& x1, double margin);
   Box edge(const Surface& surface, int e) const {
     Box box = vertices[surface.edges(e, 0)];

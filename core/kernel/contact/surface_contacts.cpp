@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
-constexpr int grain = 1024;
+constexpr int grain = 1024;  // features or vertices per task
 
 Matrix3d projected(const Matrix3d& h, Projection projection) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(h);

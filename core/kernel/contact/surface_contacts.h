@@ -3,8 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/kernel/contact/barrier_parameters.h"
 #include "core/kernel/contact/nearest_features.h"
-#include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/model/contact_model.h"
 
 namespace drape {
 
@@ -20,7 +21,8 @@ struct SurfaceContacts {
   std::vector<SurfaceContact> contacts;
   std::vector<NearestFeature> features;
 
-  /// `candidates` must be contiguous for each vertex and ascending by triangle.
+  /// Those of the cloth at x (n×3) [m]. `candidates` must be contiguous for each vertex and ascending by
+  /// triangle; `friction` is μ where an obstacle has none of its own.
   static SurfaceContacts of(const Positions& x, const ObstacleSurface& obstacles,
                             const OperatorCoefficients& coefficients,
                             const std::vector<VertexTriangleCandidate>& candidates,

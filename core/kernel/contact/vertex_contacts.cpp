@@ -13,7 +13,7 @@ namespace drape {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
-constexpr int grain = 1024;
+constexpr int grain = 1024;  // contacts per task
 
 class VertexCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:

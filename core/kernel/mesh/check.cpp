@@ -79,7 +79,6 @@ bool check_indices(const TriangleMesh& mesh, Faults& faults) {
 }
 
 void check_shapes(const TriangleMesh& mesh, Faults& faults) {
-  constexpr double smallest_height = 1e-12;  // relative; far above round-off, far below any usable triangle
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (repeats_vertex(mesh.triangles, t)) {
       faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex");
@@ -193,7 +192,7 @@ std::vector<std::string> check_coordinates(const Positions& x) {
                        " m; at most " + three_digits(largest_coordinate) + " m can be computed with");
   }
   if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
-  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box_diagonal(x);
   const double distance = x.cwiseAbs().maxCoeff();
   const double rounding = distance * std::numeric_limits<double>::epsilon();
   if (diagonal < smallest_diagonal)

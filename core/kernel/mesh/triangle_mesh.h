@@ -7,6 +7,11 @@ namespace drape {
 /// n×3 vertex positions, one row a vertex [m]. Row-major so that one vertex is contiguous.
 using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// Diagonal of the positions' bounding box, n ≥ 1 [m].
+inline double bounding_box_diagonal(const Positions& x) {
+  return (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
+}
+
 /// m×3 vertex indices, one row a triangle, counter-clockwise.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 

@@ -56,7 +56,7 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
     store_tangential_displacements(from);
     update_lagging(from);
   }
-  // Until the end: the friction below refers to them.
+  // advect() needs the old models, and candidates and collisions may refer to them until they are cleared.
   const BoundContacts before = std::exchange(models_, models);
   Positions obstacle_motion = Positions::Zero(x.rows(), 3);
   for (std::size_t k = 0; k < models_.size(); ++k)

@@ -12,10 +12,10 @@ namespace drape {
 /// The state of a level's contacts at the beginning of a step, for checkpoints.
 struct ContactMemory {
   Positions reference;  ///< n×3, from where tangential displacements are measured [m]
-  std::vector<TangentialDisplacements>
-      tangential_displacements;                ///< of each model's contacts, at `reference`
+  /// Of each model's contacts, at `reference`.
+  std::vector<TangentialDisplacements> tangential_displacements;
   Positions candidates_begin, candidates_end;  ///< the motion whose candidates gave the step's collisions [m]
-  double seconds_building = 0;
+  double seconds_building = 0;                 ///< total time of building collisions [s]
 };
 
 /// Candidates, collisions and lagged friction of one level during a minimisation. Does nothing on a level
@@ -56,7 +56,7 @@ class ActiveContacts {
   /// All energies at x that contribute to the Hessian.
   std::vector<const BoundEnergy*> energies(const Positions& x);
 
-  double seconds_building() const { return seconds_building_; }  ///< total time of building collisions
+  double seconds_building() const { return seconds_building_; }  ///< total time of building collisions [s]
 
   int count() const;            ///< contacts at the state last evaluated
   double smallest_gap() const;  ///< there [m]; +∞ without a contact
@@ -76,10 +76,11 @@ class ActiveContacts {
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
   std::shared_ptr<const LinearMotion> candidates_motion_, collisions_motion_;  // that each was built for
-  std::vector<std::unique_ptr<const LaggedFriction>>
-      friction_;  // of each model, or null; empty before a step
+  // Of each model, or null without friction; empty before a step.
+  std::vector<std::unique_ptr<const LaggedFriction>> friction_;
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
-  Positions state_, reference_;
+  Positions state_;                                                // that the collisions were built at
+  Positions reference_;  // that tangential displacements are measured from
   bool friction_enabled_ = true;
   bool advected_ = false;
   double seconds_building_ = 0;

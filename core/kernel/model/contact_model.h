@@ -66,11 +66,11 @@ class BoundContact {
 class KinematicObstacles {
  public:
   virtual ~KinematicObstacles() = default;
-  /// The largest collision-free step of the obstacles from their placement in `before` to that in this, with
-  /// the cloth fixed at x. `before` must be of the same contact model and level. Obstacle parameters are
-  /// interpolated linearly, so obstacles rotate along arcs. Obstacles whose parameters are interpolated by
-  /// the returned fraction, or have not changed, get a fraction of 1. Throws std::runtime_error naming an
-  /// obstacle whose topology changed.
+  /// The largest collision-free step of the obstacles from their placement in `before` to their placement
+  /// here, with the cloth fixed at x. `before` must be of the same contact model and level. Obstacle
+  /// parameters are interpolated linearly, so obstacles rotate along arcs. Returns 1 for obstacles that have
+  /// not changed, and for obstacles whose parameters a caller has interpolated by a fraction that an earlier
+  /// call returned. Throws std::runtime_error naming an obstacle whose topology changed.
   virtual StepLimit max_step(const BoundContact& before, const Positions& x) const = 0;
   /// Advects the rows of `reference` (n×3) [m]: each vertex in frictional contact with obstacles at x is
   /// displaced by their motion since `before`.

@@ -1,7 +1,6 @@
 #include "core/kernel/model/friction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/kernel/linear_algebra/parallel.h"
@@ -12,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 1024;
+constexpr int grain = 1024;  // contacts per task
 
 /// Σ c_k x_k over the cloth's vertices: their contribution to the relative position of the two sides.
 Vector3d position(const FrictionContact& contact, const Positions& x) {

@@ -83,9 +83,10 @@ class LaggedFriction final : public BoundEnergy {
   Eigen::Matrix3d stiffness(int i, const Eigen::Vector3d& u) const;
 
   std::vector<FrictionContact> contacts_;
-  std::vector<int> group_ends_;
-  std::vector<Eigen::Vector3d> origin_;
-  double epsilon_;
+  std::vector<int> group_ends_;  // indices of contacts_
+  std::vector<Eigen::Vector3d>
+      origin_;      // of each contact: Σ c_k reference_k less its stored displacement [m]
+  double epsilon_;  // ε, the friction smoothing distance [m]
 };
 
 /// The friction of these collisions with the normal forces and tangents of their state, as LaggedFriction's

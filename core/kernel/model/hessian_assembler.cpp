@@ -98,7 +98,6 @@ void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& b
   std::vector<std::pair<int, int>>& extra = extra_.blocks;
   std::vector<int>& idle = extra_.idle;
   const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
-  std::vector<std::pair<int, int>> retained;
   bool grows = false;
   std::size_t k = 0;
   for (const auto& pair : needed) {
@@ -111,11 +110,13 @@ void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& b
   while (k < extra.size()) ++idle[k++];
   if (!grows) return;
 
-  for (std::size_t e = 0; e < extra.size(); ++e)
-    if (idle[e] <= max_idle) retained.push_back(extra[e]);
+  std::vector<std::pair<int, int>> retained;
   std::vector<int> retained_idle;
   for (std::size_t e = 0; e < extra.size(); ++e)
-    if (idle[e] <= max_idle) retained_idle.push_back(idle[e]);
+    if (idle[e] <= max_idle) {
+      retained.push_back(extra[e]);
+      retained_idle.push_back(idle[e]);
+    }
   if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
   const std::vector<std::pair<int, int>> padded = padded_pairs(needed, neighbours_, *base_);
   std::vector<std::pair<int, int>> all;

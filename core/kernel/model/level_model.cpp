@@ -11,7 +11,7 @@ namespace drape {
 
 namespace {
 
-constexpr int rows_at_once = 8192;
+constexpr int rows_at_once = 8192;  // per task
 
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
   double sum = 0;

@@ -61,7 +61,8 @@ class LevelModel {
   /// Adds `factor` times that to the matrix.
   void add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
                    double factor) const;
-  /// The common Energy::midpoint_factor of all energies of a role; none where they differ or have none.
+  /// The common Energy::midpoint_factor of all energies of a role, 1 for a role without energies. None if the
+  /// factors differ or one is missing.
   std::optional<double> midpoint_factor(EnergyRole role) const;
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
@@ -114,7 +115,8 @@ class LevelModel {
   double external_force_norm(const Positions& x) const;
   double barrier(const Positions& x) const;  // of the contacts [J]
   void add_up_linear_energies();
-  /// The linear energies' sum; `g`, if given, is overwritten with their gradient.
+  /// The value of the linear energies of these roles [J]. Overwrites g, unless it is null, with their
+  /// gradient.
   double linear_value(const Positions& x, Positions* g, Roles roles) const;
 
   const Level* level_;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/kernel/model/energy.h"
-#include "core/kernel/model/level.h"
 
 namespace drape {
 
@@ -29,7 +28,7 @@ class LoadStepping {
   /// always solved to equilibrium.
   virtual bool equilibrates() const = 0;
 
-  /// Begins a level: returns to increment 0 if the level starts from the scene's start, and otherwise goes on
+  /// Begins a level. Returns to increment 0 if the level starts from the scene's start; otherwise continues
   /// from the load that the previous level reached.
   virtual void begin(int level, bool from_start) = 0;
 

@@ -30,7 +30,7 @@ struct MetricResult {
   std::vector<MetricField> fields;
 };
 
-/// Whether a metric measures one state or a pair.
+/// What a metric measures.
 enum class MetricScope {
   state,  ///< the state of one level
   pair    ///< a coarse state, prolonged to the fine level by its method, against a fine state

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "core/kernel/mesh/split_triangles.h"
+
 namespace drape {
 
 Refinement midpoint_refinement(const Level& coarse) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/kernel/mesh/split_triangles.h"
 #include "core/kernel/model/refiner.h"
 
 namespace drape {

@@ -17,7 +17,7 @@ class Objective {
  public:
   explicit Objective(std::shared_ptr<const LevelModel> model)
       : model_(std::move(model)), limits_(model_->limits()), contacts_(model_->contacts()) {}
-  /// Of a model that outlives the objective.
+  /// Refers to `model`, which must outlive the objective.
   explicit Objective(const LevelModel& model)
       : Objective(std::shared_ptr<const LevelModel>(std::shared_ptr<void>(), &model)) {}
   virtual ~Objective() = default;
@@ -48,10 +48,11 @@ class Objective {
   /// next call F may be evaluated at x0 and up to that step; with contact, nowhere else.
   StepLimit max_step(const Positions& x0, const Positions& x1);
 
-  /// Goes on with the model of the same level under another load. The cloth was at `from` when the load
+  /// Replaces the model by that of the same level under another load. The cloth was at `from` when the load
   /// changed, and is now at x.
   void set_model(std::shared_ptr<const LevelModel> model, const Positions& from, const Positions& x);
   /// Sets an additional energy that is not part of the model, such as a position penalty; null for none.
+  /// Refers to it until the next call.
   void set_penalty(const BoundEnergy* penalty) {
     if (penalty || penalty_) invalidate_pattern();
     penalty_ = penalty;

@@ -17,8 +17,8 @@ namespace drape {
 struct Problem {
   const Hierarchy& hierarchy;
   std::vector<std::shared_ptr<const LevelModel>> models;  ///< the plain model of every level at the start
-  std::vector<Positions>
-      starts;  ///< the scene's start on every level, with Dirichlet vertices at their targets
+  /// The scene's start on every level, with Dirichlet vertices at their targets (n×3) [m].
+  std::vector<Positions> starts;
   LoadStepping* load_stepping = nullptr;  ///< null without a schedule
 
   int finest() const { return static_cast<int>(models.size()) - 1; }
@@ -94,7 +94,6 @@ struct LevelResult {
 };
 
 struct NewtonState;
-struct MethodState;
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
 class Observer {

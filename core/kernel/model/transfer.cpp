@@ -26,7 +26,8 @@ void Transfer::apply(const Rows& rows, const Positions& x, Positions& y) {
   y.resize(n, 3);
   const double* from = x.data();
   double* to = y.data();
-  parallel_for(n, 2048, [&](int begin, int end) {
+  constexpr int rows_per_task = 2048;
+  parallel_for(n, rows_per_task, [&](int begin, int end) {
     for (int r = begin; r < end; ++r) {
       double sx = 0, sy = 0, sz = 0;
       for (int k = rows.start[r]; k < rows.start[r + 1]; ++k) {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "core/kernel/linear_algebra/prolongation_matrix.h"
 #include "core/kernel/mesh/triangle_mesh.h"
-#include "core/kernel/model/refiner.h"
 
 namespace drape {
 

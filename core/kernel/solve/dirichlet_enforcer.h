@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,12 +16,13 @@ namespace drape {
 /// reached the vertices are fixed and the penalty is dropped.
 class DirichletEnforcer {
  public:
-  /// Of a model that outlives it, or that set_model replaces.
+  /// Refers to `model` until set_model replaces it.
   explicit DirichletEnforcer(const LevelModel& model) : model_(&model) { fixed_ = model.fixed(); }
-  /// Goes on with the same level's model under another load; begin() takes over its targets.
+  /// Replaces the model by that of the same level under another load. Call begin() next, which finds the
+  /// targets that x has not reached.
   void set_model(const LevelModel& model) { model_ = &model; }
 
-  /// Everything that does not follow from the model.
+  /// Everything that does not follow from the model; units as of the members of the same names.
   struct State {
     std::vector<int> unsatisfied;
     double stiffness = 0, best = 0;
@@ -46,8 +48,8 @@ class DirichletEnforcer {
   /// Releases the unsatisfied vertices and adds the penalty; `blocked_by` names what stopped the filtered
   /// move, and may be empty.
   void begin_penalty(const std::string& blocked_by);
-  /// Doubles the penalty. Returns false, with the vertices fixed where they are, once doublings have long
-  /// stopped reducing the distance.
+  /// Doubles the penalty. Once doublings have long stopped reducing the distance, fixes the vertices where
+  /// they are instead and returns false: the targets are infeasible.
   bool increase_penalty(const Positions& x, const std::string& blocked_by);
 
   /// One flag a vertex: 1 where it is fixed now.

@@ -13,7 +13,7 @@ namespace drape {
 class EquilibriumCheck {
  public:
   struct State {
-    std::array<double, 3> decrements{};        ///< of the last iterations [m/s]
+    std::array<double, 3> decrements{};  ///< of the last three iterations; iteration k is at k mod 3 [m/s]
     std::array<double, 3> initial_centroid{};  ///< of the free vertices where the drift begins [m]
     IdleSteps::State idle;
   };
@@ -24,13 +24,13 @@ class EquilibriumCheck {
   EquilibriumCheck(Iterate& iterate, const NewtonParameters& parameters)
       : iterate_(iterate), p_(parameters) {}
 
-  /// Whether the tolerances are met, with friction lagged at the iterate.
+  /// Whether the tolerances are met. If they seem to be, lags friction at the iterate and checks them again.
   bool in_tolerance();
   /// Whether progress has stopped: many idle steps.
   bool is_idle() const { return idle_.many(); }
-  /// Whether all forces are within their round-off bounds, with friction lagged at the iterate. Counts idle
-  /// steps anew. Assembles the Hessian over the objective's last, so it is called only once progress has
-  /// stopped.
+  /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
+  /// the count of idle steps. Call it only once progress has stopped: it overwrites the objective's last
+  /// matrix.
   bool is_at_rounding_floor();
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }
@@ -41,9 +41,9 @@ class EquilibriumCheck {
   void note_decrement(double decrement) { decrements_[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
-  /// Counts idle steps anew, for another objective.
+  /// Restarts the count of idle steps, for another objective.
   void restart_idle_steps() { idle_.restart(); }
-  /// Lets the drift begin here.
+  /// Measures the drift from here on.
   void restart_drift() { initial_centroid_ = iterate_.free_centroid(); }
 
  private:

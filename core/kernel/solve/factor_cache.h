@@ -29,9 +29,9 @@ class FactorCache {
   /// Refers to the iterate. Its result counts the factorisations, their operations and seconds.
   FactorCache(Iterate& iterate, const NewtonParameters& parameters);
 
-  /// Factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the masses, without the rows and
-  /// columns of fixed vertices, if the present factor is stale. `step_length` is the last α. Returns false if
-  /// that fails; fault() then says why.
+  /// If the present factor is stale, factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the
+  /// masses, without the rows and columns of fixed vertices (one flag a vertex). `step_length` is the last α.
+  /// Returns false if that fails; fault() then says why.
   bool update(const std::vector<char>& fixed, double mass_shift, double step_length);
   /// Why the last factorisation failed; empty if it did not.
   const std::string& fault() const { return fault_; }
@@ -45,7 +45,8 @@ class FactorCache {
 
   /// Iterations since the Hessian was updated.
   int age() const { return age_; }
-  /// Ends an iteration. A shortened step along the direction of an old factor makes that stale.
+  /// Ends an iteration. A shortened step along the direction of a reused factor makes the factor
+  /// stale.
   void end_iteration(double step_length);
   /// Makes the next update factorise.
   void invalidate() { age_ = interval_; }
@@ -61,7 +62,7 @@ class FactorCache {
   const int interval_;
   HessianModification modification_;
   BlockCholesky cholesky_;
-  const BlockMatrix* factored_ = nullptr;  // the objective's or restored_
+  const BlockMatrix* factored_ = nullptr;  // the objective's matrix, or restored_
   BlockMatrix restored_;
   double shift_ = 0;
   int age_ = 0;

@@ -7,7 +7,7 @@ namespace drape {
 
 namespace {
 
-/// No shift is larger [1/s²].
+/// Larger shifts are not tried [1/s²].
 constexpr double max_shift = 1e30;
 
 }  // namespace
@@ -27,7 +27,7 @@ std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>&
 }
 
 double first_mass_shift(const NewtonParameters& parameters) {
-  // Positive for every step size, since multiplication increases it.
+  // A thousandth of 1/h² at the first h. Never 0, because callers increase it by a factor.
   return std::max(1e-3 / (parameters.step_size * parameters.step_size), 1e-30);
 }
 

@@ -10,11 +10,11 @@
 
 namespace drape {
 
-/// Where the first entry of the matrix is that is not finite, as "the block of vertices 3 and 7", without the
-/// rows and columns of fixed vertices (one flag a vertex). Empty if all entries are finite.
+/// Names the first block with an entry that is not finite, as in "the block of vertices 3 and 7". Skips the
+/// rows and columns of fixed vertices (one flag a vertex). Empty if all other entries are finite.
 std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed);
 
-/// The least multiple of the masses that is added to a matrix which is not positive definite [1/s²].
+/// The first multiple of the masses that is added to a matrix which is not positive definite [1/s²].
 double first_mass_shift(const NewtonParameters& parameters);
 
 /// Makes the Newton matrix positive definite: blends in the PSD projection of element Hessians (`psd_blend`),
@@ -33,7 +33,8 @@ class HessianModification {
 
   explicit HessianModification(const NewtonParameters& parameters);
 
-  /// The Hessian, with the element Hessians projected so [N/m].
+  /// Returns the Hessian [N/m], with its element Hessians projected as asked. It stays valid until the next
+  /// call.
   using Assemble = std::function<const BlockMatrix&(Projection)>;
   /// Factorises the matrix with `shift` [1/s²] times the masses added. Returns false if that is not positive
   /// definite.

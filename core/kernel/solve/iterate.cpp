@@ -12,10 +12,10 @@ constexpr double relative_noise = 1e-12;
 
 }  // namespace
 
-Iterate::Iterate(Objective& objective, LevelResult& result) : f_(objective), result_(result) {
-  const Positions& rest = model().level().rest.vertices;
-  rest_diagonal_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
-}
+Iterate::Iterate(Objective& objective, LevelResult& result)
+    : f_(objective),
+      result_(result),
+      rest_diagonal_(bounding_box_diagonal(objective.model().level().rest.vertices)) {}
 
 Eigen::RowVector3d Iterate::free_centroid() const {
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();

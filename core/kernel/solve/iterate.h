@@ -11,8 +11,8 @@ namespace drape {
 
 /// The point x of a minimisation: the fixed vertices, and the objective's energy and forces at x.
 ///
-/// A LevelResult has x, the force residual, counts and the seconds of each phase; the parts of the solver add
-/// to it there.
+/// x, the force residual, the counts and the seconds of each phase are in a LevelResult, to which the parts
+/// of the solver add.
 class Iterate {
  public:
   /// What does not follow from x.
@@ -51,11 +51,12 @@ class Iterate {
   /// Updates friction's lagged normal forces and tangents to x: equilibrium is a fixed point of the lagging.
   void update_friction();
 
-  /// Sets x only.
+  /// Sets x alone: energy and forces stay those of the old x until evaluate().
   void move_to(const Positions& x) { result_.x = x; }
   /// Exchanges x and its forces with those of another point with this energy [J].
   void swap(Positions& x, Positions& gradient, double energy);
-  /// Goes on with the model of the same level under another load; the cloth was at `from` when it changed.
+  /// Replaces the model by that of the same level under another load. The cloth was at `from` when the load
+  /// changed.
   void set_model(std::shared_ptr<const LevelModel> model, const Positions& from);
 
   /// The objective's matrix at x [N/m]; overwrites the one before.
@@ -65,7 +66,7 @@ class Iterate {
 
   const std::string& limited_by() const { return s_.limited_by; }
   void set_limited_by(const std::string& name) { s_.limited_by = name; }
-  /// The same as the end of a message; empty if nothing limited the motion.
+  /// limited_by() as the end of a message; empty if nothing limited the motion.
   std::string limit_text() const {
     return s_.limited_by.empty() ? "" : "; the step is limited by " + s_.limited_by;
   }
@@ -73,7 +74,7 @@ class Iterate {
   /// Differences of energies below this are round-off, with `inertia` added to F(x) [J]. The scale includes
   /// the load, because terms of the energy cancel while their round-off does not.
   double energy_noise(double inertia) const;
-  /// F(x) without friction, which is no energy of the state [J].
+  /// F(x) without friction, whose potential is no function of the state alone [J].
   double energy_without_friction() const { return energy_ - f_.contacts().friction(result_.x); }
 
  private:

@@ -9,7 +9,7 @@ namespace drape {
 /// decides.
 class LineSearch {
  public:
-  /// No step is shorter.
+  /// The shortest step that is tried, as a fraction of the direction.
   static constexpr double min_step_length = 1e-6;
 
   struct State {

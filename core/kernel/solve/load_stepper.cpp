@@ -70,7 +70,8 @@ void LoadStepper::advance(bool at_equilibrium) {
                               : 0;
 }
 
-/// Takes over the load that was reached; the cloth was at `from` when it changed.
+/// Gives the iterate and the enforcer the model of the load that was reached. The cloth was at `from` when
+/// the load changed.
 void LoadStepper::update_model(const Positions& from) {
   iterate_.set_model(load_stepping_->model(iterate_.result().level), from);
   dirichlet_.set_model(iterate_.model());

@@ -28,8 +28,8 @@ class LoadStepper {
   struct State {
     IncrementStart start;  ///< of the current increment
     IncrementResponse response;
-    int blocked_increments =
-        0;  ///< consecutive attempts at the current increment that applied almost nothing
+    /// Consecutive attempts at the current increment that applied almost nothing.
+    int blocked_increments = 0;
   };
   State state() const { return s_; }
   void restore(const State& state) { s_ = state; }

@@ -174,8 +174,8 @@ class Newton {
            iterate_.force_residual() < p_.early_refinement_ratio * run_.residual_on_next_level(iterate_.x());
   }
 
-  /// At the equilibrium of a proxy: continues with the plain energy, like a new start. False if there is
-  /// none.
+  /// At the equilibrium of a proxy, restarts with the plain energy. Returns false if there is
+  /// nothing to switch to, or if Dirichlet targets are infeasible.
   bool switch_to_plain() {
     if (dirichlet_.infeasible() || !f_.switch_to_plain()) return false;
     switched_to_plain_ = true;

@@ -6,6 +6,8 @@
 
 namespace drape {
 
+struct MethodState;
+
 /// Solves coarse to fine: minimises objective(l) on every level l.
 ///
 /// Level 0 starts from the scene's start. Level l + 1 starts from the state of level l, prolonged by

@@ -36,8 +36,8 @@ RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, con
 }
 
 void IdleSteps::note(double energy, double residual, double noise) {
-  const bool same = std::abs(energy - s_.energy) <= noise && residual > 0.5 * s_.residual;
-  if (same)
+  const bool idle = std::abs(energy - s_.energy) <= noise && residual > 0.5 * s_.residual;
+  if (idle)
     ++s_.steps;
   else
     s_ = {0, energy, residual};

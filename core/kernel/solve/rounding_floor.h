@@ -18,11 +18,14 @@ namespace drape {
 /// bound.
 Eigen::VectorXd rounding_bounds(const BlockMatrix& hessian, const Positions& x);
 
+/// Result of rounding_floor.
 struct RoundingFloor {
   double norm = 0;       ///< norm of the bounds of free vertices [N]
   bool reached = false;  ///< whether the force on every free vertex is within its bound
 };
 
+/// The rounding floor at x (n×3) [m], with the unprojected Hessian [N/m] and the gradient (n×3) [N] there.
+/// Skips fixed vertices (one flag a vertex).
 RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, const Positions& gradient,
                              const std::vector<char>& fixed);
 
@@ -41,7 +44,7 @@ class IdleSteps {
   /// same.
   void note(double energy, double residual, double noise);
   bool many() const { return s_.steps >= max_idle; }
-  /// Starts counting anew, for another objective.
+  /// Restarts the count, for another objective.
   void restart() { s_ = {}; }
 
  private:

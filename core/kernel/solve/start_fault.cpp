@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/kernel/mesh/extent.h"
 #include "core/kernel/model/stretch_limit.h"
 
 namespace drape {
@@ -19,7 +20,6 @@ std::optional<int> first_row_not_finite(const Positions& rows) {
 
 /// "triangle 4 (0, 1, 7)", the first without an area at x; empty if there is none.
 std::string degenerate_triangle(const Triangles& triangles, const Positions& x) {
-  constexpr double smallest_height = 1e-12;  // relative to the longest edge, as in check_mesh
   for (int t = 0; t < triangles.rows(); ++t) {
     const auto v = triangles.row(t);
     const Eigen::RowVector3d a = x.row(v[0]), b = x.row(v[1]), c = x.row(v[2]);

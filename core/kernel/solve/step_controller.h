@@ -32,10 +32,11 @@ class StepController {
   double mass_shift() const { return inverse_h2() + added_mass_; }
 
   void begin_step();
-  /// Damps the step more, after a line search without descent. Returns false once that has reached its end.
+  /// Damps the step more, after a line search without descent. Returns false once h is too small, or the
+  /// added mass too large, to try again.
   bool damp();
-  /// Ends an iteration. `updated`: its direction came from an updated Hessian; only such a direction tells
-  /// about h.
+  /// Ends an iteration. `updated` says that its direction came from an updated Hessian. The length of another
+  /// step may come from a stale factor, so it does not change h.
   void end_iteration(double step_length, bool updated);
   /// Ends a step: adapts h to the step lengths and to stalls.
   void end_step(double force_residual);

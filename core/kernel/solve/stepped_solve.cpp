@@ -14,8 +14,8 @@ SteppedSolve::SteppedSolve(const Solver& solver, Problem problem, MethodState fr
       clock_(from_.seconds),
       finished_(from_.finished),
       checkpoint_(from_) {
-  const bool anew = from_.finished.empty() && from_.level == 0 && !from_.under_way;
-  if (!anew && !dynamic_cast<const ResumableSolver*>(&solver))
+  const bool from_beginning = from_.finished.empty() && from_.level == 0 && !from_.under_way;
+  if (!from_beginning && !dynamic_cast<const ResumableSolver*>(&solver))
     throw std::runtime_error("the solver cannot go on from a state; start it at the beginning");
 }
 

@@ -15,8 +15,8 @@ namespace drape {
 /// A solve that its caller advances one Newton iteration at a time, to look at the state or to intervene in
 /// between. Its results have the same bits as Solver::solve.
 ///
-/// The solver runs in a thread of its own; it and the caller take turns, so that nothing here is read and
-/// written at the same time. One thread at a time may call the members.
+/// The solver runs in a thread of its own. It and the caller take turns, so no member is read and written at
+/// the same time. One thread at a time may call the members.
 class SteppedSolve : private Observer {
  public:
   /// The solver and what the problem refers to must outlive the object. `from` is a state to resume from.
@@ -27,8 +27,8 @@ class SteppedSolve : private Observer {
   SteppedSolve(const SteppedSolve&) = delete;
   SteppedSolve& operator=(const SteppedSolve&) = delete;
 
-  /// Goes on to the end of the next iteration. Returns false, without one, once the solve has ended; rethrows
-  /// what the solver throws.
+  /// Runs to the end of the next iteration. Returns false if the solve has ended instead. Rethrows what the
+  /// solver throws.
   bool advance();
 
   const IterationRow& row() const { return row_; }  ///< of the last iteration

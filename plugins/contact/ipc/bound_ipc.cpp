@@ -15,6 +15,15 @@ namespace {
 
 constexpr long unlimited = std::numeric_limits<long>::max();
 
+// Limits on the pairs of one step (README.md, "Long steps").
+constexpr long triangle_pairs_each = 48, primitive_pairs_each = 16;  // per cloth triangle
+constexpr long min_counted_triangles = 1000;                         // the cloth counts as having so many
+constexpr long dense_factor = 3;                                     // over the pairs at x0
+/// A step with more pairs is shortened to this fraction, again and again; after so many tries it is not
+/// searched at all.
+constexpr double shortening = 0.25;
+constexpr int max_tries = 20;
+
 const BoundIpc& as_ipc(const BoundContact& contact) {
   const auto* own = dynamic_cast<const BoundIpc*>(&contact);
   if (!own) throw std::runtime_error("obstacles of \"ipc\" cannot replace those of another contact model");
@@ -29,7 +38,7 @@ std::vector<std::array<int, 4>> find_rest_proximity_pairs(const Surface& cloth, 
   const auto tree = make_broad_phase(BroadPhaseKind::bvh);
   tree->update(boxes.triangles);
   AdjacencyList rows;
-  // Of triangles: some ten times those of a cloth of 200K vertices with d̂ equal to its edge length.
+  // Some ten times the pairs of triangles of a cloth of 200K vertices with d̂ equal to its edge length.
   constexpr long max_pairs = 50'000'000;
   if (!tree->overlaps(max_pairs, rows))
     throw std::runtime_error(
@@ -134,8 +143,6 @@ std::shared_ptr<const ObstacleTree> ObstacleTree::of(const std::shared_ptr<const
                                                      double dhat, BroadPhaseKind kind) {
   auto tree = std::make_shared<ObstacleTree>(
       ObstacleTree{obstacles,
-                   dhat,
-                   kind,
                    {},
                    OperatorCoefficients::of(obstacles->surface, obstacles->dihedrals, dhat),
                    make_broad_phase(kind)});
@@ -188,21 +195,21 @@ bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& li
 std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions& x0,
                                                                 const Positions& x1) const {
   const std::lock_guard lock(busy_);
-  const long size = std::max(cloth_.triangle_count(), 1000);
-  Counts limits{48 * size, 16 * size}, counts;
+  const long size = std::max<long>(cloth_.triangle_count(), min_counted_triangles);
+  Counts limits{triangle_pairs_each * size, primitive_pairs_each * size}, counts;
   BroadPhasePairs found;
   Positions end = x1;
   double fraction = 1;
   for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {
-    if (tries == 1) {  // dense scenes: allow three times the pairs at x0
+    if (tries == 1) {  // a dense scene has many pairs at x0 already
       search(x0, x0, {unlimited, unlimited}, found, counts);
       const Counts default_limits = limits;
-      limits = {std::max(limits.triangles, 3 * counts.triangles),
-                std::max(limits.primitives, 3 * counts.primitives)};
+      limits = {std::max(limits.triangles, dense_factor * counts.triangles),
+                std::max(limits.primitives, dense_factor * counts.primitives)};
       if (!(limits == default_limits)) continue;
     }
-    fraction = tries < 20 ? 0.25 * fraction : 0;
-    if (tries >= 20) limits = {unlimited, unlimited};
+    fraction = tries < max_tries ? shortening * fraction : 0;
+    if (tries >= max_tries) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
   ClassifiedPairs candidates{std::move(found.pairs), {}, std::move(found.vertex_triangles)};

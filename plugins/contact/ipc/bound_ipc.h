@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <mutex>
 
@@ -22,16 +23,16 @@ struct RestCloth {
   double dhat = 0;  ///< d̂ [m]
   bool self_contact = true;
   Surface surface;
-  std::vector<std::array<int, 4>> rest_proximity_pairs;  ///< self pairs within d̂ at rest, sorted
+  std::vector<std::array<int, 4>> rest_proximity_pairs;  ///< vertices of self pairs within d̂ at rest, sorted
 
+  /// Throws std::runtime_error if too many pairs are within d̂.
   static std::shared_ptr<const RestCloth> of(const Level& level, double dhat, bool self_contact);
 };
 
-/// The obstacles with their boxes, their BVH and what else depends on d̂.
+/// The obstacles with what depends on d̂ and the broad phase: their boxes, their tree and the coefficients of
+/// the improved maximum operator.
 struct ObstacleTree {
   std::shared_ptr<const Obstacles> obstacles;
-  double dhat;
-  BroadPhaseKind kind;
   SweptBoxes boxes;
   OperatorCoefficients coefficients;
   std::unique_ptr<BroadPhase> tree;

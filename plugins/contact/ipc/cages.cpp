@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 #include <array>
-#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/mesh/check.h"
@@ -120,10 +120,8 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
 }
 
 ValidatedMeshes make_cages(const ValidatedMesh& mesh, const CageParameters& p) {
-  const Positions& x = mesh.mesh.vertices;
-  const double diagonal = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
   ValidatedMeshes cages(p.count);
-  double size = diagonal;
+  double size = bounding_box_diagonal(mesh.mesh.vertices);
   for (int k = p.count - 1; k >= 0; --k, size *= p.growth) {
     const bool innermost = k == p.count - 1;
     const ValidatedMesh& inner = innermost ? mesh : *cages[k + 1];

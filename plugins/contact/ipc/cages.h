@@ -1,7 +1,6 @@
 #pragma once
 
-#include <memory>
-#include <vector>
+#include <string>
 
 #include "core/kernel/plugin/parameters.h"
 #include "plugins/contact/ipc/validated_mesh.h"
@@ -11,7 +10,9 @@ namespace drape::ipc {
 /// Nested closed surfaces around an obstacle, which replace it on coarse levels of the cloth.
 struct CageParameters {
   int count = 0;
-  double alpha = 0.05, offset = 0.01, growth = 2;
+  /// Of the innermost cage, over the diagonal of the mesh's bounding box.
+  double alpha = 0.05, offset = 0.01;
+  double growth = 2;  ///< factor on both from one cage to the next outer one
 
   static void declare(Declaration<CageParameters>& d);
   bool operator==(const CageParameters&) const = default;

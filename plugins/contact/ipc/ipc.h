@@ -41,9 +41,9 @@ class Ipc final : public ContactModel, public Rebindable {
   Parameters p_;
   std::vector<ObstacleMeshes> meshes_;                       // of each obstacle
   std::vector<std::shared_ptr<const Obstacles>> obstacles_;  // by level; finer levels use the last
-  // Of each of them, made when a level is first bound: a load may be bound to one level alone.
+  // Of each of obstacles_, made when a level is first bound, because a load may be bound to one level alone.
   mutable std::vector<std::shared_ptr<const ObstacleTree>> trees_;
-  mutable std::mutex busy_;
+  mutable std::mutex busy_;  // guards trees_
 };
 
 }  // namespace drape::ipc

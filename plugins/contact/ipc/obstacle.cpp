@@ -11,12 +11,10 @@
 namespace drape::ipc {
 namespace {
 
-/// The difference between the triangles of two files, empty if there is none.
+/// How the triangles of another file differ from those of the first; empty if they do not.
 std::string difference(const Triangles& first, const Triangles& other) {
-  const auto in_each = [](Eigen::Index a, Eigen::Index b, const std::string& what) {
-    return "has " + std::to_string(b) + what + " and not " + std::to_string(a);
-  };
-  if (first.rows() != other.rows()) return in_each(first.rows(), other.rows(), " triangles");
+  if (first.rows() != other.rows())
+    return "has " + std::to_string(other.rows()) + " triangles and not " + std::to_string(first.rows());
   for (Eigen::Index t = 0; t < first.rows(); ++t)
     if (first.row(t) != other.row(t)) return "has other vertices in triangle " + std::to_string(t);
   return "";
@@ -137,7 +135,8 @@ Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMes
   } else if (!p.animation.empty()) {
     const std::size_t last = meshes.frames.size() - 1;
     if (p.frame > static_cast<double>(last))
-      throw fault_of(body.name, "the last frame of its animation is " + std::to_string(last));
+      throw fault_of(body.name, "the last frame of its animation is " + std::to_string(last) +
+                                    "; choose a \"frame\" up to that");
     geometry.frame = p.frame;
   }
   if (level < p.cages.count) {

@@ -28,7 +28,7 @@ struct ObstacleParameters : CommonObstacleParameters {
   static void declare(Declaration<ObstacleParameters>& d);
 };
 
-/// The meshes that an obstacle is placed from, whatever its numbers under a load.
+/// The local meshes of an obstacle, which loads share while the parameters that choose them stay the same.
 struct ObstacleMeshes {
   ValidatedMeshes frames;  ///< one mesh, or an animation with the same triangles
   ValidatedMeshes cages;   ///< outermost first
@@ -43,9 +43,10 @@ struct ObstacleMeshes {
 /// The transform from an obstacle's local to world coordinates: scale, rotate, translate.
 struct Pose {
   double scale = 1;
-  Eigen::Vector3d rotate{0, 0, 0};  ///< about x, then y, then z [degree]
-  Eigen::Vector3d translate{0, 0, 0};
+  Eigen::Vector3d rotate{0, 0, 0};     ///< about x, then y, then z [degree]
+  Eigen::Vector3d translate{0, 0, 0};  ///< [m]
 
+  /// Scale and rotation.
   Eigen::Matrix3d linear() const;
   bool operator==(const Pose&) const = default;
 };
@@ -57,7 +58,8 @@ struct ObstacleGeometry {
   Eigen::Vector3d local_scale{1, 1, 1};  ///< factors on local coordinates
   Pose pose;
 
-  Positions local_positions(double frame) const;  ///< [m]
+  /// The scaled local positions (n×3) [m] at a frame, which the member `frame` does not influence.
+  Positions local_positions(double frame) const;
   bool operator==(const ObstacleGeometry& other) const {
     return frame == other.frame && local_scale == other.local_scale && pose == other.pose &&
            are_equal(frames, other.frames);

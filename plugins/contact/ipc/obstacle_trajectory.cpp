@@ -1,5 +1,6 @@
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -15,7 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degree = M_PI / 180, max_rotation = 0.1;
+constexpr double degree = M_PI / 180;
+constexpr double max_rotation = 0.1;  // of a segment, which bounds the chord error that inflates boxes [rad]
 constexpr long initial_pair_limit = 100'000;  // per segment; above it a shorter segment is tried
 
 template <class T>
@@ -102,9 +104,12 @@ class PairOnSegment {
 
   const ContactPair& pair_;
   const TrajectorySegment& segment_;
-  int cloth_count_, body_ = 0;
-  PairPositions start_;
-  double acceleration_bound_ = 0, chord_ = 0, rounding_;
+  int cloth_count_;
+  int body_ = 0;                   // the obstacle's
+  PairPositions start_;            // at t = 0 [m]
+  double acceleration_bound_ = 0;  // of the obstacle's vertices [m]
+  double chord_ = 0;               // the longest of their chords [m]
+  double rounding_;                // bound on the round-off of a distance, with a wide margin [m]
 };
 
 /// Removes triangles of static bodies from the rows.

@@ -1,9 +1,7 @@
 #include "plugins/contact/ipc/validated_mesh.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/io.h"

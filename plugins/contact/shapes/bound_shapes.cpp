@@ -1,6 +1,7 @@
 #include "plugins/contact/shapes/bound_shapes.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "core/kernel/contact/contact_stack.h"
@@ -127,15 +128,14 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
 
   StepLimit max_step(const BoundContact& before, const Positions& x) const override {
     const std::vector<SolidTrajectory> trajectories =
-        solid_trajectories(solids_before(before), scene_->solids);
+        solid_trajectories(scene_of(before).solids, scene_->solids);
     return max_obstacle_step(
         scene_->barrier.dhat, smallest_gap(trajectories, x),
         [&](double min_gap, int iterations) { return advance(trajectories, x, min_gap, iterations); });
   }
 
   void advect(const BoundContact& before, const Positions& x, Positions& reference) const override {
-    solids_before(before);
-    advect_with_solids(*dynamic_cast<const BoundShapes&>(before).scene_, scene_->solids, x, reference);
+    advect_with_solids(scene_of(before), scene_->solids, x, reference);
   }
 
  private:
@@ -170,11 +170,11 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
     return limit;
   }
 
-  const std::vector<Solid>& solids_before(const BoundContact& before) const {
-    const auto* own = dynamic_cast<const BoundShapes*>(&before);
+  static const ShapeScene& scene_of(const BoundContact& contact) {
+    const auto* own = dynamic_cast<const BoundShapes*>(&contact);
     if (!own)
       throw std::runtime_error("obstacles of \"shapes\" cannot replace those of another contact model");
-    return own->scene_->solids;
+    return *own->scene_;
   }
 
   std::shared_ptr<const ShapeScene> scene_;

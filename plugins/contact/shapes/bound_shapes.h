@@ -3,7 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/contact/barrier_parameters.h"
+#include "core/kernel/model/contact_model.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

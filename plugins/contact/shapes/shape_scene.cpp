@@ -1,6 +1,5 @@
 #include "plugins/contact/shapes/shape_scene.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -14,9 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 2048;
+constexpr int grain = 2048;     // triangles per task
 constexpr double inset = 5e-5;  // of a cylinder's prism, over d̂
-constexpr double half = 0.5;    // weight factor of edges and of triangles
+constexpr double half = 0.5;    // weight factor of pairs of edges and of pairs with a triangle
 
 /// A bounding ball of an element's linear motion.
 struct Ball {
@@ -119,13 +118,7 @@ class Finder {
     return features_.side > 0 ? std::min(1.0, features_.side / length) : 1;
   }
 
-  static std::vector<int> marked(const std::vector<char>& marks) {
-    std::vector<int> result;
-    for (std::size_t i = 0; i < marks.size(); ++i)
-      if (marks[i]) result.push_back(static_cast<int>(i));
-    return result;
-  }
-
+  /// The triangles' vertices or edges, of which there are `count`, that are near; ascending, each once.
   template <class IsNear>
   static std::vector<int> elements_near(const std::vector<int>& triangles, const Triangles& corners,
                                         int count, const IsNear& is_near) {
@@ -133,8 +126,8 @@ class Finder {
     for (const int i : triangles)
       for (int k = 0; k < 3; ++k) marks[corners(i, k)] = 1;
     std::vector<int> result;
-    for (const int i : marked(marks))
-      if (is_near(i)) result.push_back(i);
+    for (int i = 0; i < count; ++i)
+      if (marks[i] && is_near(i)) result.push_back(i);
     return result;
   }
 
@@ -151,8 +144,7 @@ ShapeScene ShapeScene::of(const Level& level, const std::vector<Solid>& solids,
   ShapeScene s;
   s.cloth = Surface::of(level.rest, level.topology);
   s.vertex_area = level.vertex_area;
-  const Positions& rest = level.rest.vertices;
-  s.diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  s.diagonal = bounding_box_diagonal(level.rest.vertices);
   s.solids = solids;
   s.barrier = barrier;
   s.min_gap_fraction = min_gap_fraction;

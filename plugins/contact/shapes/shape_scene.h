@@ -18,7 +18,7 @@ struct ShapeScene {
   std::vector<Solid> solids;
   std::vector<Features> features;  ///< of each solid
   std::vector<int> first_point;    ///< index of each solid's first point in obstacle_points
-  Positions obstacle_points;
+  Positions obstacle_points;       ///< the points of all solids [m]
   std::vector<int> solid_of_point;
   BarrierParameters barrier;
   double min_gap_fraction = 0.1;

@@ -46,7 +46,7 @@ Solid solid_of(const ShapeParameters& p, int index, double friction) {
 std::string to_string(SolidKind kind) {
   for (const auto& [name, own] : kind_names)
     if (own == kind) return name;
-  throw std::runtime_error("unknown kind of solid");
+  throw std::logic_error("a kind of solid without a name");
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {

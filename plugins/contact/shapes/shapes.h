@@ -9,7 +9,7 @@
 
 namespace drape::shapes {
 
-/// One obstacle in a config.
+/// One obstacle in a config. `radius`, `size`, `height` and `normal` count for some shapes alone.
 struct ShapeParameters : CommonObstacleParameters {
   SolidKind shape = SolidKind::sphere;
   double radius = 0.1;

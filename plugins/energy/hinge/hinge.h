@@ -5,8 +5,8 @@
 
 namespace drape {
 
-/// Discrete hinge bending (docs/theory/method.md, section 5): Σ_e k · 3‖ē‖²/(Ā₁+Ā₂) (θ-θ̄)², k = E_bend
-/// d³/(24(1-ν²)), θ̄ from the rest shape.
+/// Discrete hinge bending (docs/theory/method.md, section 5): Σ_e k · 3 ‖ē‖² / (Ā₁ + Ā₂) (θ - θ̄)² with
+/// k = E_bend d³ / (24 (1 - ν²)) and θ̄ from the rest shape.
 class Hinge final : public Energy {
  public:
   struct Parameters {

@@ -93,8 +93,7 @@ MetricDeclaration Distance::declaration() const {
 MetricResult Distance::measure(const MetricInput& input) const {
   const Positions& x = input.x;
   const Positions& other = *input.other;
-  const Positions& rest = input.level.rest.vertices;
-  const double diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
 
   const Eigen::VectorXd squared = (x - other).rowwise().squaredNorm();
   const Triangles& triangles = input.level.rest.triangles;

@@ -116,8 +116,7 @@ MetricDeclaration Silhouette::declaration() const {
 MetricResult Silhouette::measure(const MetricInput& input) const {
   const Positions& x = input.x;
   const Positions& other = *input.other;
-  const Positions& rest = input.level.rest.vertices;
-  const double diagonal = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
+  const double diagonal = bounding_box_diagonal(input.level.rest.vertices);
   const auto views = directions();
   std::array<double, views.size()> values;
   parallel_for(static_cast<int>(views.size()), 1, [&](int begin, int end) {

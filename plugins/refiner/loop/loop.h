@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/kernel/model/midpoint.h"
+#include "core/kernel/mesh/split_triangles.h"
 #include "core/kernel/model/refiner.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -61,7 +61,7 @@ class LoopRefiner : public Refiner {
   /// n flags, 1 for interpolated border vertices. A flat rest shape keeps its corners on every finer level:
   /// the new neighbours of a corner lie on the old border edges and keep its angle.
   std::vector<char> corners(const Level& level) const {
-    Eigen::VectorXd angle = Eigen::VectorXd::Zero(level.vertex_count());  // [radian]
+    Eigen::VectorXd angle = Eigen::VectorXd::Zero(level.vertex_count());  // [rad]
     for (int t = 0; t < level.triangle_count(); ++t)
       for (int k = 0; k < 3; ++k) {
         const auto v = level.rest.triangles.row(t);

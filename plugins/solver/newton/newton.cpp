@@ -46,6 +46,5 @@ class NewtonSolver : public ResumableSolver {
 
 DRAPE_PLUGIN(registry) {
   registry.add<drape::Solver, drape::NewtonSolver>(
-      "newton",
-      "Direct solve of every level on its own from the scene's start (C-IPC's stepping without contact).");
+      "newton", "Direct solve of every level on its own from the scene's start (C-IPC's implicit stepping).");
 }

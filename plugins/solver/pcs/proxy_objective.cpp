@@ -17,6 +17,7 @@ std::vector<int> slots_of(const BlockPattern& part, const BlockPattern& whole) {
   return result;
 }
 
+/// The pattern of a sum of matrices, blocks ascending; a single pattern is returned itself.
 std::shared_ptr<const BlockPattern> united(const std::vector<std::shared_ptr<const BlockPattern>>& patterns) {
   if (patterns.size() == 1) return patterns.front();
   std::vector<int> row_start(1, 0), columns;

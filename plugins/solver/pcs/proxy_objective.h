@@ -31,7 +31,8 @@ enum class ProxyMatrix {
 /// The gradient is exact.
 class ProxyObjective : public Objective {
  public:
-  /// Without `relaxes`, switch_to_plain() does nothing.
+  /// Refers to `problem`. `relaxes` says whether switch_to_plain() replaces the proxy by the plain energy;
+  /// otherwise it does nothing.
   ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts, ProxyMatrix matrix,
                  bool relaxes = false);
   bool is_proxy() const override { return !is_plain_; }

@@ -7,7 +7,7 @@
 namespace drape {
 
 void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
-  const auto add = [&](const char* name, Interpolation ProxyInterpolation::*value) -> auto{
+  const auto add = [&](const char* name, Interpolation ProxyInterpolation::*value) {
     return d.add_choice(name, value,
                         {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}});
   };

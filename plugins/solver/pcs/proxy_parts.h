@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "core/kernel/plugin/parameters.h"
@@ -19,7 +18,8 @@ struct ProxyInterpolation {
 
 /// Parts of the proxy of `level` for the model `above` levels up. An energy that midpoint refinement
 /// multiplies by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the
-/// finer model.
+/// finer model. The matrix of the latter is that of the model `depth` levels up, at most `above`. The parts
+/// refer to the problem's hierarchy.
 std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,
                                    const ProxyInterpolation& interpolation);
 
