@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/level_model.h"
 #include "core/kernel/model/metric.h"
 
 // What tests of metrics share.
@@ -13,11 +14,11 @@ inline drape::Level square(int n) {
   return drape::Level::of(0, drape::grid({1, 1}, n + 1, n + 1, drape::Diagonals::one_way));
 }
 
-/// For metrics of shapes alone, to which a LevelModel is opaque: a reference to nothing shows that they never
-/// look at it.
-inline const drape::LevelModel& no_model() {
-  alignas(64) static const char nothing[64] = {};
-  return reinterpret_cast<const drape::LevelModel&>(nothing);
+/// For metrics of shapes alone, which never look at it: a model without energies, of another mesh than theirs.
+inline const drape::LevelModel& empty_model() {
+  static const drape::Level level = square(1);
+  static const drape::LevelModel model(level, drape::Material(), {}, {});
+  return model;
 }
 
 inline double value(const drape::MetricResult& result, const std::string& name) {

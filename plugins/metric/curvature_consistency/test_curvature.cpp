@@ -174,7 +174,7 @@ double largest_difference(const VertexCurvatures& a, const VertexCurvatures& b) 
 
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other, int rings = 5) {
   return CurvatureConsistency(CurvatureConsistency::Parameters{rings})
-      .evaluate({level, no_model(), x, &other});
+      .evaluate({level, empty_model(), x, &other});
 }
 
 }  // namespace
@@ -518,7 +518,7 @@ TEST_CASE("consistency needs two states of the level", "[curvature_consistency]"
   const Level level = Level::of(0, {s.x, s.triangles});
   const CurvatureConsistency metric({});
   CHECK(metric.scope() == MetricScope::pair);
-  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), s.x, nullptr}), Catch::Contains("two states"));
+  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), s.x, nullptr}), Catch::Contains("two states"));
   const Positions wrong = s.x.topRows(5);
-  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), s.x, &wrong}), Catch::Contains("49 and 5"));
+  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), s.x, &wrong}), Catch::Contains("49 and 5"));
 }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 namespace {
 
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other) {
-  return Distance(Distance::Parameters()).evaluate({level, no_model(), x, &other});
+  return Distance(Distance::Parameters()).evaluate({level, empty_model(), x, &other});
 }
 
 /// Bumpy, folded enough that the nearest triangle is not the corresponding one.
@@ -146,7 +146,7 @@ TEST_CASE("distance needs two finite states of the level", "[distance]") {
   const Positions& x = level.rest.vertices;
   const Distance metric({});
   CHECK(metric.scope() == MetricScope::pair);
-  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), x, nullptr}), Catch::Contains("two states"));
+  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), x, nullptr}), Catch::Contains("two states"));
   CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));
   Positions broken = x;
   broken(1, 1) = infinity;

@@ -14,7 +14,7 @@ namespace {
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other, int resolution = 256) {
   Silhouette::Parameters parameters;
   parameters.resolution = resolution;
-  return Silhouette(parameters).evaluate({level, no_model(), x, &other});
+  return Silhouette(parameters).evaluate({level, empty_model(), x, &other});
 }
 
 double overlap(const Level& level, const Positions& x, const Positions& other) {
@@ -172,7 +172,7 @@ TEST_CASE("A silhouette needs two finite states of the level", "[silhouette]") {
   const Positions& x = level.rest.vertices;
   const Silhouette metric({});
   CHECK(metric.scope() == MetricScope::pair);
-  CHECK_THROWS_WITH(metric.evaluate({level, no_model(), x, nullptr}), Catch::Contains("two states"));
+  CHECK_THROWS_WITH(metric.evaluate({level, empty_model(), x, nullptr}), Catch::Contains("two states"));
   CHECK_THROWS_WITH(evaluate(level, x, x.topRows(4)), Catch::Contains("9 and 4"));
   Positions broken = x;
   broken(1, 1) = std::numeric_limits<double>::infinity();

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 namespace {
 
 MetricResult evaluate(const Level& level, const Positions& x) {
-  return Stretch(Stretch::Parameters()).evaluate({level, no_model(), x, nullptr});
+  return Stretch(Stretch::Parameters()).evaluate({level, empty_model(), x, nullptr});
 }
 
 }  // namespace
