@@ -14,7 +14,8 @@ inline drape::Level square(int n) {
   return drape::Level::of(0, drape::grid({1, 1}, n + 1, n + 1, drape::Diagonals::one_way));
 }
 
-/// For metrics of shapes alone, which never look at it: a model without energies, of another mesh than theirs.
+/// For metrics of shapes alone, which never look at it: a model without energies, of another mesh than
+/// theirs.
 inline const drape::LevelModel& empty_model() {
   static const drape::Level level = square(1);
   static const drape::LevelModel model(level, drape::Material(), {}, {});
