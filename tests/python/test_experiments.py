@@ -75,13 +75,13 @@ def test_every_fault_is_listed_with_its_place(tmp_path):
         experiment.run(progress=False)
 
 
-def test_a_fault_of_a_dict_names_its_key():
-    experiment = drape.Experiment({"name": "faulty", "obstacles": [{"shape": "sphere", "radius": -1}], "levls": 2})
+def test_a_fault_of_a_dict_names_its_key(small):
+    small.update(contact="shapes", obstacles=[{"shape": "sphere", "radius": -1}], levls=2)
     with pytest.raises(drape.ConfigError) as raised:
-        experiment.check()
-    keys = {fault.key for fault in raised.value.faults}
-    assert {"levls", "obstacles.0.radius"} <= keys
-    assert all(fault.file == "" and fault.line == 0 for fault in raised.value.faults)
+        drape.Experiment(small).check()
+    faults = raised.value.faults
+    assert {fault.key for fault in faults} == {"levls", "obstacles.0.radius"}
+    assert all(fault.file == "" and fault.line == 0 for fault in faults)
     assert "obstacles.0.radius: " in str(raised.value)
 
 

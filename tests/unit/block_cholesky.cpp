@@ -1,8 +1,10 @@
 #include "core/kernel/linear_algebra/block_cholesky.h"
 
 #include <Eigen/Cholesky>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <limits>
+#include <thread>
 
 #include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/dense_matrix.h"
@@ -200,6 +202,25 @@ TEST_CASE("The work of a full matrix is a third of the cube of its size") {
   CHECK(cholesky.unknowns() == 300);
   CHECK(cholesky.flops() == Approx(n * (n + 1) * (2 * n + 1) / 6));  // a column of k entries takes k²
   CHECK(cholesky.flops() == Approx(n * n * n / 3).epsilon(0.01));
+}
+
+TEST_CASE("Analyses side by side give the ordering that each gives alone") {
+  const int side = 25, n = side * side;
+  const auto pattern = BlockPattern::of(n, {shell(side, side)});
+  const auto ordering = [&] {
+    BlockCholesky cholesky;
+    cholesky.analyse(pattern, std::vector<char>(n, 0));
+    return cholesky.analysis().ordering;
+  };
+  const std::vector<int> alone = ordering();
+  std::atomic<int> others = 0;
+  const auto repeat = [&] {
+    for (int k = 0; k < 100; ++k) others += ordering() != alone;
+  };
+  std::thread other(repeat);
+  repeat();
+  other.join();
+  CHECK(others == 0);
 }
 
 TEST_CASE("A restored analysis continues bit for bit, as far as the BLAS does") {

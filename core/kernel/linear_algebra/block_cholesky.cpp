@@ -1,6 +1,7 @@
 #include "core/kernel/linear_algebra/block_cholesky.h"
 
 #include <limits>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 
@@ -23,9 +24,17 @@ struct SymbolicAnalysis : CholmodContext {
   /// With this ordering, or with METIS's if it is empty.
   void analyse(std::vector<int> ordering) {
     cholmod_free_factor(&factor, &common);
-    common.method[0].ordering = ordering.empty() ? CHOLMOD_METIS : CHOLMOD_GIVEN;
-    factor = ordering.empty() ? cholmod_analyze(graph, &common)
-                              : cholmod_analyze_p(graph, ordering.data(), nullptr, 0, &common);
+    if (ordering.empty()) {
+      // METIS draws from std::rand, which all threads share: solves side by side would change each other's
+      // ordering, and with it their last bits.
+      static std::mutex one_at_a_time;
+      const std::lock_guard lock(one_at_a_time);
+      common.method[0].ordering = CHOLMOD_METIS;
+      factor = cholmod_analyze(graph, &common);
+    } else {
+      common.method[0].ordering = CHOLMOD_GIVEN;
+      factor = cholmod_analyze_p(graph, ordering.data(), nullptr, 0, &common);
+    }
     require(factor, "symbolic analysis");
   }
 };
