@@ -21,8 +21,8 @@ class ConfigFault:
     def __str__(self) -> str:
         place = [self.file] if self.file else []
         place += [str(n) for n in (self.line, self.column) if n > 0]
-        place = place or [self.key] * bool(self.key)
-        return ":".join(place) + (": " if place else "") + self.message
+        where = ":".join(place) or self.key
+        return f"{where}: {self.message}" if where else self.message
 
 
 class ConfigError(ValueError):
