@@ -65,7 +65,7 @@ class Noise {
   double at(double x, double y) const {
     double sum = 0;
     for (const Wave& w : waves_) sum += std::sin(w.kx * x + w.ky * y + w.phase);
-    return sum / std::sqrt(8.0);  // of the number of waves
+    return sum / std::sqrt(8.0);  // 8 is the number of waves
   }
 
  private:

@@ -84,8 +84,8 @@ class LaggedFriction final : public BoundEnergy {
 
   std::vector<FrictionContact> contacts_;
   std::vector<int> group_ends_;  // indices of contacts_
-  std::vector<Eigen::Vector3d>
-      origin_;      // of each contact: Σ c_k reference_k less its stored displacement [m]
+  // Of each contact: Σ c_k reference_k less its stored displacement [m].
+  std::vector<Eigen::Vector3d> origin_;
   double epsilon_;  // ε, the friction smoothing distance [m]
 };
 
