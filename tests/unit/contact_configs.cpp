@@ -7,6 +7,7 @@
 #include "tests/support/solve.h"
 
 using namespace drape;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -58,6 +59,22 @@ TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
   contact_configs(test_registry(), p, errors);
   REQUIRE(errors.size() == 1);
   CHECK(errors[0].message == "\"ball\" is also the name of obstacles[1]; give each obstacle its own");
+}
+
+TEST_CASE("Friction is refused where no contact model has it, also where only a schedule's key sets it") {
+  const std::string free = R"(name: free
+cloth: {shape: square, side: 1, columns: 3, rows: 3}
+energies: [neo_hookean, gravity]
+contact: none
+methods: {newton: {}}
+)";
+  const std::string refused =
+      "no contact model of this experiment has friction; set \"friction\" to 0, or add";
+  CHECK_NOTHROW(experiment_from(free + "friction: 0\n"));
+  CHECK_THROWS_WITH(experiment_from(free + "friction: 0.1\n"), Contains(refused));
+  CHECK_THROWS_WITH(experiment_from(free + "schedule: {keys: [{parameter: friction, times: [0, 1], "
+                                           "values: [0, 0.1]}]}\n"),
+                    Contains(refused));
 }
 
 TEST_CASE("A saved experiment has obstacles and friction once, and reads back the same") {

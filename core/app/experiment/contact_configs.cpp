@@ -81,6 +81,27 @@ ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, Co
   return own;
 }
 
+bool has_friction(const RegistryEntry& model) {
+  const auto& parameters = model.schema.parameters;
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [](const Parameter& p) { return p.from_experiment && p.name == "friction"; });
+}
+
+/// Friction that no model of an experiment has, which would be ignored.
+void check_friction(const Registry& registry, const ExperimentParameters& p,
+                    const std::vector<const RegistryEntry*>& models, ConfigErrors& errors) {
+  const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
+  if (p.friction == 0 || std::any_of(models.begin(), models.end(), has)) return;
+  std::vector<std::string> names;
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    if (has_friction(*model)) names.push_back(model->name);
+  Location where = p.contact.where;
+  if (where.line == 0) where.key = "friction";
+  errors.push_back(
+      {where, "no contact model of this experiment has friction; set \"friction\" to 0" +
+                  (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"")});
+}
+
 /// A path of keys finds an obstacle by its name, so no two have the same.
 void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors) {
   std::map<std::string, std::size_t> named;
@@ -107,6 +128,7 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
     configs.push_back({models.back() ? own_section(*models.back(), node, errors) : node, {}});
   }
   check_names(p.obstacles, errors);
+  check_friction(registry, p, models, errors);
   for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
     const auto takes = std::find_if(models.begin(), models.end(), [&](const RegistryEntry* model) {
       return model && !known_key(*model, p.obstacles[i]).empty();

@@ -18,7 +18,8 @@ struct ContactConfig {
 };
 
 /// One for each contact model, in order. Appends an error for an obstacle that none of them takes, naming a
-/// registered model that would, and for `obstacles` and `friction` in a model's own section.
+/// registered model that would, for friction that none of them has, and for `obstacles` and `friction` in a
+/// model's own section.
 std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& parameters,
                                            ConfigErrors& errors);
 

@@ -111,7 +111,7 @@ bool NewtonStep::iterate(int k) {
       return fail("the line search found no descent " +
                   (controller_.is_static()
                        ? "(the direction's slope is " + three_digits(line_search_.slope()) + ")"
-                       : "at any step size down to 1e-8 s") +  // step_controller.cpp's min_step_size
+                       : "at any step size down to " + three_digits(StepController::min_step_size) + " s") +
                   iterate_.limit_text());
   }
   const double decrement =

@@ -20,10 +20,8 @@ constexpr double back_off = 16;
 constexpr int max_stall_count = 20;
 /// … or once forces are of the load's size.
 constexpr double recovered_residual = 10;
-/// Damping has failed below this h; newton_step.cpp's message names it [s].
-constexpr double min_step_size = 1e-8;
-/// The same bound for the mass of the static form, as 1/h² [1/s²].
-constexpr double max_added_mass = 1 / (min_step_size * min_step_size);
+/// StepController::min_step_size for the mass of the static form, as 1/h² [1/s²].
+constexpr double max_added_mass = 1 / (StepController::min_step_size * StepController::min_step_size);
 
 }  // namespace
 

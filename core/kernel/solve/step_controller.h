@@ -12,6 +12,8 @@ namespace drape {
 /// and does not grow until the forces have recovered.
 class StepController {
  public:
+  static constexpr double min_step_size = 1e-8;  ///< damping has failed below this h [s]
+
   struct State {
     double step_size = 0;     ///< h of the next step [s]
     int stall_count = 0;      ///< consecutive steps with forces far beyond the load; negative: without
