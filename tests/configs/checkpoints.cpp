@@ -121,7 +121,12 @@ RunOptions silent(const fs::path& out) {
 /// Runs an experiment in one go and again in as many parts as it can be cut into: every part is stopped the
 /// second time that anything asks, which is after one step, or if that leads nowhere, later. How many parts;
 /// `relaxing`, if it is given, counts those that began on a level which relaxes.
-int check_in_parts(const Experiment& experiment, const fs::path& folder, int* relaxing = nullptr) {
+int check_in_parts(const Scratch& scratch, Overrides overrides, int* relaxing = nullptr) {
+  // Every part measures the start again: at full resolution that takes longer than its steps.
+  overrides.emplace_back(
+      "metrics", "[curvature_consistency, distance, residuals, {type: silhouette, resolution: 32}, stretch]");
+  const fs::path& folder = scratch.path;
+  const Experiment experiment = experiment_in(folder / "e.yaml", overrides);
   run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
   REQUIRE(Json::parse(text_of(folder / "whole/results.json"))["complete"] == true);
 
@@ -154,13 +159,13 @@ TEST_CASE("A run that is stopped at every step and resumed equals an uninterrupt
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   const Overrides short_levels = {{"levels", "3"}, {"newton.max_steps", "8"}};
-  CHECK(check_in_parts(experiment_in(folder / "e.yaml", short_levels), folder.path) > 60);
+  CHECK(check_in_parts(folder, short_levels) > 60);
 }
 
 TEST_CASE("So does one with self-contact, obstacles, friction and a strain limit") {
   const Scratch folder;
   write_sheets(folder);
-  CHECK(check_in_parts(experiment_in(folder / "e.yaml", some_steps()), folder.path) > 60);
+  CHECK(check_in_parts(folder, some_steps()) > 60);
 }
 
 TEST_CASE("So does one whose iterations share a matrix, and one with several of them per step") {
@@ -169,7 +174,7 @@ TEST_CASE("So does one whose iterations share a matrix, and one with several of 
     write_sheets(folder);
     const Overrides shared =
         some_steps({{"newton.hessian_update_interval", "3"}, {"newton.iterations_per_step", iterations}});
-    CHECK(check_in_parts(experiment_in(folder / "e.yaml", shared), folder.path) > 60);
+    CHECK(check_in_parts(folder, shared) > 60);
   }
 }
 
@@ -190,7 +195,7 @@ TEST_CASE(
     overrides.emplace_back("methods", "{pcs: {" + pcs + "}}");
     overrides.emplace_back("newton.force_tolerance", file == std::string("golden.yaml") ? "1e-8" : "1e-4");
     int relaxing = 0;
-    CHECK(check_in_parts(experiment_in(folder / "e.yaml", overrides), folder.path, &relaxing) > 15);
+    CHECK(check_in_parts(folder, overrides, &relaxing) > 15);
     CHECK(relaxing > 1);
   }
 }
@@ -200,7 +205,7 @@ TEST_CASE("So does one of the static form, with full projection") {
   write_sheets(folder);
   const Overrides statics =
       some_steps({{"newton.form", "static"}, {"newton.psd_blend", "full"}, {"levels", "2"}});
-  CHECK(check_in_parts(experiment_in(folder / "e.yaml", statics), folder.path) > 20);
+  CHECK(check_in_parts(folder, statics) > 20);
 }
 
 TEST_CASE("So does one under load stepping, with a Dirichlet penalty and moving obstacles") {
@@ -225,7 +230,7 @@ schedule:
     folder.write("e.yaml", text_of(folder / "e.yaml") + schedule);
     const Overrides some = some_steps(
         {{"schedule.equilibrate", equilibrate}, {"newton.force_tolerance", "0.1"}, {"levels", "2"}});
-    CHECK(check_in_parts(experiment_in(folder / "e.yaml", some), folder.path) > 40);
+    CHECK(check_in_parts(folder, some) > 40);
   }
 }
 
@@ -243,7 +248,7 @@ schedule: {steps: 2, equilibrate: true, keys: [{parameter: obstacles.0.translate
 newton: {force_tolerance: 1e-2}
 methods: {pcs: {}}
 )");
-  const int parts = check_in_parts(experiment_in(folder / "e.yaml"), folder.path);
+  const int parts = check_in_parts(folder, {});
   CHECK(parts > 40);
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
 }
@@ -274,12 +279,12 @@ TEST_CASE("So does one under load stepping with a level that starts from the ini
                    R"(
 schedule: {steps: 3, keys: [{parameter: energies.gravity.acceleration, times: [0, 1], values: [[0, 0, -9.81], [1, 0, -9.81]]}]}
 )");
-  const Experiment experiment = experiment_in(folder / "e.yaml", {{"start.translate", "[-0.5, -0.3, 0.32]"},
-                                                                  {"start.perturbation", "1e-6"},
-                                                                  {"methods", "{cascadic: {}}"},
-                                                                  {"snapshots", "2"},
-                                                                  {"newton.max_steps", "60"}});
-  CHECK(check_in_parts(experiment, folder.path) > 15);
+  const Overrides stuck = {{"start.translate", "[-0.5, -0.3, 0.32]"},
+                           {"start.perturbation", "1e-6"},
+                           {"methods", "{cascadic: {}}"},
+                           {"snapshots", "2"},
+                           {"newton.max_steps", "60"}};
+  CHECK(check_in_parts(folder, stuck) > 15);
   const Json levels = Json::parse(text_of(folder / "parts/results.json"))["methods"]["cascadic"]["levels"];
   REQUIRE(levels.size() == 2);
   CHECK_THAT(levels[1]["message"].get<std::string>(),

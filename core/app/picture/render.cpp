@@ -21,6 +21,7 @@ constexpr int tile_size = 32;        // [pixels]
 constexpr float edge_width = 1e-3f;  // of the picture's height
 constexpr float edge_opacity = 0.5f;
 constexpr int border_rays = 16;  // through a pixel where surfaces end
+constexpr int light_rays = 2;    // from a pixel to each light; more would cost as much again and hardly show
 const Rgb map_backdrop = linear_of_srgb({0.871f, 0.878f, 0.894f});
 enum Seed : std::uint32_t { border_seed = 0x68bc21ebu, key_seed = 0x02e5be93u, sky_seed = 0x967a889bu };
 
@@ -41,12 +42,11 @@ float show_through(const SurfacePoint& obstacle, const Ray& ray) {
 /// arrives, smoothed; more rays from the eye where surfaces end.
 class Painting {
  public:
-  Painting(const Drawing& drawing, const Camera& camera, int light_rays, LightBuffer& buffer)
+  Painting(const Drawing& drawing, const Camera& camera, LightBuffer& buffer)
       : drawing_(drawing),
         scene_(drawing),
         lighting_(scene_, camera, drawing.colours != nullptr),
         eye_(camera, scene_.centre(), buffer.width(), buffer.height()),
-        light_rays_(light_rays),
         buffer_(buffer) {}
 
   void see(int column, int row) {
@@ -60,11 +60,11 @@ class Painting {
     pixel.normal = seen.point->normal;
     if (!drawing_.lit) return;
     Arriving& arriving = buffer_.arriving(column, row);
-    const std::uint32_t first = morton_number(column, row) * light_rays_;
-    for (int k = 0; k < light_rays_; ++k)
+    const std::uint32_t first = morton_number(column, row) * light_rays;
+    for (int k = 0; k < light_rays; ++k)
       arriving += lighting_.arriving(*seen.point, sample_point(first + k, key_seed),
                                      sample_point(first + k, sky_seed));
-    arriving /= static_cast<float>(light_rays_);
+    arriving /= light_rays;
   }
 
   Rgb colour(int column, int row) const {
@@ -133,14 +133,13 @@ class Painting {
   const RayScene scene_;
   const Lighting lighting_;
   const Eye eye_;
-  const int light_rays_;
   LightBuffer& buffer_;
 };
 
 }  // namespace
 
-Renderer::Renderer(int width, int height, std::function<bool()> leave, int light_rays)
-    : width_(width), height_(height), leave_(std::move(leave)), light_rays_(light_rays) {}
+Renderer::Renderer(int width, int height, std::function<bool()> leave)
+    : width_(width), height_(height), leave_(std::move(leave)) {}
 
 void Renderer::for_tiles(const std::function<void(int column, int row)>& body) const {
   const int columns = (width_ - 1) / tile_size + 1, rows = (height_ - 1) / tile_size + 1;
@@ -155,7 +154,7 @@ void Renderer::for_tiles(const std::function<void(int column, int row)>& body) c
 
 Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {
   LightBuffer buffer(width_, height_);
-  Painting painting(drawing, camera, light_rays_, buffer);
+  Painting painting(drawing, camera, buffer);
   for_tiles([&](int column, int row) { painting.see(column, row); });
   if (drawing.lit) buffer.smooth(painting.pixel_size(Eigen::Vector3f::Zero()));
   Image image{width_, height_, {}};

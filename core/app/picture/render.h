@@ -46,9 +46,9 @@ struct PictureLeft : std::runtime_error {
 /// light with occlusion. The same drawing gives the same bits with any number of threads.
 class Renderer {
  public:
-  /// Size of the pictures [pixels]; random rays to each light a pixel. `leave`, which may be empty, is polled
-  /// between tiles, on the thread that draws.
-  Renderer(int width, int height, std::function<bool()> leave = {}, int light_rays = 4);
+  /// Size of the pictures [pixels]. `leave`, which may be empty, is polled between tiles, on the thread that
+  /// draws.
+  Renderer(int width, int height, std::function<bool()> leave = {});
 
   /// Throws PictureLeft once `leave` returns true, std::runtime_error if Embree fails.
   Image draw(const Drawing& drawing, const Camera& camera) const;
@@ -59,7 +59,6 @@ class Renderer {
 
   int width_, height_;
   std::function<bool()> leave_;
-  int light_rays_;
 };
 
 }  // namespace drape

@@ -52,7 +52,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::vector<TriangleMesh> states;
   for (const LevelRecord* level : levels)
     for (TriangleMesh& state : states_of(run, method, *level, snapshots)) states.push_back(std::move(state));
-  const std::vector<fs::path> files = snapshots ? numbered(file, states.size()) : std::vector<fs::path>{file};
+  std::vector<fs::path> files = snapshots ? numbered(file, states.size()) : std::vector<fs::path>{file};
   if (!overwrite)
     for (const fs::path& each : files) refuse_existing(each);
 
