@@ -16,22 +16,24 @@ using Projected = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;  //
 /// States that reach over more than so many pixels are seen in larger ones: pictures stay small.
 constexpr double max_pixels_a_side = 4096;
 
-/// Which side of the line through a and b the point p is on. The same rounding whichever end is named first,
-/// so that no pixel falls between two triangles that share the edge.
-double side(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& p) {
-  const bool swapped = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
-  const Eigen::Vector2d &from = swapped ? b : a, &to = swapped ? a : b;
-  const double s = (to.x() - from.x()) * (p.y() - from.y()) - (to.y() - from.y()) * (p.x() - from.x());
-  return swapped ? -s : s;
-}
+/// The line through two corners of a triangle. A point's side is rounded in the same way, but for the sign,
+/// whichever corner is named first, so that no pixel falls between two triangles that share the edge.
+struct Line {
+  double x, y, dx, dy;
 
-/// The triangle with its border, either way round; one that has collapsed to a line covers nothing.
-bool covers(const Eigen::Vector2d (&corner)[3], const Eigen::Vector2d& p) {
-  const double s[] = {side(corner[0], corner[1], p), side(corner[1], corner[2], p),
-                      side(corner[2], corner[0], p)};
-  const auto [low, high] = std::minmax({s[0], s[1], s[2]});
-  return (low >= 0 && high > 0) || (high <= 0 && low < 0);
-}
+  Line(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    const bool swapped = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
+    const Eigen::Vector2d &from = swapped ? b : a, &to = swapped ? a : b;
+    x = from.x();
+    y = from.y();
+    dx = swapped ? from.x() - to.x() : to.x() - from.x();
+    dy = swapped ? from.y() - to.y() : to.y() - from.y();
+  }
+  void turn() { dx = -dx, dy = -dy; }
+  double along(double row) const { return dx * (row - y); }
+  /// Positive on the left.
+  double side(double along, double column) const { return along - dy * (column - x); }
+};
 
 /// A picture whose pixel (column, row) has its centre there.
 struct Picture {
@@ -41,23 +43,49 @@ struct Picture {
   Picture(int columns_, int rows_)
       : columns(columns_), rows(rows_), pixels(static_cast<std::size_t>(columns_) * rows_, 0) {}
 
-  /// Sets the bit in every pixel whose centre a triangle covers.
+  /// Sets the bit in every pixel whose centre is within a triangle or on its border.
   void draw(const Projected& x, const Triangles& triangles, char bit) {
-    for (Eigen::Index t = 0; t < triangles.rows(); ++t) {
-      const Eigen::Vector2d corner[3] = {x.row(triangles(t, 0)), x.row(triangles(t, 1)),
-                                         x.row(triangles(t, 2))};
-      const Eigen::Vector2d lower = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]);
-      const Eigen::Vector2d upper = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]);
-      const int left = std::max(0, static_cast<int>(std::ceil(lower.x())));
-      const int right = std::min(columns - 1, static_cast<int>(std::floor(upper.x())));
-      const int bottom = std::max(0, static_cast<int>(std::ceil(lower.y())));
-      const int top = std::min(rows - 1, static_cast<int>(std::floor(upper.y())));
-      for (int row = bottom; row <= top; ++row)
-        for (int column = left; column <= right; ++column)
-          if (char& pixel = pixels[static_cast<std::size_t>(row) * columns + column];
-              !(pixel & bit) && covers(corner, Eigen::Vector2d(column, row)))
-            pixel |= bit;
-    }
+    for (Eigen::Index t = 0; t < triangles.rows(); ++t)
+      draw(x.row(triangles(t, 0)), x.row(triangles(t, 1)), x.row(triangles(t, 2)), bit);
+  }
+
+ private:
+  void draw(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, char bit) {
+    const Eigen::Vector2d lower = a.cwiseMin(b).cwiseMin(c), upper = a.cwiseMax(b).cwiseMax(c);
+    const int left = std::max(0, static_cast<int>(std::ceil(lower.x())));
+    const int right = std::min(columns - 1, static_cast<int>(std::floor(upper.x())));
+    const int bottom = std::max(0, static_cast<int>(std::ceil(lower.y())));
+    const int top = std::min(rows - 1, static_cast<int>(std::floor(upper.y())));
+    if (left > right || bottom > top) return;
+    Line lines[3] = {{a, b}, {b, c}, {c, a}};
+    const double area = lines[0].side(lines[0].along(c.y()), c.x());
+    if (area == 0) return;  // collapsed to a line, which covers nothing
+    if (area < 0)
+      for (Line& line : lines) line.turn();
+    for (int row = bottom; row <= top; ++row) draw_row(lines, row, left, right, bit);
+  }
+
+  /// From the first to the last pixel of a row that are on the left of all three lines.
+  void draw_row(const Line (&lines)[3], int row, int first, int last, char bit) {
+    constexpr int wide = 8;  // more pixels than it takes to look at each
+    double along[3];
+    for (int k = 0; k < 3; ++k) along[k] = lines[k].along(row);
+    if (last - first > wide)
+      for (int k = 0; k < 3; ++k) {
+        // Where the row crosses the line, but for rounding, which is far less than a pixel.
+        const double crossing = std::clamp(lines[k].x + along[k] / lines[k].dy, -1.0, double(columns));
+        if (lines[k].dy > 0) last = std::min(last, static_cast<int>(crossing) + 1);
+        if (lines[k].dy < 0) first = std::max(first, static_cast<int>(crossing) - 1);
+      }
+    const auto is_covered = [&](int column) {
+      double least = lines[0].side(along[0], column);
+      for (int k = 1; k < 3; ++k) least = std::min(least, lines[k].side(along[k], column));
+      return least >= 0;
+    };
+    while (first <= last && !is_covered(first)) ++first;
+    while (first <= last && !is_covered(last)) --last;
+    char* pixel = &pixels[static_cast<std::size_t>(row) * columns];
+    for (int column = first; column <= last; ++column) pixel[column] = static_cast<char>(pixel[column] | bit);
   }
 };
 
