@@ -55,7 +55,7 @@ void SteppedSolve::run() {
     error = std::current_exception();
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  error_ = error;
+  error_ = std::move(error);  // the caller alone owns it from here on
   turn_ = Turn::ended;
   changed_.notify_all();
 }
