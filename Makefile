@@ -19,7 +19,7 @@
 # make pictures the pictures of README and docs, from the runs of the studies sphere and table1 that `make results` has left; FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise
 # make format   check the layout of the sources;  make fix-format  rewrites them
-# make lint     static analysis of core and plugins (LINT= a regular expression of paths)
+# make lint     static analysis of core and plugins (LINT= a regular expression of folders)
 # make clean    remove what was built
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
@@ -127,7 +127,7 @@ fix-format: setup
 
 lint: setup
 	@cmake --preset lint --log-level=ERROR >/dev/null
-	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) '$(LINT)'
+	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument '$(LINT)'
 
 clean:
 	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz

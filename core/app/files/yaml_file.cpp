@@ -189,7 +189,7 @@ ConfigNode* step(ConfigNode& node, const std::string& word, const Location& wher
 
 ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigErrors& errors) {
   const size_t before = errors.size();
-  const ConfigNode node = parse_value(text, name, errors);
+  ConfigNode node = parse_value(text, name, errors);
   if (errors.size() != before) return {};
   if (node.kind == Kind::map) return node;
   errors.push_back({node.kind == Kind::null ? Location{name, 0, 0} : node.where,

@@ -61,7 +61,7 @@ inline std::uint32_t morton_number(std::uint32_t x, std::uint32_t y) {
 /// [0, 1)² to the unit disc, by P. Shirley and K. Chiu's concentric map, which keeps neighbours.
 inline Eigen::Vector2f on_disc(const Eigen::Vector2f& u) {
   const Eigen::Vector2f c = 2 * u - Eigen::Vector2f::Ones();
-  if (c.isZero(0)) return c;
+  if (c.isZero(0)) return {0, 0};
   constexpr float quarter = 0.78539816f;
   const bool wide = std::abs(c[0]) > std::abs(c[1]);
   const float radius = wide ? c[0] : c[1];

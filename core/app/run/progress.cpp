@@ -24,7 +24,7 @@ std::string first_two(const std::vector<std::string>& names) {
 }  // namespace
 
 Progress::Progress(double tolerance, int levels, Verbosity verbosity, const LoadStepping* load_stepping,
-                   std::vector<std::string> changing)
+                   const std::vector<std::string>& changing)
     : tolerance_(tolerance),
       levels_(levels),
       verbosity_(verbosity),

@@ -20,7 +20,7 @@ class Progress : public Observer {
   /// The bar is full at `tolerance` of the force residual; `levels` is their number. Under load stepping
   /// (`load_stepping`, which changes the parameters `changing`) it is full after the last increment.
   Progress(double tolerance, int levels, Verbosity verbosity, const LoadStepping* load_stepping = nullptr,
-           std::vector<std::string> changing = {});
+           const std::vector<std::string>& changing = {});
 
   void method_started(const std::string& method);
   void level_started(int level) override;

@@ -33,7 +33,7 @@ bool is_of_a_run(const RunFolder& folder) {
 /// A file or non-empty folder with one of a run's names; "" without one.
 fs::path left_there(const RunFolder& folder) {
   for (const char* own : own_names) {
-    const fs::path path = folder.file(own);
+    fs::path path = folder.file(own);
     if (!fs::is_directory(path)) {
       if (fs::exists(path)) return path;
       continue;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 1024;  // pairs per task
+constexpr int pairs_per_task = 1024;
 constexpr int max_iterations = 256;
 constexpr double tolerance = 0.02;  // fraction of the initial gap that may remain unused
 
@@ -93,9 +93,9 @@ double additive_ccd(const Positions& x0, const Positions& x1, const Positions& o
     int pair = -1;
   };
   const int size = static_cast<int>(pairs.size());
-  std::vector<First> pieces((size + grain - 1) / grain);
-  parallel_for(size, grain, [&](int begin, int end) {
-    First& first = pieces[begin / grain];
+  std::vector<First> pieces((size + pairs_per_task - 1) / pairs_per_task);
+  parallel_for(size, pairs_per_task, [&](int begin, int end) {
+    First& first = pieces[begin / pairs_per_task];
     for (int i = begin; i < end; ++i) {
       const double time =
           safe_time(Motion(pairs[i], x0, x1, obstacle_vertices), min_gap_fraction, first.time);

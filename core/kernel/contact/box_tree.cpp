@@ -8,7 +8,7 @@
 namespace drape {
 namespace {
 
-constexpr int grain = 512;  // groups per task
+constexpr int groups_per_task = 512;
 
 /// Orders the boxes by median splits; every aligned run of 8, 64, 512, … boxes becomes compact.
 class MedianSplit {
@@ -96,7 +96,7 @@ void BoxTree::refit(const std::vector<Box>& boxes) {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     std::vector<BoxGroup>& groups = levels_[level];
     const int below = level == 0 ? size() : static_cast<int>(levels_[level - 1].size());
-    parallel_for(static_cast<int>(groups.size()), grain, [&](int begin, int end) {
+    parallel_for(static_cast<int>(groups.size()), groups_per_task, [&](int begin, int end) {
       for (int i = 8 * begin; i < std::min(8 * end, below); ++i)
         groups[i / 8].set(i % 8, level == 0 ? boxes[order_[i]] : levels_[level - 1][i].bounds());
     });
@@ -106,7 +106,7 @@ void BoxTree::refit(const std::vector<Box>& boxes) {
 double BoxTree::surface_area_cost() const {
   std::vector<double> area;
   for (const std::vector<BoxGroup>& groups : levels_)
-    area.push_back(parallel_sum(static_cast<int>(groups.size()), grain, [&](int begin, int end) {
+    area.push_back(parallel_sum(static_cast<int>(groups.size()), groups_per_task, [&](int begin, int end) {
       double sum = 0;
       for (int i = 8 * begin; i < 8 * end; ++i) sum += groups[i / 8].box(i % 8).half_area();
       return sum;

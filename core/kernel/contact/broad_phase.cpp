@@ -13,7 +13,7 @@ namespace {
 
 /// The tree is rebuilt once its cost exceeds this multiple of the cost after the last build.
 constexpr double rebuild_factor = 2;
-constexpr int grain = 64;  // leaf groups per task
+constexpr int leaf_groups_per_task = 64;
 
 class BvhBroadPhase final : public BroadPhase {
  public:
@@ -42,10 +42,10 @@ class BvhBroadPhase final : public BroadPhase {
   template <class Search>
   bool collect(int columns, long limit, AdjacencyList& pairs, const Search& search) const {
     const int groups = tree_.leaf_groups();
-    std::vector<IndexPairs> lists((groups + grain - 1) / grain);
+    std::vector<IndexPairs> lists((groups + leaf_groups_per_task - 1) / leaf_groups_per_task);
     std::atomic<long> count = 0;
-    parallel_for(groups, grain, [&](int begin, int end) {
-      IndexPairs& list = lists[begin / grain];
+    parallel_for(groups, leaf_groups_per_task, [&](int begin, int end) {
+      IndexPairs& list = lists[begin / leaf_groups_per_task];
       std::size_t counted = 0;
       for (int g = begin; g < end && count.load(std::memory_order_relaxed) <= limit; ++g) {
         search(g, [&](int i, int j) { list.emplace_back(i, j); });

@@ -11,7 +11,7 @@
 namespace drape {
 namespace {
 
-constexpr int grain = 256;  // rows per task
+constexpr int rows_per_task = 256;
 
 /// Whether a pair can come within d̂: a bound from its distance and the relative motion of its primitives.
 bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
@@ -86,10 +86,10 @@ void represented_edges(const Side& a, int s, const Side& b, int t, const Found& 
 template <class Visit>
 bool collect(const AdjacencyList& rows, long limit, BroadPhasePairs& found, const Visit& visit) {
   const int count = static_cast<int>(rows.start.size()) - 1;
-  std::vector<BroadPhasePairs> lists((count + grain - 1) / grain);
+  std::vector<BroadPhasePairs> lists((count + rows_per_task - 1) / rows_per_task);
   std::atomic<long> number = found.count();
-  parallel_for(count, grain, [&](int begin, int end) {
-    BroadPhasePairs& list = lists[begin / grain];
+  parallel_for(count, rows_per_task, [&](int begin, int end) {
+    BroadPhasePairs& list = lists[begin / rows_per_task];
     for (int s = begin; s < end && number.load(std::memory_order_relaxed) <= limit; ++s) {
       const long before = list.count();
       const auto first_vertex_triangle = static_cast<std::ptrdiff_t>(list.vertex_triangles.size());

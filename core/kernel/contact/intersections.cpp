@@ -15,7 +15,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Vector = Eigen::Vector3d;
 
-constexpr int grain = 256;  // triangles per task
+constexpr int triangles_per_task = 256;
 
 /// The corners of a triangle, those that it shares with another one first.
 using Corners = std::array<Vector, 3>;
@@ -94,7 +94,7 @@ Vector middle_of_both(const Box& a, const Box& b) {
 
 std::vector<Box> boxes_of(const TriangleMesh& mesh) {
   std::vector<Box> boxes(mesh.triangles.rows());
-  parallel_for(static_cast<int>(boxes.size()), grain, [&](int begin, int end) {
+  parallel_for(static_cast<int>(boxes.size()), triangles_per_task, [&](int begin, int end) {
     for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t);
   });
   return boxes;
@@ -103,14 +103,15 @@ std::vector<Box> boxes_of(const TriangleMesh& mesh) {
 std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& other, bool same,
                                   const AdjacencyList& candidates) {
   const int count = static_cast<int>(mesh.triangles.rows());
-  std::vector<std::vector<TrianglePair>> lists((count + grain - 1) / grain);
-  parallel_for(count, grain, [&](int begin, int end) {
+  std::vector<std::vector<TrianglePair>> lists((count + triangles_per_task - 1) / triangles_per_task);
+  parallel_for(count, triangles_per_task, [&](int begin, int end) {
     for (int s = begin; s < end; ++s)
       for (const int* t = candidates.begin(s); t != candidates.end(s); ++t) {
         std::array<int, 3> a = vertices(mesh, s), b = vertices(other, *t);
         const int shared = same ? share_first(a, b) : 0;
         if (meet(corners(mesh.vertices, a), corners(other.vertices, b), shared))
-          lists[begin / grain].push_back({s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
+          lists[begin / triangles_per_task].push_back(
+              {s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
       }
   });
   std::vector<TrianglePair> all;

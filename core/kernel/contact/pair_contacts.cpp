@@ -10,8 +10,8 @@
 namespace drape {
 namespace {
 
-constexpr int grain = 128;  // contacts per task
-constexpr int run = 1024;   // contacts whose blocks are computed before they are added
+constexpr int contacts_per_task = 128;
+constexpr int run = 1024;  // contacts whose blocks are computed before they are added
 
 class PairCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
@@ -55,7 +55,7 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
     const auto blocks = std::make_unique_for_overwrite<PairBlocks[]>(std::min(run, count_));
     for (int first = 0; first < count_; first += run) {
       const int size = std::min(run, count_ - first);
-      parallel_for(size, grain, [&](int begin, int end) {
+      parallel_for(size, contacts_per_task, [&](int begin, int end) {
         contact_hessians(&contacts_[first + begin], end - begin, parameters_, cloth_count_, projection,
                          blocks.get() + begin);
       });

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
 
-constexpr int grain = 1024;  // features or vertices per task
+constexpr int features_per_task = 1024;
 
 Matrix3d projected(const Matrix3d& h, Projection projection) {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(h);
@@ -26,7 +26,7 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
  public:
   SurfaceCollisions(SurfaceContacts all, const BarrierParameters& parameters)
       : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {
-    parallel_for(static_cast<int>(barriers_.size()), grain, [&](int begin, int end) {
+    parallel_for(static_cast<int>(barriers_.size()), features_per_task, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) barriers_[i] = barrier(all_.features[i].distance / p_.dhat);
     });
     double sum = 0;
@@ -130,9 +130,9 @@ SurfaceContacts SurfaceContacts::of(const Positions& x, const ObstacleSurface& o
     if (i == 0 || candidates[i].vertex != candidates[i - 1].vertex) start.push_back(i);
   const int count = static_cast<int>(start.size());
   start.push_back(static_cast<int>(candidates.size()));
-  std::vector<SurfaceContacts> pieces((count + grain - 1) / grain);
-  parallel_for(count, grain, [&](int begin, int end) {
-    SurfaceContacts& piece = pieces[begin / grain];
+  std::vector<SurfaceContacts> pieces((count + features_per_task - 1) / features_per_task);
+  parallel_for(count, features_per_task, [&](int begin, int end) {
+    SurfaceContacts& piece = pieces[begin / features_per_task];
     FeatureSearch search(obstacles, coefficients, friction, dhat);
     for (int k = begin; k < end; ++k) {
       const int first = static_cast<int>(piece.features.size()), v = candidates[start[k]].vertex;

@@ -13,13 +13,13 @@ namespace drape {
 namespace {
 
 using Eigen::Matrix3d, Eigen::Vector3d;
-constexpr int grain = 1024;  // contacts per task
+constexpr int vertex_contacts_per_task = 1024;
 
 class VertexCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
   VertexCollisions(std::vector<VertexContact> contacts, const BarrierParameters& parameters)
       : contacts_(std::move(contacts)), barriers_(contacts_.size()), p_(parameters) {
-    parallel_for(contact_count(), grain, [&](int begin, int end) {
+    parallel_for(contact_count(), vertex_contacts_per_task, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) barriers_[i] = barrier(contacts_[i].nearest.distance / p_.dhat);
     });
   }

@@ -4,18 +4,18 @@
 
 namespace drape {
 namespace {
-constexpr int grain = 8192;
+constexpr int vertices_per_task = 8192;
 }
 
 double LinearEnergy::value(const Positions& x) const {
-  return parallel_sum(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+  return parallel_sum(static_cast<int>(forces_.rows()), vertices_per_task, [&](int begin, int end) {
     const int count = end - begin;
     return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
   });
 }
 
 double LinearEnergy::add_gradient(const Positions& x, Positions& g) const {
-  parallel_for(static_cast<int>(forces_.rows()), grain, [&](int begin, int end) {
+  parallel_for(static_cast<int>(forces_.rows()), vertices_per_task, [&](int begin, int end) {
     g.middleRows(begin, end - begin) -= forces_.middleRows(begin, end - begin);
   });
   return value(x);

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int grain = 1024;  // contacts per task
+constexpr int contacts_per_task = 1024;
 
 /// Σ c_k x_k over the cloth's vertices: their contribution to the relative position of the two sides.
 Vector3d position(const FrictionContact& contact, const Positions& x) {
@@ -46,7 +46,7 @@ LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& referen
     group_ends_.push_back(size());
   }
   origin_.resize(contacts_.size());
-  parallel_for(size(), grain, [&](int begin, int end) {
+  parallel_for(size(), contacts_per_task, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
       origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i].key, displacements);
   });
@@ -56,7 +56,7 @@ double LaggedFriction::value(const Positions& x) const {
   double sum = 0;
   int first = 0;
   for (const int group_end : group_ends_) {
-    sum += parallel_sum(group_end - first, grain, [&](int begin, int end) {
+    sum += parallel_sum(group_end - first, contacts_per_task, [&](int begin, int end) {
       double part = 0;
       for (int i = first + begin; i < first + end; ++i) part += potential(i, displacement(i, x).norm());
       return part;

@@ -12,7 +12,7 @@
 namespace drape {
 namespace {
 
-using Kind = ConfigNode::Kind;
+using NodeKind = ConfigNode::Kind;
 
 template <class Number>
 std::optional<Number> parse_all(const std::string& text) {
@@ -28,13 +28,13 @@ std::optional<Number> parse_all(const std::string& text) {
 /// The written value, for "must be …, not …".
 std::string shown(const ConfigNode& node) {
   switch (node.kind) {
-    case Kind::null:
+    case NodeKind::null:
       return "empty";
-    case Kind::list:
+    case NodeKind::list:
       return "a list";
-    case Kind::map:
+    case NodeKind::map:
       return "a map";
-    case Kind::scalar:
+    case NodeKind::scalar:
       break;
   }
   const bool number = !node.quoted && parse_number(node.scalar);
@@ -59,7 +59,7 @@ std::string range_fault(double value, const Parameter& p) {
 
 /// What a scalar must be if it is not, else "".
 std::string scalar_fault(const std::string& type, const ConfigNode& node, const Parameter& p) {
-  const bool plain = node.kind == Kind::scalar && !node.quoted;
+  const bool plain = node.kind == NodeKind::scalar && !node.quoted;
   if (type == "number" || type == "integer") {
     if (type == "integer") {
       const auto value = plain ? parse_integer(node.scalar) : std::nullopt;
@@ -72,7 +72,7 @@ std::string scalar_fault(const std::string& type, const ConfigNode& node, const 
   }
   if (type == "boolean")
     return plain && (node.scalar == "true" || node.scalar == "false") ? "" : "true or false";
-  if (node.kind != Kind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
+  if (node.kind != NodeKind::scalar) return p.choices.empty() ? "text" : quoted_choice(p.choices);
   const bool known =
       p.choices.empty() || std::find(p.choices.begin(), p.choices.end(), node.scalar) != p.choices.end();
   return known ? "" : quoted_choice(p.choices);
@@ -82,7 +82,7 @@ void check_scalar(const std::string& type, const std::string& label, const Confi
                   const Parameter& p, ConfigErrors& errors) {
   const std::string fault = scalar_fault(type, node, p);
   if (fault.empty()) return;
-  const std::string nearest = node.kind == Kind::scalar ? nearest_word(node.scalar, p.choices) : "";
+  const std::string nearest = node.kind == NodeKind::scalar ? nearest_word(node.scalar, p.choices) : "";
   errors.push_back({node.where, label + " must be " + fault + ", not " + shown(node) +
                                     (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")});
 }
@@ -94,7 +94,7 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   if (type == "section") items = "maps";
   if (type == "node") items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
   const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
-  if (node.kind != Kind::list) {
+  if (node.kind != NodeKind::list) {
     errors.push_back({node.where, label + " must be " + wanted + ", not " + shown(node)});
   } else if (p.size && int(node.items.size()) != p.size) {
     errors.push_back(
@@ -108,7 +108,7 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
 /// Whether the node is valid for `p.read`; if not, appends an error.
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
-  if (p.nullable && node.kind == Kind::null) return true;
+  if (p.nullable && node.kind == NodeKind::null) return true;
   if (p.type.starts_with("list of "))
     check_list(node, p, errors);
   else if (p.type != "section" && p.type != "node")
@@ -123,7 +123,7 @@ ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
   ConfigNode map = node;
   for (auto& [key, value] : map.entries)
     if (key == "type") key = p.shorthand_key;
-  if (node.kind != Kind::scalar) return map;
+  if (node.kind != NodeKind::scalar) return map;
   map = ConfigNode();
   map.where = node.where;
   map.add(p.shorthand_key, node);
@@ -134,7 +134,7 @@ ConfigNode expand_shorthand(const ConfigNode& node, const Parameter& p) {
 ConfigNode relative_path(const ConfigNode& node) {
   ConfigNode path = node;
   for (ConfigNode& item : path.items) item = relative_path(item);
-  if (node.kind == Kind::scalar && !node.scalar.empty() && node.where.line > 0)
+  if (node.kind == NodeKind::scalar && !node.scalar.empty() && node.where.line > 0)
     path.scalar = (std::filesystem::path(node.where.file).parent_path() / node.scalar).string();
   return path;
 }
@@ -202,7 +202,7 @@ std::string hint_for(const std::string& key, const Schema& schema) {
 
 void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
   const std::string in = name.empty() ? "" : " in " + name;
-  if (map.kind != Kind::map && map.kind != Kind::null) {
+  if (map.kind != NodeKind::map && map.kind != NodeKind::null) {
     const std::string label = name.empty() ? "this" : "\"" + name + "\"";
     errors.push_back({map.where, label + " must be a map of keys and values, not " + shown(map)});
     return;
@@ -237,7 +237,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
 
 ConfigNode Schema::write(const void* object) const {
   ConfigNode map;
-  map.kind = Kind::map;
+  map.kind = NodeKind::map;
   for (const Parameter& p : parameters)
     map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
   return map;

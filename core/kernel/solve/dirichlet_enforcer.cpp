@@ -15,7 +15,7 @@ constexpr double max_remaining = 0.95;
 /// gains a little, and the target is never reached.
 constexpr double min_gain = 1e-4;
 /// Idle doublings after which targets count as infeasible, once the penalty exceeds what the cloth can hold …
-constexpr int max_idle = 4;
+constexpr int max_idle_doublings = 4;
 /// … by this factor over the membrane's stiffness.
 constexpr double excess_stiffness = 10;
 /// Smallest initial penalty, as a fraction of the membrane's stiffness: on fine meshes vertices have little
@@ -110,7 +110,7 @@ bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& 
   } else {
     ++idle_;
   }
-  if (idle_ >= max_idle && stiffness_ * smallest_mass() > excess_stiffness * membrane_stiffness()) {
+  if (idle_ >= max_idle_doublings && stiffness_ * smallest_mass() > excess_stiffness * membrane_stiffness()) {
     infeasible_ = true;
     fixed_ = model_->fixed();
     penalty_.reset();

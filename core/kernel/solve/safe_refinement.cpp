@@ -17,7 +17,7 @@ constexpr double target_step_size = 1e-3;
 constexpr double tolerance = 0.05;
 constexpr int max_steps = 100, max_rounds = 12;
 /// Consecutive rounds without convergence and without fewer violations, after which refinement fails.
-constexpr int max_idle = 4;
+constexpr int max_idle_rounds = 4;
 constexpr std::size_t max_named = 5;  // triangles in a message
 
 /// 1/(2h²) ‖y - y^p‖²_M + κ_a Σ_{f ∉ F} V_f Σ_i (σ_i - 1)², with the level's contact, and its strain
@@ -187,7 +187,7 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
       refined.cancelled = result.outcome == Outcome::cancelled;
       idle = violating < fewest || has_converged(result.outcome) ? 0 : idle + 1;
       fewest = std::min(fewest, violating);
-      if (violating == 0 || refined.cancelled || idle == max_idle) break;
+      if (violating == 0 || refined.cancelled || idle == max_idle_rounds) break;
       objective.relax_target(refined.x);
     }
     if (!refined.cancelled) refined.fault = strain_limit_violations(model.limits(), refined.x, max_named);
