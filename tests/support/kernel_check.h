@@ -94,10 +94,11 @@ struct KernelCheck {
     }
   }
 
+  /// Every width that this machine has registers for; Eigen's arrays are not aligned for wider ones.
   static void all_lanes(const State& x, const Rest& rest, double value_scale) {
     lanes<2>(x, rest, value_scale);
-    lanes<4>(x, rest, value_scale);
-    lanes<8>(x, rest, value_scale);
+    if constexpr (drape::native_pack_width >= 4) lanes<4>(x, rest, value_scale);
+    if constexpr (drape::native_pack_width >= 8) lanes<8>(x, rest, value_scale);
   }
 
   /// The full matrix by the k vertices.

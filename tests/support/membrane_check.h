@@ -61,7 +61,7 @@ void check_membrane(const drape::Energy& energy,
     double smallest = 0;
     for (const auto& x : deformed_triangles()) {
       smallest = std::min(smallest, Check::template projections<double>(x, rest));
-      Check::template projections<Pack<8>>(x, rest);
+      Check::template projections<Pack<native_pack_width>>(x, rest);
     }
     REQUIRE(smallest < -1e-3);  // else nothing was projected
   }

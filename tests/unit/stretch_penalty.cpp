@@ -34,7 +34,7 @@ TEST_CASE("stretch penalty: projection is that of the full element matrix") {
   double smallest = 0;
   for (const auto& x : states()) {
     smallest = std::min(smallest, Check::projections<double>(x, rest));
-    Check::projections<Pack<8>>(x, rest);
+    Check::projections<Pack<native_pack_width>>(x, rest);
   }
   REQUIRE(smallest < -1e-3);  // else nothing was projected
 }

@@ -80,10 +80,11 @@ TEST_CASE("hinge: projection is that of the matrix by the axis and the points' d
       return Eigen::MatrixXd(back.transpose() * h * back);
     };
     smallest = std::min(smallest, Check::projections<double>(x, bent_rest, matrix_of));
-    Check::projections<Pack<8>>(x, bent_rest, matrix_of);
+    Check::projections<Pack<native_pack_width>>(x, bent_rest, matrix_of);
   }
-  REQUIRE(smallest < -1e-3);                                          // else nothing was projected
-  CHECK(Check::projections<Pack<8>>(folded(0), flat_rest) > -1e-12);  // rank one: nothing to project
+  REQUIRE(smallest < -1e-3);  // else nothing was projected
+  CHECK(Check::projections<Pack<native_pack_width>>(folded(0), flat_rest) >
+        -1e-12);  // rank one: nothing to project
 }
 
 TEST_CASE("hinge: rest shapes, flat or bent, are stress-free") {

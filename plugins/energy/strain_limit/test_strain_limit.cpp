@@ -149,7 +149,7 @@ TEST_CASE("strain_limit: a triangle's energy is convex, so that nothing needs to
   for (const auto& x : states()) {
     const double smallest = Check::projections<double>(x, rest);
     CHECK(smallest >= -1e-14);
-    Check::projections<Pack<8>>(x, rest);
+    Check::projections<Pack<native_pack_width>>(x, rest);
   }
 }
 
