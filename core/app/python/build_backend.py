@@ -39,9 +39,9 @@ def _metadata() -> str:
 def _install(package: pathlib.Path) -> None:
     """Configures, builds and installs into `package`, which becomes the Python package."""
     subprocess.run(
-        ["cmake", "-S", SOURCE, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DDRAPE_PYTHON=ON",
-         "-DDRAPE_PYTHON_DIR=.", "-DDRAPE_TESTS=OFF", "-DDRAPE_BENCHMARKS=OFF",
-         f"-DPython_EXECUTABLE={sys.executable}", *shlex.split(os.environ.get("CMAKE_ARGS", ""))], check=True)
+        ["cmake", "--preset", "release", "-B", BUILD, "-DDRAPE_PYTHON=ON", "-DDRAPE_PYTHON_DIR=.", "-DDRAPE_TESTS=OFF",
+         "-DDRAPE_BENCHMARKS=OFF", f"-DPython_EXECUTABLE={sys.executable}",
+         *shlex.split(os.environ.get("CMAKE_ARGS", ""))], cwd=SOURCE, check=True)
     subprocess.run(["cmake", "--build", BUILD], check=True)
     subprocess.run(["cmake", "-E", "rm", "-rf", package], check=True)
     subprocess.run(["cmake", "--install", BUILD, "--prefix", package], check=True)
