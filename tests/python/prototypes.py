@@ -7,6 +7,16 @@ import scipy.sparse.linalg
 import drape
 
 
+def edges(x):
+    """Two edges of triangles m×3×3, each 3×m."""
+    corners = x.transpose(1, 2, 0)
+    return corners[1] - corners[0], corners[2] - corners[0]
+
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
 class NumpyStvk(drape.Energy):
     """The St. Venant-Kirchhoff membrane, as plugins/energy/stvk, in numpy."""
 
@@ -17,47 +27,56 @@ class NumpyStvk(drape.Energy):
         return level.triangles
 
     def rest(self, level, material):
-        x = level.rest[level.triangles]
-        e1, e2 = x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]
-        length = numpy.linalg.norm(e1, axis=1)
-        twice_area = numpy.linalg.norm(numpy.cross(e1, e2), axis=1)
-        shape = numpy.zeros((len(x), 2, 2))  # the edges in the triangle's own plane, as columns
-        shape[:, 0, 0] = length
-        shape[:, 0, 1] = numpy.einsum("mi,mi->m", e1, e2) / length
-        shape[:, 1, 1] = twice_area / length
-        inverse = numpy.linalg.inv(shape)
-        b = numpy.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)  # m×3×2: F = xᵀ b
+        """The inverse of the edges in the triangle's own plane, an upper triangle; volume; mu; lambda."""
+        e1, e2 = edges(level.rest[level.triangles])
+        length = numpy.sqrt(dot(e1, e1))
+        along = dot(e1, e2) / length
+        height = numpy.sqrt(dot(e2, e2) - along**2)
+        inverse = 1 / length, -along / (length * height), 1 / height
         nu = material.poisson_ratio
         mu = material.membrane_modulus / (2 * (1 + nu))
         lam = material.membrane_modulus * nu / (1 - nu * nu)
-        return b, material.thickness * twice_area / 2, mu, lam
+        return inverse, material.thickness * length * height / 2, mu, lam
 
     def strain(self, x, rest):
-        b, _, mu, lam = rest
-        f = numpy.einsum("mvi,mva->mia", x - x[:, :1], b)
-        green = (numpy.einsum("mia,mib->mab", f, f) - numpy.eye(2)) / 2
-        trace = numpy.trace(green, axis1=1, axis2=2)
-        return f, green, trace, 2 * mu * green + lam * trace[:, None, None] * numpy.eye(2)
+        """The columns of F, and 11, 12, 22 of Green's strain and of the stress."""
+        (i11, i12, i22), _, mu, lam = rest
+        e1, e2 = edges(x)
+        f1, f2 = i11 * e1, i12 * e1 + i22 * e2
+        strain = (dot(f1, f1) - 1) / 2, dot(f1, f2) / 2, (dot(f2, f2) - 1) / 2
+        pressure = lam * (strain[0] + strain[2])
+        stress = 2 * mu * strain[0] + pressure, 2 * mu * strain[1], 2 * mu * strain[2] + pressure
+        return f1, f2, strain, stress
 
     def value(self, x, rest):
-        _, volume, mu, lam = rest
-        _, green, trace, _ = self.strain(x, rest)
-        return volume * (mu * (green**2).sum(axis=(1, 2)) + lam / 2 * trace**2)
+        _, volume, _, _ = rest
+        _, _, (e11, e12, e22), (s11, s12, s22) = self.strain(x, rest)
+        return volume / 2 * (s11 * e11 + 2 * s12 * e12 + s22 * e22)
 
     def gradient(self, x, rest):
-        b, volume, _, _ = rest
-        f, _, _, stress = self.strain(x, rest)
-        return numpy.einsum("m,mia,mab,mvb->mvi", volume, f, stress, b)
+        (i11, i12, i22), volume, _, _ = rest
+        f1, f2, _, (s11, s12, s22) = self.strain(x, rest)
+        by_f1, by_f2 = s11 * f1 + s12 * f2, s12 * f1 + s22 * f2
+        g1, g2 = volume * (i11 * by_f1 + i12 * by_f2), volume * i22 * by_f2
+        return numpy.stack([-g1 - g2, g1, g2]).transpose(2, 0, 1)
 
     def hessian(self, x, rest):
-        b, volume, mu, lam = rest
-        f, _, _, stress = self.strain(x, rest)
-        one3, one2 = numpy.eye(3), numpy.eye(2)
-        k = (numpy.einsum("ij,mab->miajb", one3, stress) + lam * numpy.einsum("mia,mjb->miajb", f, f)
-             + mu * numpy.einsum("mib,mja->miajb", f, f)
-             + mu * numpy.einsum("ab,mic,mjc->miajb", one2, f, f))
-        h = numpy.einsum("m,mva,miajb,mwb->mviwj", volume, b, k, b, optimize=True)
-        return h.reshape(len(x), 9, 9)
+        (i11, i12, i22), volume, mu, lam = rest
+        f1, f2, _, (s11, s12, s22) = self.strain(x, rest)
+        one = numpy.eye(3)[:, :, None]
+        f11, f12, f22 = (a[:, None] * b[None] for a, b in ((f1, f1), (f1, f2), (f2, f2)))
+        k11 = s11 * one + (lam + 2 * mu) * f11 + mu * f22
+        k22 = s22 * one + (lam + 2 * mu) * f22 + mu * f11
+        k12 = s12 * one + lam * f12 + mu * f12.swapaxes(0, 1)
+        h = numpy.empty((3, 3, 3, 3, len(x)))  # vertex, axis, vertex, axis
+        h[1, :, 1] = volume * i11**2 * k11 + volume * i11 * i12 * (k12 + k12.swapaxes(0, 1)) + volume * i12**2 * k22
+        h[1, :, 2] = volume * i11 * i22 * k12 + volume * i12 * i22 * k22
+        h[2, :, 1] = h[1, :, 2].swapaxes(0, 1)
+        h[2, :, 2] = volume * i22**2 * k22
+        h[0, :, 1:] = -h[1, :, 1:] - h[2, :, 1:]
+        h[1:, :, 0] = h[0, :, 1:].transpose(1, 2, 0, 3)
+        h[0, :, 0] = -h[0, :, 1] - h[0, :, 2]
+        return h.reshape(9, 9, -1).transpose(2, 0, 1)
 
 
 class Springs(drape.Energy):

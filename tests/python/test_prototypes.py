@@ -37,6 +37,41 @@ def test_a_numpy_membrane_is_its_twin(scene):
     assert abs(h - expected).max() <= 1e-12 * abs(expected).max()
 
 
+@pytest.mark.parametrize("order", [
+    numpy.ascontiguousarray, numpy.asfortranarray,
+    lambda a: numpy.repeat(a, 2, axis=0)[::2], lambda a: numpy.broadcast_to(a, (4,) + a.shape)[1],
+])
+def test_what_a_prototype_returns_may_have_any_order_in_memory(scene, order):
+    level = scene.levels[0]
+
+    class Reordered(prototypes.NumpyStvk):
+        def value(self, x, rest):
+            return order(super().value(x, rest))
+
+        def gradient(self, x, rest):
+            return order(super().gradient(x, rest))
+
+        def hessian(self, x, rest):
+            return order(super().hessian(x, rest))
+
+    x = deformed(level)
+    own, expected = drape.bind_energy(Reordered(), level), drape.bind_energy(prototypes.NumpyStvk(), level)
+    assert own.value(x) == expected.value(x)
+    assert (own.gradient(x) == expected.gradient(x)).all()
+    assert (own.hessian(x) != expected.hessian(x)).nnz == 0
+
+
+def test_positions_of_elements_are_read_only(scene):
+    class Shifts(prototypes.Springs):
+        def gradient(self, x, rest):
+            x += 1
+            return super().gradient(x, rest)
+
+    level = scene.levels[0]
+    with pytest.raises(ValueError, match="read-only"):
+        drape.bind_energy(Shifts(), level).gradient(level.rest)
+
+
 def test_check_energy(capsys):
     assert drape.check_energy(prototypes.NumpyStvk())
     assert drape.check_energy(prototypes.Springs(stiffness=3.0))

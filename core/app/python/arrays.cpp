@@ -23,9 +23,8 @@ py::array array_of_kind(const py::handle& values, const std::string& kinds, cons
 
 std::string shape_text(const py::array& array) { return std::string(py::str(array.attr("shape"))); }
 
-py::array_t<double, py::array::c_style> real_array(const py::handle& values, const std::string& name) {
-  return py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(
-      array_of_kind(values, "fiu", name, "real numbers"));
+py::array_t<double> real_array(const py::handle& values, const std::string& name) {
+  return py::array_t<double>::ensure(array_of_kind(values, "fiu", name, "real numbers"));
 }
 
 py::array_t<int, py::array::c_style> integer_array(const py::handle& values, const std::string& name) {
@@ -42,7 +41,11 @@ Positions positions_of(const py::handle& values, Eigen::Index rows, const std::s
   if (array.ndim() != 2 || array.shape(1) != 3 || (rows >= 0 && array.shape(0) != rows))
     throw py::value_error(name + " must have the shape (" + (rows >= 0 ? std::to_string(rows) : "n") +
                           ", 3), one row a vertex, not " + shape_text(array));
-  return Eigen::Map<const Positions>(array.data(), array.shape(0), 3);
+  Positions positions(array.shape(0), 3);
+  const auto coordinate = array.unchecked<2>();
+  for (Eigen::Index i = 0; i < positions.rows(); ++i)
+    for (int c = 0; c < 3; ++c) positions(i, c) = coordinate(i, c);
+  return positions;
 }
 
 py::object bsr_matrix(const BlockMatrix& matrix) {

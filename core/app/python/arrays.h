@@ -48,9 +48,9 @@ py::array array_of(Matrix matrix) {
 /// "(441, 3)"
 std::string shape_text(const py::array& array);
 
-/// An array as C-contiguous doubles. Throws TypeError for what is not made of real numbers.
-py::array_t<double, py::array::c_style> real_array(const py::handle& values, const std::string& name);
-/// The same of integers, all within int.
+/// An array of doubles, in any order in memory. Throws TypeError for what is not made of real numbers.
+py::array_t<double> real_array(const py::handle& values, const std::string& name);
+/// A C-contiguous array of integers, all within int.
 py::array_t<int, py::array::c_style> integer_array(const py::handle& values, const std::string& name);
 
 /// n×3 positions. Throws ValueError naming `name` and both shapes unless there are `rows` rows; -1 allows

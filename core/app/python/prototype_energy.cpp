@@ -42,24 +42,36 @@ class BoundPythonEnergy final : public BoundEnergy {
       : prototype_(std::move(prototype)), rest_(std::move(rest)), stencils_(std::move(stencils)) {}
 
   double value(const Positions& x) const override {
-    double sum = 0;
-    for (const double energy : evaluate("value", x, {m()}))
-      sum += std::isnan(energy) ? std::numeric_limits<double>::infinity() : energy;
-    return sum;
+    return with_python([&] { return value_at(corners_of(x)); });
   }
 
   double add_gradient(const Positions& x, Positions& g) const override {
-    const std::vector<double> gradients = evaluate("gradient", x, {m(), k(), 3});
-    for (Eigen::Index i = 0; i < stencils_.size(); ++i)
-      for (int c = 0; c < 3; ++c) g(stencils_.data()[i], c) += gradients[3 * i + c];
-    return value(x);
+    return with_python([&] {
+      const py::object corners = corners_of(x);
+      const py::array_t<double> gradients = evaluate("gradient", corners, {m(), k(), 3});
+      const auto gradient = gradients.unchecked<3>();
+      for (py::ssize_t a = 0; a < k(); ++a)
+        for (py::ssize_t e = 0; e < m(); ++e)
+          for (int c = 0; c < 3; ++c) g(stencils_(e, a), c) += gradient(e, a, c);
+      return value_at(corners);
+    });
   }
 
   Stencils stencils() const override { return stencils_; }
 
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     const auto size = static_cast<int>(3 * k());
-    std::vector<double> hessians = evaluate("hessian", x, {m(), size, size});
+    std::vector<double> hessians(static_cast<std::size_t>(m()) * size * size);
+    with_python([&] {
+      const py::array_t<double> returned = evaluate("hessian", corners_of(x), {m(), size, size});
+      const auto hessian = returned.unchecked<3>();
+      parallel_for(static_cast<int>(m()), 64, [&](int begin, int end) {
+        for (int i = 0; i < size; ++i)
+          for (int j = 0; j < size; ++j)
+            for (int e = begin; e < end; ++e)
+              hessians[(static_cast<std::ptrdiff_t>(e) * size + i) * size + j] = hessian(e, i, j);
+      });
+    });
     using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     const auto matrix = [&](int e) {
       return Eigen::Map<Matrix>(hessians.data() + static_cast<std::ptrdiff_t>(e) * size * size, size, size);
@@ -85,21 +97,39 @@ class BoundPythonEnergy final : public BoundEnergy {
   py::ssize_t m() const { return stencils_.rows(); }
   py::ssize_t k() const { return stencils_.cols(); }
 
-  /// What the prototype's function returns for the elements' positions, m×k×3; it must have this shape.
-  std::vector<double> evaluate(const char* function, const Positions& x, const Shape& shape) const {
-    return with_python([&] {
-      py::array_t<double> corners(Shape{m(), k(), 3});
-      for (Eigen::Index i = 0; i < stencils_.size(); ++i)
-        Eigen::Map<Eigen::RowVector3d>(corners.mutable_data() + 3 * i) = x.row(stencils_.data()[i]);
-      const auto values = real_array(prototype_->attr(function)(corners, *rest_), function);
-      if (!std::equal(shape.begin(), shape.end(), values.shape(), values.shape() + values.ndim())) {
-        std::string wanted;
-        for (const py::ssize_t n : shape) wanted += (wanted.empty() ? "" : ", ") + std::to_string(n);
-        throw py::value_error(std::string(py::str(py::type::of(*prototype_))) + "." + function +
-                              " must return the shape (" + wanted + "), not " + shape_text(values));
-      }
-      return std::vector<double>(values.data(), values.data() + values.size());
+  /// The elements' positions, m×k×3 and read-only. The axis of the elements is the innermost in memory: numpy
+  /// keeps this order in what it computes from them, and its loops are fastest along a long axis.
+  py::object corners_of(const Positions& x) const {
+    py::array_t<double> corners(Shape{k(), 3, m()});
+    double* const values = corners.mutable_data();
+    parallel_for(static_cast<int>(m()), 2048, [&](int begin, int end) {
+      for (py::ssize_t a = 0; a < k(); ++a)
+        for (int e = begin; e < end; ++e)
+          for (int c = 0; c < 3; ++c) values[(3 * a + c) * m() + e] = x(stencils_(e, a), c);
     });
+    corners.attr("setflags")(py::arg("write") = false);
+    return corners.attr("transpose")(2, 0, 1);
+  }
+
+  /// What the prototype's function returns for the elements' positions; it must have this shape.
+  py::array_t<double> evaluate(const char* function, const py::object& corners, const Shape& shape) const {
+    py::array_t<double> values = real_array(prototype_->attr(function)(corners, *rest_), function);
+    if (!std::equal(shape.begin(), shape.end(), values.shape(), values.shape() + values.ndim())) {
+      std::string wanted;
+      for (const py::ssize_t n : shape) wanted += (wanted.empty() ? "" : ", ") + std::to_string(n);
+      throw py::value_error(std::string(py::str(py::type::of(*prototype_))) + "." + function +
+                            " must return the shape (" + wanted + "), not " + shape_text(values));
+    }
+    return values;
+  }
+
+  double value_at(const py::object& corners) const {
+    const py::array_t<double> energies = evaluate("value", corners, {m()});
+    const auto energy = energies.unchecked<1>();
+    double sum = 0;
+    for (py::ssize_t e = 0; e < m(); ++e)
+      sum += std::isnan(energy(e)) ? std::numeric_limits<double>::infinity() : energy(e);
+    return sum;
   }
 
   SharedObject prototype_, rest_;
