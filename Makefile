@@ -107,7 +107,7 @@ results: benchmarks
 figures:
 	@benchmarks/fill_figures
 
-FROM ?= $(shell ls -td results/studies/*/ 2>/dev/null | head -1)
+FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 SPHERE = $(FROM)sphere/runs/base/seed_1
 pictures: build setup
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
