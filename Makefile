@@ -127,7 +127,8 @@ fix-format: setup
 
 lint: setup
 	@cmake --preset lint --log-level=ERROR >/dev/null
-	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument '$(LINT)'
+	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument \
+	  -extra-arg=-Wno-unused-command-line-argument '$(LINT)'
 
 clean:
 	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz
