@@ -71,7 +71,7 @@ def conditions(name):
 def record_files():
     """Every file in benchmarks/results that is a record, by its name in stamps.json."""
     found = {str(f.relative_to(RESULTS)) for f in RESULTS.rglob("*") if f.is_file()}
-    return sorted(found - {"stamps.json"} - {name for name in found if name.endswith("/sweep.json")})
+    return sorted(found - {"stamps.json"})
 
 
 def idle(stamp):

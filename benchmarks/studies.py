@@ -7,7 +7,6 @@ benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
-ABLATIONS = ["methods_pinned_square", "methods_sphere", "methods_bunny", "sphere_ablation"]
 RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 METHOD_COLUMNS = "run,method,outcome,vertices,iterations,seconds,energy,intersections"
 
@@ -53,13 +52,7 @@ STUDIES = {
     "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
     "interpolation": previews("interpolation", "the choice of interpolation", 3),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
-    "ablations": {
-        "what": "one choice changed at a time", "timed": False, "starts": 3, "meshes": ["bunny.ply"],
-        "run": [sweep(name, "{out}/" + name) for name in ABLATIONS],
-        "gather": [command for name in ABLATIONS for command in (
-            ["{drape}", "report", "{out}/" + name], ["mkdir", "-p", "{results}/sweeps/" + name],
-            ["cp", "{out}/" + name + "/report.html", "{out}/" + name + "/sweep.json", "{results}/sweeps/" + name])],
-        "records": [f"sweeps/{name}/report.html" for name in ABLATIONS]},
+    "ablations": previews("ablations", "one choice changed at a time", 3),
     "hard": {
         "what": "the hard cases", "timed": False, "starts": 1,
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],

@@ -56,7 +56,7 @@ SweepCommand::SweepCommand(CLI::App& app)
     : sweep_(
           app.add_subcommand("sweep", "run every variation of an experiment; resumes an interrupted sweep")),
       job_(app.add_subcommand("sweep-job", "executed by a sweep's jobs on a cluster")->group("")) {
-  show_example(*sweep_, "drape sweep configs/sweeps/sphere_ablation.yaml -j 2 --dry-run");
+  show_example(*sweep_, "drape sweep configs/sweeps/ablations.yaml -j 2 --dry-run");
   sweep_->add_option("config", config_, "sweep file (YAML)")->required();
   sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
