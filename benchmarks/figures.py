@@ -4,7 +4,7 @@ A function of a record that is not stored raises FileNotFoundError; fill_figures
 
 import re
 
-from records import RESULTS, conditions, figure, median, read, seconds_text
+from records import RESULTS, conditions, figure, median, read, seconds_text, with_range
 
 METHODS = ["pcs", "cascadic", "newton"]
 
@@ -32,8 +32,8 @@ def iterations(records):
     return [median(level) for level in zip(*(r["iterations"] for r in records))]
 
 
-def preview(records, measure, part="preview"):
-    return figure(median([r[part][measure] for r in records]))
+def preview(records, measure):
+    return figure(median([r["preview"][measure] for r in records]))
 
 
 def sphere(columns):
@@ -42,13 +42,13 @@ def sphere(columns):
     cells = {
         "iterations": lambda r: ", ".join(figure(n) for n in iterations(r)),
         "preview [s]": lambda r: seconds_text([x["seconds_of_preview"] for x in r]),
-        "in all [s]": lambda r: seconds_text([x["seconds"] for x in r]),
-        "flops, of direct": lambda r: figure(of(r, "tflop") / direct, 2),
+        "total [s]": lambda r: seconds_text([x["seconds"] for x in r]),
+        "flops, relative to direct": lambda r: figure(of(r, "tflop") / direct, 2),
         "final energy [J]": lambda r: figure(of(r, "energy"), 6),
-        "preview: RMS from its end [diagonals]": lambda r: preview(r, "distance_rms"),
-        "overlap of outlines": lambda r: preview(r, "silhouette_overlap"),
-        "energy above end [J]": lambda r: preview(r, "energy_above_end"),
-        "level 1: RMS": lambda r: preview(r, "distance_rms", "level_1")}
+        "preview: RMS distance from the final state [diagonals]": lambda r: with_range([x["preview"]["distance_rms"] for x in r], lambda v: figure(v, 2)),
+        "silhouette overlap": lambda r: preview(r, "silhouette_overlap"),
+        "preview: energy above the final state [J]": lambda r: preview(r, "energy_above_end"),
+        "level 1: RMS distance": lambda r: with_range([x["level_1"]["distance_rms"] for x in r], lambda v: figure(v, 2))}
     rows = [[m] + [cells[c](runs("sphere", m)) for c in columns] for m in METHODS]
     return table(["method"] + ["Newton iterations by level" if c == "iterations" else c for c in columns], rows,
                  ["sphere.md", "sphere.json"], "ll" + "r" * (len(columns) - 1))
@@ -64,7 +64,7 @@ def scenes(study, columns):
         if len(cells) != len(head) or cells[0] == "method":
             break
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
-    right = "l" + "".join("r" if c in ("preview's time, of cascadic's", "final energy, less cascadic's [J]") else "l" for c in columns)
+    right = "l" + "".join("r" if c in ("preview's time, relative to cascadic", "final energy minus cascadic's [J]") else "l" for c in columns)
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
 
 
@@ -122,7 +122,7 @@ def interpolation():
         rows.append([name, ", ".join(figure(n) for n in iterations(r)), figure(iterations(r)[-1] / iterations(direct)[-1], 2),
                      figure(of(r, "tflop") / of(direct, "tflop"), 2)]
                     + [preview(r, m) for m in ("distance_rms", "silhouette_overlap", "energy_above_end")])
-    return table(["method", "iterations by level", "finest, of direct", "flops in all, of direct", "preview: RMS", "overlap",
+    return table(["method", "iterations by level", "finest, relative to direct", "total flops, relative to direct", "preview: RMS", "overlap",
                   "energy above end [J]"], rows, ["interpolation.md"], "llrrrrr")
 
 
@@ -139,7 +139,7 @@ def ablations():
             rows.append([variant.replace("_", " "), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
                          preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
     # No comment for docs_figures: the flops are compared across variations.
-    return table(["variation", "method", "iterations by level", "flops in all, of direct as it is", "preview: RMS", "overlap",
+    return table(["variation", "method", "iterations by level", "total flops, relative to direct as it is", "preview: RMS", "overlap",
                   "final energy [J]"], rows, [], "lllrrrr")[1:]
 
 
@@ -157,7 +157,7 @@ def progressions():
             rows.append([scene, str(first["vertices"]), variant.replace("_", " "),
                          f"{figure(median(ratios), 2)} ({figure(min(ratios), 2)}–{figure(max(ratios), 2)})"])
     # No comment for docs_figures: ratios start by start stand in no record.
-    return table(["scene", "vertices", "coarse levels", "PCS in all, of direct"], rows, [], "lrlr")[1:]
+    return table(["scene", "vertices", "coarse levels", "PCS, total time relative to direct"], rows, [], "lrlr")[1:]
 
 
 def ratios():
@@ -259,6 +259,13 @@ def solves(*names):
     return len(records), sum(r["intersections"] > 0 for r in records)
 
 
+def flops_of_five_scenes():
+    """PCS's flops over the cascadic method's, lowest and highest of the scenes with a fourth level but for the sphere."""
+    ratios_of = [of(runs("four_levels", "pcs", scene), "tflop") / of(runs("four_levels", "cascadic", scene), "tflop")
+                 for scene in {r["scene"] for r in read("four_levels.json")} - {"sphere"}]
+    return f"{figure(min(ratios_of), 2)} to {figure(max(ratios_of), 2)}"
+
+
 def row_count(name):
     """Rows of a table of runs and how many pass; no state of them may be missing."""
     rows = read(name)
@@ -266,18 +273,18 @@ def row_count(name):
 
 
 TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs / cascadic / direct",
-       "flops in all, of direct: pcs / cascadic", "final energy, less cascadic's [J]"]
+       "total flops, relative to direct: pcs / cascadic", "final energy minus cascadic's [J]"]
 
 BLOCKS = {
-    "sphere": lambda: sphere(["iterations", "preview [s]", "in all [s]", "flops, of direct", "final energy [J]",
-                              "preview: RMS from its end [diagonals]", "overlap of outlines"]),
-    "sphere in full": lambda: sphere(["iterations", "preview [s]", "in all [s]", "flops, of direct", "final energy [J]",
-                                      "preview: RMS from its end [diagonals]", "overlap of outlines", "energy above end [J]",
-                                      "level 1: RMS"]),
-    "six scenes": lambda: scenes("previews", [TOP[0], "preview's time, of cascadic's", *TOP[2:]]),
+    "sphere": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
+                              "preview: RMS distance from the final state [diagonals]", "silhouette overlap"]),
+    "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
+                                      "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
+                                      "preview: energy above the final state [J]", "level 1: RMS distance"]),
+    "six scenes": lambda: scenes("previews", [TOP[0], "preview's time, relative to cascadic", *TOP[2:]]),
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
-        "starts", TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "flops in all, of cascadic", TOP[-1]]),
+        "starts", TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),
     "chosen scenes": chosen_scenes,
     "table 1": table1,
     "remedies": remedies,
@@ -296,6 +303,7 @@ VALUES = {
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
+    "flops of pcs on five scenes, four levels": flops_of_five_scenes,
     "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
     "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),

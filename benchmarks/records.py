@@ -20,14 +20,18 @@ def median(values):
     return statistics.median(known) if known else None
 
 
-def seconds_text(values):
-    """The median to two digits or to the second, with the range where there are several values."""
+def with_range(values, text=figure):
+    """The median, with the range in brackets where the values differ."""
     values = [v for v in values if v is not None]
     if not values:
         return "–"
-    text = lambda v: figure(v, 2) if v < 99.5 else f"{v:.0f}"  # noqa: E731
     low, high = text(min(values)), text(max(values))
     return text(median(values)) + (f" ({low}–{high})" if low != high else "")
+
+
+def seconds_text(values):
+    """Two digits, or whole seconds from a hundred on."""
+    return with_range(values, lambda v: figure(v, 2) if v < 99.5 else f"{v:.0f}")
 
 
 def read(name):

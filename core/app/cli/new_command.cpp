@@ -62,7 +62,7 @@ methods:
 
 std::string text_of(const std::string& file, const std::string& name) {
   const std::string results = "results/" + name;
-  return "# A square of cotton falls over a sphere. Lengths are in metres, masses in kilograms, times in "
+  return "# A square of cotton is draped over a sphere. Lengths are in metres, masses in kilograms, times in "
          "seconds; z\n"
          "# points up. `drape describe experiment` lists every key with its unit, range and default.\n"
          "#\n"

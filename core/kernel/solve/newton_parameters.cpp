@@ -73,9 +73,9 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}})
       .formerly("projection_share")
       .description(
-          "fraction of the projection in the matrix: full (projected Newton), or the smallest of seven "
-          "fractions for which the matrix is positive definite, which approaches the exact Hessian near an "
-          "equilibrium")
+          "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers it "
+          "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
+          "Hessian near an equilibrium")
       .source("departure from the paper");
   d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval)
       .formerly("refresh")

@@ -12,7 +12,7 @@ enum class NewtonForm { quasistatic, statics };
 /// How much of the PSD projection of element Hessians goes into the Newton matrix.
 enum class PsdBlend {
   full,     ///< all of it, in every iteration (projected Newton)
-  adaptive  ///< the smallest of seven fractions for which the matrix is positive definite
+  adaptive  ///< as little as keeps the matrix positive definite (HessianModification)
 };
 
 /// Settings of the Newton solver. All methods share one implementation, so their comparison compares methods.

@@ -79,11 +79,12 @@
     const datasets = data.methods.map(method => {
       const points = data.errors.filter(series => series.method === method).flatMap(series => {
         const errors = (series[target] || {})[measure] || [];
-        return series[cost].map((x, k) => ({x, y: errors[k], level: series.level}));
+        const last = series[cost].length - 1;
+        return series[cost].map((x, k) => ({x, y: errors[k], level: series.level, radius: k === last ? 4.5 : 1.5}));
       }).filter(p => p.x > 0 && p.y > 0);
       const style = methodStyle({method, level: data.finest, iteration: points});
       return Object.assign(style, {data: points, showLine: true, borderWidth: method === data.methods[0] ? 3 : 1.8,
-        pointRadius: points.map((p, k) => points[k + 1] && points[k + 1].level === p.level ? 1.5 : 4.5)});
+        pointRadius: points.map(p => p.radius)});
     }).filter(set => set.data.length > 0);
     const label = item => item.dataset.label + ', level ' + item.raw.level + ': ' + short(item.parsed.x) + ', ' +
       short(item.parsed.y);
