@@ -188,6 +188,26 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(Json::parse(text_of(folder / "out/sweep.json"))["complete"] == true);
 }
 
+TEST_CASE("A run that was stopped resumes from its checkpoint, to the bits of an uninterrupted one") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  folder.write(
+      "s.yaml",
+      "name: s\nbase: e.yaml\nset: {levels: 1, newton: {step_size: 1e-3, step_growth: 1, force_tolerance: "
+      "1e-9, max_steps: 400}}\nmethods: [newton]\nablation:\n  - {name: slow}\n");
+  drape_with("sweep s.yaml --out whole", folder.path);
+  Command command("exec " + drape_command + " sweep s.yaml --out out", folder.path);
+  const std::filesystem::path run = folder / "out/runs/slow/seed_1";
+  while (!std::filesystem::exists(run / "checkpoint/state.bin")) std::this_thread::yield();
+  command.send(SIGINT);
+  REQUIRE(command.wait().exit_code == 130);
+  REQUIRE(runs_of(folder / "out")[0]["status"] == "cancelled");
+  drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(runs_of(folder / "out")[0]["starts"] == 2);
+  CHECK_THAT(text_of(run / "log.jsonl"), Contains("\"run_resumed\""));
+  CHECK(outcome_of(folder / "out") == outcome_of(folder / "whole"));
+}
+
 TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());

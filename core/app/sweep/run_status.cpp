@@ -34,22 +34,34 @@ std::string last_lines(const std::filesystem::path& file) {
   return from == std::string::npos || from == 0 ? text : text.substr(from + 1);
 }
 
-/// Marks the run as running and removes the files of an earlier start.
-RunStatus begin(const RunFiles& files, int threads) {
-  const int starts = read_status(files).starts;
-  RunStatus status{RunState::running, "", 0, 0, starts + 1, threads};
+/// Whether an earlier start was cut and left a state to resume from. Its times count only with the same
+/// threads.
+bool is_resumable(const RunFiles& files, const RunStatus& status, int threads) {
+  return status.state == RunState::cancelled && status.threads == threads &&
+         std::filesystem::exists(files.folder / "checkpoint/state.bin");
+}
+
+/// Marks the run as running, and removes the files of an earlier start that is not resumed.
+RunStatus begin(const RunFiles& files, int threads, bool resumes) {
+  const RunStatus before = read_status(files);
+  RunStatus status{RunState::running, "", 0, resumes ? before.seconds : 0, before.starts + 1, threads};
   write_status(files, status);
-  if (starts > 0) std::filesystem::remove_all(files.folder);
+  if (before.starts > 0 && !resumes) std::filesystem::remove_all(files.folder);
   std::filesystem::remove(files.log());
   return status;
 }
 
-std::vector<std::string> command(const RunFiles& files, int threads, bool report) {
-  std::vector<std::string> all = {own_program(),   "run",       files.config(), "--out",
-                                  files.folder,    "--quiet",   "--threads",    std::to_string(threads),
-                                  "--method",      all_methods,  // the config has the chosen ones only
-                                  "--allow-memory"};             // the sweep has checked it
-  if (!report) all.emplace_back("--no-report");
+std::vector<std::string> command(const RunFiles& files, const RunProcessOptions& options, bool resumes) {
+  // The config has the chosen methods only.
+  std::vector<std::string> all =
+      resumes ? std::vector<std::string>{own_program(), "run", "--resume", files.folder}
+              : std::vector<std::string>{own_program(), "run",      files.config(), "--out",
+                                         files.folder,  "--method", all_methods};
+  // The sweep has checked the memory.
+  for (const std::string& option : {std::string("--quiet"), std::string("--allow-memory"),
+                                    std::string("--threads"), std::to_string(options.threads)})
+    all.push_back(option);
+  if (!options.report) all.emplace_back("--no-report");
   return all;
 }
 
@@ -109,10 +121,11 @@ RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
 
 RunProcess::RunProcess(RunFiles files, const RunProcessOptions& options)
     : files_(std::move(files)),
-      status_(begin(files_, options.threads)),
-      began_(now()),
+      resumes_(is_resumable(files_, read_status(files_), options.threads)),
+      status_(begin(files_, options.threads, resumes_)),
+      began_(now() - status_.seconds),
       time_limit_(options.time_limit),
-      process_(command(files_, options.threads, options.report), files_.log(), files_.log()) {}
+      process_(command(files_, options, resumes_), files_.log(), files_.log()) {}
 
 bool RunProcess::ended() {
   if (status_.state != RunState::running) return true;

@@ -20,7 +20,7 @@ struct RunStatus {
   RunState state = RunState::pending;
   std::string error;
   int exit_code = 0;
-  double seconds = 0;
+  double seconds = 0;  ///< in all starts that it was resumed in
   int starts = 0;
   int threads = 0;
 
@@ -56,7 +56,8 @@ struct RunProcessOptions {
 /// A `drape run` of the files' config; updates the status at its beginning and end.
 class RunProcess {
  public:
-  /// Marks the run as running, removes the files of an earlier start, and starts it.
+  /// Marks the run as running and starts it: from its last checkpoint if it was cut with as many threads,
+  /// otherwise from the beginning, without the files of an earlier start.
   RunProcess(RunFiles files, const RunProcessOptions& options);
 
   bool ended();  ///< updates the status the first time that it is true
@@ -66,8 +67,9 @@ class RunProcess {
 
  private:
   RunFiles files_;
+  bool resumes_;
   RunStatus status_;
-  double began_;
+  double began_;  // as if it had run without a break
   double time_limit_;
   Process process_;
   bool stopped_ = false, too_slow_ = false;

@@ -103,7 +103,8 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     make_folder(files.folder.parent_path());
     RunStatus status = read_status(files);
     if (text_of_file(files.config()) != run.config) {
-      if (status.state == RunState::failed) {  // with a different config
+      if (status.state == RunState::failed ||
+          status.state == RunState::cancelled) {  // with a different config
         status.state = RunState::pending;
         write_status(files, status);
       }
