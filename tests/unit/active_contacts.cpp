@@ -170,6 +170,25 @@ TEST_CASE("Friction keeps the normal forces of the step's start until update_lag
   CHECK(-g.col(2).sum() == Approx(normal_force(0.3 * dhat)));
 }
 
+TEST_CASE("After a reset, contacts at a state do not depend on the states before it") {
+  const Level level = sheet();
+  const Positions far = at(level, 0, 0.5), x0 = at(level, 0, 0.5 * dhat),
+                  x1 = at(level, 20 * epsilon, 0.5 * dhat);
+  ActiveContacts contacts(
+      bound(level, {make_plugin_from<ContactModel>("{type: ipc, stiffness: 100, friction: 0.3, obstacles: "
+                                                   "[{name: plate, meshed_shape: box, size: [1, 1, 0.2], "
+                                                   "translate: [0, 0, -0.1]}]}")}));
+  contacts.begin_step(far);
+  REQUIRE(contacts.count() == 0);
+  for (const Positions& x : {x0, x1}) {
+    contacts.reset();
+    contacts.begin_step(x);
+    CHECK(contacts.count() > 0);
+    CHECK(contacts.barrier(x) > 0);
+    CHECK(contacts.friction(x) == 0);
+  }
+}
+
 TEST_CASE("Tangential displacements persist between steps, limited to the smoothing distance") {
   const Level level = sheet();
   const auto models = bound(level, {a_floor()});

@@ -32,6 +32,14 @@ void ActiveContacts::begin_step(const Positions& x) {
   lag_friction();
 }
 
+void ActiveContacts::reset() {
+  candidates_.clear();
+  collisions_.clear();
+  friction_.clear();
+  state_.resize(0, 3);
+  advected_ = false;
+}
+
 void ActiveContacts::store_tangential_displacements(const Positions& x, const Positions* obstacle_motion) {
   tangential_displacements_.resize(models_.size());
   for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
@@ -64,11 +72,8 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
         kinematic && models_[k] != before[k])
       kinematic->advect(*before[k], from, obstacle_motion);
   store_tangential_displacements(x, &obstacle_motion);
+  reset();
   advected_ = true;
-  candidates_.clear();
-  collisions_.clear();
-  friction_.clear();
-  state_.resize(0, 3);
   build_collisions(x);
   lag_friction();
 }

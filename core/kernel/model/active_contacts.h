@@ -32,6 +32,9 @@ class ActiveContacts {
   /// Starts a step at x: lags friction's normal forces and tangents there, and stores the tangential
   /// displacements.
   void begin_step(const Positions& x);
+  /// Forgets the state: candidates, collisions and friction's history. Call it before begin_step at a state
+  /// that no step has led to.
+  void reset();
   /// Replaces the models, with the cloth at `from`, by those of the same level under another load, with the
   /// cloth at x. Updates tangential displacements by the relative motion of cloth and obstacles.
   void update_obstacles(const BoundContacts& models, const Positions& from, const Positions& x);

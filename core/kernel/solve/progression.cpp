@@ -8,9 +8,10 @@
 namespace drape {
 namespace {
 
-/// Force residual of the state y; 0 if it is infeasible.
+/// Force residual of the state y, of which nothing is known; 0 if its energy or forces are not finite.
 double residual_at(Objective& objective, const Positions& y) {
   Positions g;
+  objective.contacts().reset();
   objective.contacts().begin_step(y);
   if (!std::isfinite(objective.gradient(y, g))) return 0;
   const double residual = free_norm(g, objective.model().fixed()) / objective.residual_scale(y, g);
