@@ -39,6 +39,15 @@ TEST_CASE("The step size grows after full steps up to its limit, and shrinks aft
   CHECK(c.step_size() == 2);
 }
 
+TEST_CASE("The static form keeps the step size, which scales its decrement") {
+  NewtonParameters p = doubling();
+  p.form = NewtonForm::statics;
+  StepController c(p);
+  step(c, 1);
+  step(c, 0.1);
+  CHECK(c.step_size() == 1);
+}
+
 TEST_CASE("A step size beyond the limit stays") {
   NewtonParameters p = doubling();
   p.step_size = 10;

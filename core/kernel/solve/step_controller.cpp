@@ -49,6 +49,7 @@ void StepController::end_iteration(double step_length, bool updated) {
 }
 
 void StepController::end_step(double force_residual) {
+  if (is_static()) return;  // has no h to adapt
   int& stalls = s_.stall_count;
   double& h = s_.step_size;
   stalls = force_residual > stall_residual ? std::max(stalls, 0) + 1 : std::min(stalls, 0) - 1;
