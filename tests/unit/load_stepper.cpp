@@ -119,6 +119,16 @@ TEST_CASE("Each increment that ends is reported with its own counts") {
   CHECK(c.problem.result.load_stepping.increment == 3);
 }
 
+TEST_CASE("The seconds of a level's first increment are without those of coarser levels") {
+  Case c;
+  const Stopwatch method(1000);
+  LoadStepper stepper(&c.loads, c.problem.iterate, c.dirichlet, method, c.observer);
+  stepper.report_increment();
+  REQUIRE(c.observer.rows.size() == 1);
+  CHECK(c.observer.rows[0].seconds >= 0);
+  CHECK(c.observer.rows[0].seconds < 500);
+}
+
 TEST_CASE("Without equilibrium the next increment begins at once, but never the rest of one") {
   Case c;
   CHECK(!c.stepper.advances_at_once());

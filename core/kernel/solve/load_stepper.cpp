@@ -32,7 +32,9 @@ LoadStepper::LoadStepper(LoadStepping* load_stepping, Iterate& iterate, Dirichle
       iterate_(iterate),
       dirichlet_(dirichlet),
       clock_(clock),
-      observer_(observer) {}
+      observer_(observer) {
+  s_.start.seconds = clock.seconds();
+}
 
 std::optional<double> LoadStepper::time() const {
   if (!load_stepping_) return std::nullopt;

@@ -8,10 +8,10 @@
 
 namespace drape {
 
-/// Counts of a level when the current increment began.
+/// When the current increment began.
 struct IncrementStart {
-  int steps = 0, iterations = 0;
-  double seconds = 0;
+  int steps = 0, iterations = 0;  ///< of the level
+  double seconds = 0;             ///< of the method
 };
 
 /// Motion of the cloth in answer to a partly applied increment; the predictor extrapolates it.
