@@ -151,7 +151,8 @@ methods: {pcs: {}}
   for (const LevelResult& level : s.levels) {
     CHECK(level.outcome == Outcome::infeasible);
     CHECK_THAT(level.message,
-               Catch::StartsWith("pin 0 stopped 0.0") &&
+               Catch::StartsWith(std::string(level.level == 0 ? "at pseudo-time 0.333 " : "") +
+                                 "pin 0 stopped 0.0") &&
                    Catch::Contains(" short of its target (vertex 44), blocked by cloth triangle ") &&
                    Catch::EndsWith("and ball: sphere; the rest of the cloth is at equilibrium"));
     CHECK(level.force_residual <= 1e-3);
@@ -160,6 +161,32 @@ methods: {pcs: {}}
     CHECK(above < 1e-3);
   }
   CHECK(increments.intersections == 0);
+}
+
+TEST_CASE("A target that an earlier increment did not reach stays in the level's message", "[physics]") {
+  Solved s = scene_from(R"(
+name: dragged_and_back
+cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
+levels: 1
+start: {translate: [-0.25, -0.25, 0.22]}
+pins:
+  - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
+  - {region: nearest, point: [0, 0, 0]}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.2}]
+schedule:
+  steps: 4
+  keys: [{parameter: pins.0.translate, times: [0, 1, 2],
+          values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]
+methods: {pcs: {}}
+)");
+  Increments increments(s);
+  run(s, increments);
+  REQUIRE(s.levels.size() == 1);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+  CHECK_THAT(s.levels[0].message, Catch::StartsWith("at pseudo-time 0.5 pin 0 stopped 0.0") &&
+                                      Catch::Contains(" short of its target (vertex 44), blocked by cloth"));
 }
 
 TEST_CASE("Jumps of loads, materials and limits leave a feasible state", "[physics]") {

@@ -35,6 +35,8 @@ TEST_CASE("The tolerances ask for a small residual, and for three small decremen
     each->note_decrement(1e-4);
     CHECK(each->in_tolerance());
   }
+  restored.restart();  // for another objective, to which earlier decrements say nothing
+  CHECK(!restored.in_tolerance());
   problem.move_to(rest().array() + 0.1);
   CHECK(!check.in_tolerance());
 }

@@ -16,8 +16,7 @@ void EquilibriumCheck::restore(const State& s) {
 
 bool EquilibriumCheck::in_tolerance() {
   if (!(iterate_.force_residual() <= p_.force_tolerance)) return false;  // also false for NaN
-  if (p_.decrement_tolerance > 0 &&
-      (iterate_.result().iterations < 3 || *std::ranges::max_element(decrements_) > p_.decrement_tolerance))
+  if (p_.decrement_tolerance > 0 && *std::ranges::max_element(decrements_) > p_.decrement_tolerance)
     return false;
   iterate_.update_friction();
   return iterate_.force_residual() <= p_.force_tolerance;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 #include "core/kernel/solve/iterate.h"
 #include "core/kernel/solve/newton_parameters.h"
@@ -13,7 +14,8 @@ namespace drape {
 class EquilibriumCheck {
  public:
   struct State {
-    std::array<double, 3> decrements{};  ///< of the last three iterations; iteration k is at k mod 3 [m/s]
+    /// Of the last three iterations, +∞ before there are as many; iteration k is at k mod 3 [m/s].
+    std::array<double, 3> decrements = unknown_decrements();
     std::array<double, 3> initial_centroid{};  ///< of the free vertices where the drift begins [m]
     IdleSteps::State idle;
   };
@@ -41,15 +43,23 @@ class EquilibriumCheck {
   void note_decrement(double decrement) { decrements_[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
-  /// Restarts the count of idle steps, for another objective.
-  void restart_idle_steps() { idle_.restart(); }
+  /// For another objective: restarts the count of idle steps and forgets the decrements.
+  void restart() {
+    idle_.restart();
+    decrements_ = unknown_decrements();
+  }
   /// Measures the drift from here on.
   void restart_drift() { initial_centroid_ = iterate_.free_centroid(); }
 
  private:
+  static constexpr std::array<double, 3> unknown_decrements() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {infinity, infinity, infinity};
+  }
+
   Iterate& iterate_;
   const NewtonParameters& p_;
-  std::array<double, 3> decrements_{};
+  std::array<double, 3> decrements_ = unknown_decrements();
   Eigen::RowVector3d initial_centroid_ = Eigen::RowVector3d::Zero();
   IdleSteps idle_;
   double rounding_residual_ = 0;

@@ -180,7 +180,7 @@ class Newton {
     if (dirichlet_.infeasible() || !f_.switch_to_plain()) return false;
     switched_to_plain_ = true;
     step_.restart();
-    check_.restart_idle_steps();
+    check_.restart();
     iterate_.evaluate();
     iterate_.update_residual();
     return true;
@@ -200,15 +200,24 @@ class Newton {
   }
 
   void advance_increment(bool at_equilibrium) {
+    note_unreached_targets();
     load_.advance(at_equilibrium);
     check_.restart_drift();
-    check_.restart_idle_steps();
+    check_.restart();
     step_.factor().invalidate();
     predictor_.enforce();
   }
 
+  /// The next increment has other targets, so what this one did not reach would be forgotten: the first such
+  /// increment stays in the level's message.
+  void note_unreached_targets() {
+    constexpr const char* begin = "at pseudo-time ";
+    if (dirichlet_.infeasible() && result_.message.find(begin) == std::string::npos)
+      add_to_message(begin + three_digits(*load_.time()) + " " + dirichlet_.message(iterate_.x()));
+  }
+
   void increase_penalty() {
-    check_.restart_idle_steps();
+    check_.restart();
     predictor_.increase_penalty();
   }
 

@@ -18,15 +18,16 @@ struct LevelRun {
   const NewtonState* from = nullptr;         ///< state to resume from; null to start anew
   LoadStepping* load_stepping = nullptr;     ///< null without a schedule
   std::string remark = {};                   ///< beginning of the result's message
-  /// Force residual of a state, prolonged to the next level; 0 if it is infeasible there.
+  /// Force residual of a state, prolonged to the next level; 0 if its energy or forces there are not finite.
   std::function<double(const Positions& x)> residual_on_next_level = {};
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps
 ///   x^{t+1} = argmin 1/(2h²) ‖x − x^t‖²_M + F(x)
 /// with a filtered line search; fixed vertices stay. If the run has a state to resume from, x is ignored.
-/// Load stepping that has begun on the level is carried through all its increments. If Dirichlet vertices or
-/// obstacles cannot reach their targets, the rest of the cloth is solved and the result is `infeasible`.
+/// Load stepping that has begun on the level is carried through all its increments. If obstacles or, in the
+/// last increment, Dirichlet vertices cannot reach their targets, the rest of the cloth is solved and the
+/// result is `infeasible`. The message names the first earlier increment whose targets were not reached.
 LevelResult minimise(Objective& objective, Positions x, const NewtonParameters& parameters,
                      const LevelRun& run);
 
