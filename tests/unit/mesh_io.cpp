@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 
+#include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
 
@@ -348,6 +349,11 @@ TEST_CASE("a write that fails leaves the old file and no part", "[io]") {
                       "cannot write " + (scratch.root / "n.ply").string() + ": No space left on device");
     CHECK_FALSE(fs::exists(scratch.root / "n.ply"));
   }
+}
+
+TEST_CASE("A file that cannot be flushed to the disk is told, but not one that has no disk", "[io]") {
+  CHECK_THROWS_AS(sync_to_disk("/nowhere/at_all"), WriteError);
+  CHECK_NOTHROW(sync_to_disk("/dev/null"));
 }
 
 TEST_CASE("fields must fit the mesh", "[io]") {

@@ -112,9 +112,11 @@ std::uint32_t checksum_of(std::string_view bytes) {
 
 void sync_to_disk(const std::filesystem::path& path) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return;
-  fsync(file);
+  if (file < 0) throw unwritten(path, errno);
+  // EINVAL, EROFS: there is nothing behind this file that could be flushed.
+  const int error = fsync(file) == 0 || errno == EINVAL || errno == EROFS ? 0 : errno;
   close(file);
+  if (error != 0) throw unwritten(path, error);
 }
 
 }  // namespace drape

@@ -82,7 +82,9 @@ struct LevelResult {
   Outcome outcome = Outcome::converged;
   std::string message;  ///< remarks on the start, then what stopped it if it did not converge
   Positions x;
-  bool from_initial_state = false;  ///< started from the scene's start, not from a coarser level
+  /// Whether no coarser level counts towards its cost. False for a level whose refinement failed, so that it
+  /// started from the scene's start all the same: the attempt counts.
+  bool from_initial_state = false;
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
   double flops = 0;  ///< of the factorisations; a failed one counts in full
   double seconds = 0;
