@@ -22,7 +22,12 @@ async function reportPictures(chrome) {
       width: box.width + 2 * margin, height: box.height + 2 * margin}});
   };
   await page.locator('#error-target').selectOption('own');
-  await picture('#errors-section .charts', 'speed_against_error.png', 0);  // controls are close above
+  await page.evaluate(() => {  // a picture has no controls
+    const section = document.querySelector('#errors-section');
+    section.querySelectorAll('.controls, .data, figcaption label').forEach(element => { element.style.display = 'none'; });
+    section.querySelector('figcaption label').parentElement.append('Distance, RMS, from the final state.');
+  });
+  await picture('#errors-section .charts', 'speed_against_error.png');
   await picture('#viewer', 'viewer.png');
 }
 
