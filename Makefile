@@ -16,8 +16,8 @@
 # make data     fetch scanned meshes and make obstacles of them: data/*.ply (third_party/data/meshes.txt)
 # make bench    build and run the benchmark programs, to results/*.json; benchmarks alone builds them
 # make hard     the study of the hard cases (docs/results/hard-cases.md)
-# make pictures the pictures of README and docs, from the runs of the studies sphere and table1 that `make results` has left; FROM=
-#               results/studies/COMMIT/ chooses the build, the newest otherwise
+# make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
+#               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins (LINT= a regular expression of folders)
 # make clean    remove what was built
@@ -110,15 +110,17 @@ figures:
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
 SPHERE = $(FROM)sphere/runs/base/seed_3
-pictures: build setup
+DRAW = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
+pictures: benchmarks data
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
 	$(BUILD)/bin/drape report $(SPHERE)
 	@tests/browser/install $(BUILD)/tests/browser
 	DRAPE_BIN=$(abspath $(BUILD))/bin DRAPE_NODE_MODULES=$(abspath $(BUILD))/tests/browser node docs/pictures/make.mjs $(SPHERE)
 	$(foreach m,pcs cascadic newton,$(foreach l,0 3,cp $(SPHERE)/pictures/$(m)_l$(l).png docs/pictures/sphere_$(m)_l$(l).png;))
-	@for run in $(patsubst %/finished.txt,%,$(wildcard $(FROM)table1/bunny/*/finished.txt)); do $(BUILD)/bin/drape report $$run || exit; \
-	  for picture in $$run/pictures/$${run##*/}_l[03].png; do to=docs/pictures/bunny_$${picture##*/}; \
-	    [ ! -f $$to ] || cp $$picture $$to; done; done
+	$(BUILD)/bin/drape run $(DRAW) -o results/pictures/locking --overwrite
+	$(foreach m,pcs pcs_loop unrelaxed cascadic,$(foreach l,0 1 2,cp results/pictures/locking/pictures/$(m)_l$(l).png docs/pictures/locking_$(m)_l$(l).png;))
+	$(BUILD)/bin/drape run configs/bunny_shawl.yaml --method pcs -o results/pictures/shawl --overwrite
+	$(foreach l,0 2,$(BUILD)/bin/drape export results/pictures/shawl --to docs/pictures/shawl_l$(l).png --level $(l) --view=-0.5,-1,0.6 --width 900 --overwrite;)
 
 format: setup
 	@clang-format --dry-run -Werror $(SOURCES)

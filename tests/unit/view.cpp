@@ -8,6 +8,7 @@
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
+#include "core/kernel/elements/vertex_fields.h"
 
 using namespace drape;
 
@@ -103,10 +104,10 @@ TEST_CASE("mean curvature of a cylinder bent downwards is half its inverse radiu
     const double angle = (level.rest.vertices(i, 0) - 0.5) / radius;
     x.row(i) << radius * std::sin(angle), level.rest.vertices(i, 1), radius * std::cos(angle);
   }
-  const Eigen::VectorXd h = mean_curvature(level, x);
+  const Eigen::VectorXd h = mean_curvature(x, level.rest.triangles, level.hinges);
   for (Eigen::Index i = 0; i < x.rows(); ++i)
     if (!level.topology.on_border[i]) REQUIRE(h[i] == Approx(0.5 / radius).epsilon(0.02));
-  CHECK(mean_curvature(level, level.rest.vertices).isZero(0));
+  CHECK(mean_curvature(level.rest.vertices, level.rest.triangles, level.hinges).isZero(0));
 }
 
 TEST_CASE("largest stretch is the larger of two") {

@@ -21,13 +21,6 @@ const std::vector<FieldKind>& derived_fields();
 /// Values by the name of their kind.
 using SurfaceFields = std::vector<std::pair<std::string, Eigen::VectorXd>>;
 
-/// n mean curvatures H_i = ¼ Σ_e ‖e‖ θ_e / A_i [1/m], over inner edges, θ_e > 0 where the surface is
-/// convex, A_i a third of the deformed triangles around i; NaN where there is no area.
-Eigen::VectorXd mean_curvature(const Level& level, const Positions& x);
-
-/// n largest principal stretches of the triangles around each vertex [1].
-Eigen::VectorXd largest_stretch(const Level& level, const Positions& x);
-
 /// n distances to the nearest triangle of the obstacles, or of the cloth itself farther away than three
 /// ranges at rest [m]; NaN beyond `range`. For an obstacle in closed form, the distance to its displayed
 /// mesh.

@@ -5,6 +5,7 @@
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
+#include "core/kernel/elements/vertex_fields.h"
 
 namespace drape {
 
@@ -46,7 +47,8 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const std::vector<T
 
 SurfaceFields ViewDocument::fields(int level, const Positions& x) const {
   const Level& l = levels_[level];
-  SurfaceFields all = {{"mean_curvature", mean_curvature(l, x)}, {"stretch", largest_stretch(l, x)}};
+  SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
+                       {"stretch", largest_stretch(l, x)}};
   if (with_gaps_) all.emplace_back("gap", contact_gap(l, x, obstacles_, shown_gap(levels_.front())));
   return all;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/elements/vertex_fields.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
 
@@ -115,21 +116,7 @@ VertexCurvatures fit_curvatures(const Positions& x, const Triangles& triangles, 
 
 VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, const Topology& topology) {
   VertexCurvatures result = sized(x.rows());
-  result.mean.setZero();
-  const auto hinges = topology.hinges(triangles);
-  Eigen::VectorXd bend(hinges.rows());  // ‖e‖ θ_e
-  parallel_for(static_cast<int>(hinges.rows()), grain, [&](int begin, int end) {
-    for (int h = begin; h < end; ++h) {
-      const Vector3d x0 = vertex(x, hinges(h, 0)), edge = vertex(x, hinges(h, 1)) - x0;
-      const Vector3d n1 = edge.cross(vertex(x, hinges(h, 2)) - x0);
-      const Vector3d n2 = (vertex(x, hinges(h, 3)) - x0).cross(edge);
-      const double length = edge.norm();
-      bend[h] = length * std::atan2(n1.cross(n2).dot(edge), length * n1.dot(n2));
-    }
-  });
-  for (Eigen::Index h = 0; h < hinges.rows(); ++h)
-    for (int end = 0; end < 2; ++end) result.mean[hinges(h, end)] += 0.25 * bend[h];
-
+  result.mean = mean_curvature(x, triangles, topology.hinges(triangles));
   parallel_for(static_cast<int>(x.rows()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       double angles = 0, area = 0;
@@ -145,7 +132,6 @@ VertexCurvatures ddg_curvatures(const Positions& x, const Triangles& triangles, 
         throw std::runtime_error("curvature: the triangles around vertex " + std::to_string(i) +
                                  " have no area");
       const double whole = topology.on_border[i] ? std::numbers::pi : 2 * std::numbers::pi;
-      result.mean[i] /= area;
       result.gaussian[i] = (whole - angles) / area;
       const double radius = std::sqrt(std::max(result.mean[i] * result.mean[i] - result.gaussian[i], 0.0));
       result.kappa1[i] = result.mean[i] + radius;

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/kernel/elements/stretch.h"
+#include "core/kernel/elements/vertex_fields.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace drape {
@@ -33,7 +34,6 @@ MetricDeclaration Stretch::declaration() const {
 MetricResult Stretch::measure(const MetricInput& input) const {
   const Positions& x = input.x;
   double largest = 0, smallest = std::numeric_limits<double>::infinity(), weighted_sum = 0, area_sum = 0;
-  Eigen::VectorXd vertex_stretch = Eigen::VectorXd::Zero(x.rows());
   for (int t = 0; t < input.level.triangle_count(); ++t) {
     const auto corner = input.level.rest.triangles.row(t);
     const RestTriangle triangle = RestTriangle::of(input.level, t);
@@ -43,14 +43,13 @@ MetricResult Stretch::measure(const MetricInput& input) const {
     smallest = std::min(smallest, s.smallest);
     weighted_sum += triangle.area * s.largest;
     area_sum += triangle.area;
-    for (const int i : corner) vertex_stretch[i] = std::max(vertex_stretch[i], s.largest);
   }
 
   MetricResult result;
   result.values = {{"largest_stretch", largest},
                    {"smallest_stretch", smallest},
                    {"mean_stretch", weighted_sum / area_sum}};
-  result.fields = {{"stretch", vertex_stretch, "1"}};
+  result.fields = {{"stretch", largest_stretch(input.level, x), "1"}};
   return result;
 }
 
