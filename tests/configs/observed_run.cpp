@@ -1,11 +1,14 @@
 // A run's observer sees what is recorded, and may stop the run or refine a level.
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include "core/app/report/run_data.h"
 #include "core/app/run/runner.h"
+#include "core/app/view/live_view.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
+#include "tests/support/live_client.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -14,23 +17,29 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Watch : Observer {
-  int iterations = 0, levels = 0, most = 1 << 20, refine_after = 1 << 20;
+  int iterations = 0, levels = 0, most = 1 << 20, most_levels = 1 << 20, refine_after = 1 << 20;
   Positions last;
   void iteration(const IterationRow&, const Positions& x) override {
     ++iterations;
     last = x;
   }
   void level_finished(const LevelResult&) override { ++levels; }
-  bool stop_requested() override { return iterations >= most; }
+  bool stop_requested() override { return iterations >= most || levels >= most_levels; }
   bool refine_requested() override { return levels == 0 && iterations >= refine_after; }
 };
 
-/// The run's record; `watch` sees it.
-RunData run_with(Watch& watch) {
+/// How a run ended, by its record and by its live view.
+struct Observed {
+  RunData data;
+  std::string shown;
+};
+
+/// Runs an experiment, which `watch` sees.
+Observed observed(Watch& watch, const Overrides& overrides = {}) {
   const Scratch folder;
   ConfigErrors errors;
-  const auto experiment = read_experiment(fs::path(folders::source()) / "tests/configs/data/small.yaml", {},
-                                          test_registry(), errors);
+  const auto experiment = read_experiment(fs::path(folders::source()) / "tests/configs/data/small.yaml",
+                                          overrides, test_registry(), errors);
   throw_errors(errors);
   const auto scene = build_scene(*experiment, errors);
   throw_errors(errors);
@@ -40,9 +49,20 @@ RunData run_with(Watch& watch) {
   options.verbosity = Verbosity::quiet;
   options.report = false;
   options.observer = &watch;
+  LiveView view(*experiment, *scene, options.methods, 0);
+  options.view = &view;
   run_experiment(*experiment, *scene, options);
-  return read_run(options.out);
+  const LiveAddress address(view.url());
+  const LiveClient client(address.port);
+  REQUIRE(
+      client.send(address.request("GET", address.path + "news?version=0&rows=0", "Connection: close\r\n")));
+  const std::string answer = client.answer(30).value_or("");
+  return {read_run(options.out),
+          nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4))["outcome"]};
 }
+
+/// The record of that run.
+RunData run_with(Watch& watch) { return observed(watch).data; }
 
 }  // namespace
 
@@ -72,4 +92,20 @@ TEST_CASE("an observer refines a level") {
   const RunData run = run_with(watch);
   CHECK(run.methods.at(0).levels.at(0).status == "refined_early_on_request");
   CHECK(run.methods.at(0).levels.size() == 2);
+}
+
+TEST_CASE("a request to stop is heeded while the reference is solved and errors are measured") {
+  Watch watch;
+  watch.most_levels = 2;  // all that the method has
+  const Observed run = observed(watch, {{"reference", "{method: pcs, force_tolerance: 1e-9}"}});
+  CHECK(run.data.methods.at(0).status == "converged");
+  CHECK_FALSE(run.data.complete);
+  CHECK(run.shown.starts_with("stopped on request; the results are in "));
+}
+
+TEST_CASE("a run that nothing stops ends with its outcome on the live view") {
+  Watch watch;
+  const Observed run = observed(watch);
+  CHECK(run.data.complete);
+  CHECK(run.shown.starts_with("everything converged; the results are in "));
 }

@@ -2,9 +2,6 @@
 
 #include "core/app/view/live_server.h"
 
-#include <arpa/inet.h>
-#include <poll.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -12,47 +9,11 @@
 #include <optional>
 
 #include "core/kernel/linear_algebra/stopwatch.h"
+#include "tests/support/live_client.h"
 
 using namespace drape;
 
 namespace {
-
-/// A connection to the server.
-class Client {
- public:
-  explicit Client(int port) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    REQUIRE(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
-  }
-  ~Client() { close(socket_); }
-  Client(const Client&) = delete;
-
-  /// Whether all of it could be sent.
-  bool send(const std::string& text) const {
-    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(text.size());
-  }
-
-  /// What comes until the server closes the connection; nothing where that takes longer.
-  std::optional<std::string> answer(double seconds) const {
-    const Stopwatch watch;
-    std::string all;
-    char buffer[4096];
-    while (watch.seconds() < seconds) {
-      pollfd one{socket_, POLLIN, 0};
-      if (poll(&one, 1, 10) <= 0) continue;
-      const ssize_t n = recv(socket_, buffer, sizeof buffer, MSG_DONTWAIT);
-      if (n <= 0) return all;
-      all.append(buffer, static_cast<std::size_t>(n));
-    }
-    return std::nullopt;
-  }
-
- private:
-  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-};
 
 struct Served {
   int stops = 0;
@@ -61,16 +22,16 @@ struct Served {
                       [this](const std::string&) { return std::make_shared<const std::string>(body); },
                       [this] { ++stops; }, [] { return ""; }};
   std::optional<LiveServer> server{std::in_place, 0, answers};
-  std::string host = server->url().substr(7, server->url().find('/', 7) - 7);
-  std::string path = server->url().substr(server->url().find('/', 7));
-  int port = std::stoi(host.substr(host.find(':') + 1));
+  LiveAddress address{server->url()};
+  std::string path = address.path;
+  int port = address.port;
 
   std::string request(const std::string& method, const std::string& target,
                       const std::string& more = "") const {
-    return method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\n" + more + "\r\n";
+    return address.request(method, target, more);
   }
   std::optional<std::string> answer(const std::string& request, double seconds = 10) const {
-    const Client client(port);
+    const LiveClient client(port);
     client.send(request);
     return client.answer(seconds);
   }
@@ -90,17 +51,17 @@ struct Served {
 TEST_CASE("forty slow peers delay neither the page nor the shutdown") {
   Served served;
   REQUIRE(served.serves_page(10));
-  std::vector<std::unique_ptr<Client>> slow;
+  std::vector<std::unique_ptr<LiveClient>> slow;
   for (int k = 0; k < 40; ++k) {
-    slow.push_back(std::make_unique<Client>(served.port));
+    slow.push_back(std::make_unique<LiveClient>(served.port));
     slow.back()->send("GET / HTTP/1.1\r\n");
   }
   const Stopwatch attack;
   int pages = 0;
   while (attack.seconds() < 3) {
-    for (std::unique_ptr<Client>& client : slow)
+    for (std::unique_ptr<LiveClient>& client : slow)
       if (!client->send("X-A: b\r\n")) {  // closed by the server: comes again
-        client = std::make_unique<Client>(served.port);
+        client = std::make_unique<LiveClient>(served.port);
         client->send("GET / HTTP/1.1\r\n");
       }
     REQUIRE(served.serves_page(10));
@@ -115,9 +76,9 @@ TEST_CASE("forty slow peers delay neither the page nor the shutdown") {
 TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
   Served served;
   served.body = std::string(50000000, 'p');
-  std::vector<std::unique_ptr<Client>> deaf;
+  std::vector<std::unique_ptr<LiveClient>> deaf;
   for (int k = 0; k < 4; ++k) {
-    deaf.push_back(std::make_unique<Client>(served.port));
+    deaf.push_back(std::make_unique<LiveClient>(served.port));
     deaf.back()->send(served.request("GET", served.path + "block/b"));
   }
   CHECK(served.status(served.request("GET", "/")) == 404);
@@ -128,7 +89,7 @@ TEST_CASE("a peer that reads none of its answer does not delay the shutdown") {
 
 TEST_CASE("a request that does not arrive in time, or has too many bytes, is given up") {
   const Served served;
-  const Client idle(served.port), endless(served.port);
+  const LiveClient idle(served.port), endless(served.port);
   const Stopwatch watch;
   for (int k = 0; k < 1000 && endless.send("X-A: " + std::string(1000, 'a') + "\r\n"); ++k) usleep(1000);
   CHECK(watch.seconds() < 4);  // closed after some of it

@@ -100,11 +100,10 @@ class RunObserver : public Observer {
   const std::function<bool()>& stop_;
 };
 
-/// Observes a solve that belongs to no method; it is not recorded.
+/// Observes a solve that belongs to no method: it is not recorded, and stops when the run is to stop.
 class UnrecordedObserver : public Observer {
  public:
-  UnrecordedObserver(Progress& progress, const std::function<bool()>& stop)
-      : progress_(progress), stop_(stop) {}
+  UnrecordedObserver(Progress& progress, RunObserver& run) : progress_(progress), run_(run) {}
 
   void level_started(int level) override {
     progress_.method_started("reference");
@@ -112,11 +111,11 @@ class UnrecordedObserver : public Observer {
   }
   void iteration(const IterationRow& row, const Positions& x) override { progress_.iteration(row, x); }
   void level_finished(const LevelResult& result) override { progress_.level_finished(result); }
-  bool stop_requested() override { return stop_ && stop_(); }
+  bool stop_requested() override { return run_.stop_requested(); }
 
  private:
   Progress& progress_;
-  const std::function<bool()>& stop_;
+  RunObserver& run_;
 };
 
 /// The resolved experiment with paths to the copies of mesh files in the results folder.
@@ -227,7 +226,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     all_converged = all_converged && converged;
     checkpoints.method_finished(converged);
   }
-  UnrecordedObserver unrecorded(progress, options.stop);
+  UnrecordedObserver unrecorded(progress, observer);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
   const bool complete = !cancelled && measured;
   recorder.run_finished(complete);
@@ -235,7 +234,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   if (options.report) report_on(folder, [&] { return observer.stop_requested(); });
   const bool good = all_converged && recorder.intersection_free();
   if (options.view)
-    options.view->run_finished((cancelled ? "stopped on request"
+    options.view->run_finished((!complete ? "stopped on request"
                                 : good    ? "everything converged"
                                           : "not everything converged") +
                                ("; the results are in " + folder.path().string()));

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <arpa/inet.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <optional>
+#include <string>
+
+#include "core/kernel/linear_algebra/stopwatch.h"
+
+/// The parts of a live view's address, http://HOST:PORT/TOKEN/.
+struct LiveAddress {
+  explicit LiveAddress(const std::string& url)
+      : host(url.substr(7, url.find('/', 7) - 7)),
+        path(url.substr(url.find('/', 7))),
+        port(std::stoi(host.substr(host.find(':') + 1))) {}
+
+  std::string request(const std::string& method, const std::string& target,
+                      const std::string& more = "") const {
+    return method + " " + target + " HTTP/1.1\r\nHost: " + host + "\r\n" + more + "\r\n";
+  }
+
+  std::string host, path;
+  int port;
+};
+
+/// A connection to a live view's server.
+class LiveClient {
+ public:
+  explicit LiveClient(int port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    REQUIRE(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+  }
+  ~LiveClient() { close(socket_); }
+  LiveClient(const LiveClient&) = delete;
+
+  /// Whether all of it could be sent.
+  bool send(const std::string& text) const {
+    return ::send(socket_, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == ssize_t(text.size());
+  }
+
+  /// What comes until the server closes the connection; nothing where that takes longer.
+  std::optional<std::string> answer(double seconds) const {
+    const drape::Stopwatch watch;
+    std::string all;
+    char buffer[4096];
+    while (watch.seconds() < seconds) {
+      pollfd one{socket_, POLLIN, 0};
+      if (poll(&one, 1, 10) <= 0) continue;
+      const ssize_t n = recv(socket_, buffer, sizeof buffer, MSG_DONTWAIT);
+      if (n <= 0) return all;
+      all.append(buffer, static_cast<std::size_t>(n));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+};
