@@ -185,6 +185,15 @@ TEST_CASE("an incomplete sweep is read as far as it got") {
   CHECK(ended.err == "error: ./sweep.json: not a sweep's list of runs; is it cut short?\n");
 }
 
+TEST_CASE("a sweep without a name is read, with runs that have no results") {
+  const Scratch folder;
+  folder.write("sweep.json", R"({"runs": [{"name": "a", "seed": 1, "folder": "r", "status": "pending"}]})");
+  const RunCollection collection = read_runs({folder.path});
+  CHECK(collection.name == "");
+  REQUIRE(collection.runs.size() == 1);
+  CHECK_FALSE(collection.runs[0].data);
+}
+
 TEST_CASE("compare finds nothing between a run and itself") {
   for (const char* bounds : {"", " --bound seconds=1 --bound d_H_fit=1 --bound energy=1"}) {
     const Ended ended = drape_with("compare . ." + std::string(bounds), sweep());

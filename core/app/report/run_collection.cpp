@@ -169,7 +169,7 @@ RunCollection read_runs(const std::vector<fs::path>& folders) {
   if (collection.name.empty()) {
     std::vector<std::string> names;
     for (const RunRecord& run : collection.runs)
-      if (std::find(names.begin(), names.end(), run.data->experiment) == names.end())
+      if (run.data && std::find(names.begin(), names.end(), run.data->experiment) == names.end())
         names.push_back(run.data->experiment);
     for (const std::string& name : names) collection.name += (collection.name.empty() ? "" : ", ") + name;
   }
