@@ -454,10 +454,13 @@ TEST_CASE("a results folder that cannot be used") {
 
   fs::create_directory(folder / "mine");
   folder.write("mine/config.yaml", "mine");
+  folder.write("mine/writable.part", "mine too");
   for (const std::string overwrite : {"", " --overwrite"})
     CHECK(refused(folder, "run e.yaml --out mine" + overwrite) ==
           "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
           "--out\n");
+  CHECK(text_of(folder / "mine/writable.part") == "mine too");
+  CHECK(std::distance(fs::directory_iterator(folder / "mine"), {}) == 2);
 }
 
 TEST_CASE("earlier results stay without --overwrite, which removes only a run's own files") {

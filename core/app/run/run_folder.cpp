@@ -2,8 +2,8 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -74,9 +74,13 @@ void make_writable(const RunFolder& folder) {
   if (error || !fs::is_directory(folder.path()))
     throw std::runtime_error(name + ": cannot make the results folder" +
                              (error ? " (" + error.message() + ")" : "") + "; name another with --out");
-  const fs::path probe = folder.file("writable.part");
-  const bool writable = bool(std::ofstream(probe).put('\n').flush());
-  fs::remove(probe, error);
+  std::string probe = folder.file("writable_XXXXXX").string();
+  const int made = mkstemp(probe.data());  // under a name that no file has
+  const bool writable = made >= 0 && write(made, "\n", 1) == 1;
+  if (made >= 0) {
+    close(made);
+    fs::remove(probe, error);
+  }
   if (!writable)
     throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
 }
