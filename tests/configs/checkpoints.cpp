@@ -429,13 +429,15 @@ TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for
   run_experiment(experiment, *scene_of(experiment), options);
   REQUIRE_FALSE(is_complete(folder / "out"));
   std::map<std::string, std::string> before;
-  for (const char* part : {"levels", "rest"})
+  for (const char* part : {"levels", "rest", "fields"})
     for (const auto& entry : fs::directory_iterator(folder / "out" / part))
       before[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
   // The level that was stopped is no result yet.
   for (const char* stopped : {"newton_l1.ply", "newton_l1.vtp", "newton.pvd"})
     REQUIRE(before.erase(std::string("levels/") + stopped) == 1);
-  REQUIRE(before.size() == 3 + 2 * 7 + 2);
+  for (const char* stopped : {"fields/newton_l0_l2.ply", "fields/newton_l1_l2.ply"})
+    REQUIRE(before.count(stopped) == 0);
+  REQUIRE(before.size() == 3 + 2 * 7 + 2 + 2 * 2);
 
   const auto write = [&](const std::string& name, const std::string& bytes) {
     folder.write("out/" + name, bytes);
@@ -449,13 +451,17 @@ TEST_CASE("Damaged and missing files of an interrupted run are restored, bit for
   fs::remove(folder / "out/levels/newton_l0.ply");
   fs::remove(folder / "out/levels/pcs.pvd");
   fs::remove_all(folder / "out/rest");
+  fs::remove(folder / "out/fields/pcs_l0_l2.ply");
+  flipped = before.at("fields/cascadic_l1_l2.ply");
+  flipped[flipped.size() - 9] ^= 1;
+  write("fields/cascadic_l1_l2.ply", flipped);
 
   const Ended ended = drape_with("run --resume out --quiet --no-report", folder.path);
   CHECK(ended.exit_code == 1);  // out of steps
   CHECK(ended.err ==
         "warning: damaged or missing files were written again: rest/l0.ply, rest/l1.ply, rest/l2.ply, "
         "levels/pcs_l0.ply, levels/pcs_l2.ply, levels/cascadic_l1.ply, levels/cascadic_l1.vtp, "
-        "levels/newton_l0.ply, levels/pcs.pvd\n");
+        "levels/newton_l0.ply, levels/pcs.pvd, fields/pcs_l0_l2.ply, fields/cascadic_l1_l2.ply\n");
   for (const auto& [name, bytes] : before) {
     INFO(name);
     CHECK((text_of(folder / ("out/" + name)) == bytes));

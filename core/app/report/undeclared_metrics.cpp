@@ -12,9 +12,10 @@ using Json = nlohmann::ordered_json;
 
 /// Numbers of a level and of a pair of levels that are no metric's.
 constexpr std::string_view own_numbers[] = {
-    "level",  "vertices", "triangles",      "steps",         "newton_iterations", "factorisations",
-    "flops",  "analyses", "seconds",        "energy",        "energy_on_finest",  "decrement",
-    "coarse", "fine",     "force_residual", "intersections", "smallest_gap",      "mesh_checksum"};
+    "level",          "vertices", "triangles",      "steps",         "newton_iterations", "factorisations",
+    "flops",          "analyses", "seconds",        "energy",        "energy_on_finest",  "decrement",
+    "coarse",         "fine",     "force_residual", "intersections", "smallest_gap",      "mesh_checksum",
+    "fields_checksum"};
 
 void add_columns(std::vector<MetricColumn>& columns, const Json& entry) {
   if (!entry.is_object()) return;

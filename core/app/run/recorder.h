@@ -8,6 +8,7 @@
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/run/snapshots.h"
+#include "core/kernel/mesh/io.h"
 
 namespace drape {
 
@@ -85,6 +86,8 @@ class Recorder : public Observer {
   Names write_state(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   Names write_collection(const std::string& method) const;
+  /// Measures the fields of finished methods again whose file is not as recorded.
+  Names restore_fields();
   Names write_again();
   /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
@@ -94,7 +97,10 @@ class Recorder : public Observer {
   Json intersections(int level, const Positions& x);
   /// A metric's result; the error of a metric that throws goes to `entry`.
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
-  Json compare(int level, const Positions& x, const Positions& other, const std::string& fields_file);
+  /// What the metrics of pairs tell of x and another state of the level; `fields` takes their fields.
+  Json compare(int level, const Positions& x, const Positions& other, VertexFields* fields = nullptr);
+  /// A state with the fields of metrics, as a PLY file.
+  std::string fields_bytes(int level, const Positions& x, const VertexFields& fields) const;
   /// All states on the finest level.
   std::vector<const RecordedState*> finest_states() const;
   /// The finest state that the experiment chooses as reference; null without one.

@@ -71,7 +71,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
     for (const RecordedState* state : finest_states())
       if (&state->x != reference) {
         method_ = state->method;
-        Json row = compare(finest, *reference, state->x, "");
+        Json row = compare(finest, *reference, state->x);
         row["against"] = results_["reference"].value("method", p.file);
         method_entry()["reference"] = row;
       }

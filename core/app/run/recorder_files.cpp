@@ -137,6 +137,7 @@ Recorder::Names Recorder::write_again() {
   for (const RecordedState& state : states_) add(write_state(state));
   for (const auto& [name, method] : results_["methods"].items())
     if (method["status"] != "running") add(write_collection(name));
+  add(restore_fields());
   return all;
 }
 

@@ -1,8 +1,11 @@
 // The recorder's job at the end of a method: metrics of its levels and of pairs of them.
 
+#include <algorithm>
+
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
-#include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/file.h"
+#include "core/kernel/mesh/io_formats.h"
 
 namespace drape {
 
@@ -15,7 +18,16 @@ nlohmann::ordered_json& at_dotted(nlohmann::ordered_json& object, const std::str
                                   : at_dotted(object[name.substr(0, dot)], name.substr(dot + 1));
 }
 
+/// "fields/pcs_l0_l2.ply"
+std::string fields_file(const std::string& method, int coarse, int fine) {
+  return "fields/" + method + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine) + ".ply";
+}
+
 }  // namespace
+
+std::string Recorder::fields_bytes(int level, const Positions& x, const VertexFields& fields) const {
+  return ply_bytes({x, scene_.hierarchy.levels[level].rest.triangles}, fields);
+}
 
 MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
                                Json& entry) {
@@ -29,19 +41,15 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
 }
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
-                                 const std::string& fields_file) {
+                                 VertexFields* fields) {
   Json row = Json::object();  // not null, even without a metric of pairs
-  VertexFields fields;
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
         measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
     for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
-    for (const MetricField& f : result.fields) fields.push_back({f.name, f.values});
-  }
-  if (!fields_file.empty() && !fields.empty()) {
-    write_ply(folder_.file(fields_file), {x, scene_.hierarchy.levels[level].rest.triangles}, fields);
-    row["fields"] = fields_file;
+    if (!fields) continue;
+    for (const MetricField& f : result.fields) fields->push_back({f.name, f.values});
   }
   return row;
 }
@@ -68,14 +76,21 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
   std::vector<Json> of_start;  // the initial state compared with each level's state
   for (const LevelResult& r : results)
-    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level], ""));
+    of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
   for (std::size_t c = 0; c < results.size(); ++c)
     for (std::size_t f = c + 1; f < results.size(); ++f) {
       const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
       const Positions prolonged = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
-      const std::string tag = method_ + "_l" + std::to_string(coarse) + "_l" + std::to_string(fine);
       Json row = {{"coarse", coarse}, {"fine", fine}};
-      row.update(compare(fine, results[f].x, prolonged, fine == finest ? "fields/" + tag + ".ply" : ""));
+      VertexFields fields;
+      row.update(compare(fine, results[f].x, prolonged, &fields));
+      if (fine == finest && !fields.empty()) {
+        const std::string file = fields_file(method_, coarse, fine),
+                          bytes = fields_bytes(fine, results[f].x, fields);
+        write_file(folder_.file(file), bytes);
+        row["fields"] = file;
+        row["fields_checksum"] = checksum_of(bytes);
+      }
       row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }
@@ -95,6 +110,31 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   }
   save();
   log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
+}
+
+Recorder::Names Recorder::restore_fields() {
+  Names written;
+  const std::string current = method_;
+  for (const RecordedState* fine : finest_states())
+    for (const RecordedState& coarse : states_) {
+      if (coarse.method != fine->method || coarse.level >= fine->level) continue;
+      const std::string name = fields_file(fine->method, coarse.level, fine->level);
+      const Json& rows = results_["methods"][fine->method]["consistency"];
+      const auto row = std::find_if(rows.begin(), rows.end(),
+                                    [&](const Json& r) { return r.value("fields", "") == name; });
+      const std::filesystem::path file = folder_.file(name);
+      if (row == rows.end() || (std::filesystem::is_regular_file(file) &&
+                                checksum_of(read_file(file)) == row->value("fields_checksum", 0u)))
+        continue;
+      method_ = fine->method;  // whose metrics these are
+      const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+      VertexFields fields;
+      compare(fine->level, fine->x, scene_.hierarchy.prolong(coarse.x, coarse.level, fine->level, weights),
+              &fields);
+      if (write_where_other(file, fields_bytes(fine->level, fine->x, fields))) written.push_back(name);
+    }
+  method_ = current;
+  return written;
 }
 
 }  // namespace drape
