@@ -137,8 +137,9 @@ int check_in_parts(const Scratch& scratch, Overrides overrides, int* relaxing = 
   for (std::string before; !is_complete(options.out); ++parts) {
     REQUIRE(parts < 2000);
     std::string warning;
-    Checkpoint checkpoint = checkpoint_to_resume(options.out, warning);
+    InterruptedRun interrupted = interrupted_run(RunFolder::of_run(options.out), warning);
     CHECK(warning == "");
+    const Checkpoint& checkpoint = interrupted.checkpoint;
     const MethodState& state = checkpoint.state;
     const std::string now = std::to_string(checkpoint.method) + " " + std::to_string(state.level) + " " +
                             (state.under_way ? std::to_string(state.under_way->so_far.steps) : "begins");
@@ -147,7 +148,7 @@ int check_in_parts(const Scratch& scratch, Overrides overrides, int* relaxing = 
     before = now;
     asked = 0;
     const Experiment again = experiment_in(options.out / "config.yaml");
-    resume_experiment(again, *scene_of(again), options, std::move(checkpoint));
+    resume_experiment(again, *scene_of(again), options, std::move(interrupted));
   }
   check_equal(folder / "parts", folder / "whole");
   return parts;
@@ -403,7 +404,11 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
 
   FileLock other(folder / "out/checkpoint/lock");
   REQUIRE(other.acquire(0));
-  CHECK_THAT(refused_by("run --resume out", folder), Contains("uses this folder; wait for it, or stop it"));
+  const std::string in_use = "uses this folder; wait for it, or stop it";
+  CHECK_THAT(refused_by("run --resume out", folder), Contains(in_use));
+  // Before the checkpoint is read, which the other process goes on to replace.
+  damaged("out/config.yaml", "name: other\n", in_use);
+  damaged("out/results.json", "{\"complete\": true}", in_use);
 }
 
 TEST_CASE("A damaged checkpoint is replaced by its predecessor, with a warning") {
@@ -524,14 +529,15 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   const Experiment experiment = experiment_in(folder / "out/config.yaml");
   const auto scene = scene_of(experiment);
   std::string warning;
-  const Checkpoint sound = checkpoint_to_resume(folder / "out", warning);
+  const auto interrupted = [&] { return interrupted_run(RunFolder::of_run(folder / "out"), warning); };
+  const Checkpoint sound = interrupted().checkpoint;
   REQUIRE(sound.state.under_way);
   REQUIRE_NOTHROW(require_fitting(sound, experiment, *scene));
   const auto refused = [&](const std::string& what, const std::function<void(Checkpoint&)>& change) {
-    Checkpoint other = sound;
-    change(other);
+    InterruptedRun other = interrupted();
+    change(other.checkpoint);
     INFO(what);
-    CHECK_THROWS_WITH(resume_experiment(experiment, *scene, silent(folder / "out"), other),
+    CHECK_THROWS_WITH(resume_experiment(experiment, *scene, silent(folder / "out"), std::move(other)),
                       Contains("the checkpoint does not fit its experiment: " + what));
   };
   const std::string before = text_of(folder / "out/log.jsonl");

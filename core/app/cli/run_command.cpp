@@ -127,25 +127,28 @@ int RunCommand::run_config(const Registry& registry) const {
 }
 
 /// For a complete run: checks its files and returns its exit code.
-int RunCommand::report_complete_run(const std::filesystem::path& folder, const Registry& registry) const {
+int RunCommand::report_complete_run(const RunFolder& run, const Registry& registry) const {
+  const std::filesystem::path& folder = run.path();
   refuse_damaged_results(folder);
   ConfigErrors errors;
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   const auto scene = experiment ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
   if (!errors.empty()) return report_errors(errors);
-  const std::vector<std::string> again = write_rest(RunFolder::of_run(folder), *scene);
+  const std::vector<std::string> again = write_rest(run, *scene);
   if (!again.empty())
     std::cerr << "warning: damaged or missing files were written again: " << joined(again) << "\n";
   std::cout << folder.string() << ": the run is complete; there is nothing to resume\n";
   return all_methods_succeeded(folder) ? exit_done : exit_not_converged;
 }
 
-/// Resumes an interrupted run in its folder.
+/// Resumes an interrupted run in its folder, which is locked before anything in it is read.
 int RunCommand::resume(const Registry& registry) const {
   const std::filesystem::path folder = resumed_;
-  if (is_complete(folder)) return report_complete_run(folder, registry);
+  RunFolder locked = RunFolder::of_run(folder);
+  if (is_complete(folder)) return report_complete_run(locked, registry);
   std::string warning;
-  Checkpoint checkpoint = checkpoint_to_resume(folder, warning);
+  InterruptedRun interrupted = interrupted_run(std::move(locked), warning);
+  const Checkpoint& checkpoint = interrupted.checkpoint;
   std::istringstream warnings(warning);
   for (std::string line; std::getline(warnings, line);) std::cerr << "warning: " << printable(line) << "\n";
   ConfigErrors errors;
@@ -158,7 +161,7 @@ int RunCommand::resume(const Registry& registry) const {
   RunOptions options = options_;
   options.out = folder;
   options.methods = checkpoint.methods;
-  return run(*experiment, *scene, std::move(options), std::move(checkpoint));
+  return run(*experiment, *scene, std::move(options), std::move(interrupted));
 }
 
 /// Warm-starts a possibly changed experiment from a state of a run, in another folder.
@@ -186,7 +189,7 @@ int RunCommand::warm_start(const Registry& registry) const {
 
 /// Runs an experiment, or resumes it from a checkpoint.
 int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions options,
-                    std::optional<Checkpoint> checkpoint) const {
+                    std::optional<InterruptedRun> interrupted) const {
   stop_on_signals();  // nothing to save before this point
   options.stop = [] { return stop_signal() != 0; };
   std::optional<LiveView> view;
@@ -195,8 +198,8 @@ int RunCommand::run(const Experiment& experiment, const Scene& scene, RunOptions
     options.view = &*view;
     std::cout << "view: " << view->url() << std::endl;
   }
-  const bool converged = checkpoint ? resume_experiment(experiment, scene, options, std::move(*checkpoint))
-                                    : run_experiment(experiment, scene, options);
+  const bool converged = interrupted ? resume_experiment(experiment, scene, options, std::move(*interrupted))
+                                     : run_experiment(experiment, scene, options);
   if (options.report)
     std::cout << "report: " << (options.out / "report.html").string() << "\n";
   else

@@ -24,11 +24,11 @@ class RunCommand {
 
  private:
   int run_config(const Registry& registry) const;
-  int report_complete_run(const std::filesystem::path& folder, const Registry& registry) const;
+  int report_complete_run(const RunFolder& run, const Registry& registry) const;
   int resume(const Registry& registry) const;
   int warm_start(const Registry& registry) const;
   int run(const Experiment& experiment, const Scene& scene, RunOptions options,
-          std::optional<Checkpoint> checkpoint) const;
+          std::optional<InterruptedRun> interrupted) const;
 
   CLI::App* command_;
   ConfigArguments arguments_;

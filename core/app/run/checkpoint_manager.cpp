@@ -143,7 +143,8 @@ void refuse_damaged_results(const fs::path& folder) {
                              (folder / "config.yaml").string() + " --out ANOTHER");
 }
 
-Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
+InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
+  const fs::path& folder = run.path();
   results_of(folder);
   Checkpoint checkpoint = load_checkpoint(folder, warning);
   const fs::path config = folder / "config.yaml";
@@ -163,7 +164,7 @@ Checkpoint checkpoint_to_resume(const fs::path& folder, std::string& warning) {
   if (checkpoint.program != program())
     warning += (warning.empty() ? "" : "\n") + ("the checkpoint is by " + checkpoint.program + ", this is " +
                                                 program() + ": the last bits may differ");
-  return checkpoint;
+  return {std::move(run), std::move(checkpoint)};
 }
 
 SavedState saved_state(const fs::path& folder, const std::string& method, std::optional<int> level) {

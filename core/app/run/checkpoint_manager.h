@@ -48,9 +48,16 @@ bool all_methods_succeeded(const std::filesystem::path& folder);
 /// Throws std::runtime_error naming every mesh of a complete run whose checksum differs from results.json.
 void refuse_damaged_results(const std::filesystem::path& folder);
 
-/// The checkpoint to resume the run in the folder from. `warning` reports harmless differences. Throws
-/// std::runtime_error with the reason if the run cannot be resumed.
-Checkpoint checkpoint_to_resume(const std::filesystem::path& folder, std::string& warning);
+/// An interrupted run to be resumed: its folder, locked, with the checkpoint to resume it from.
+struct InterruptedRun {
+  RunFolder folder;
+  Checkpoint checkpoint;
+};
+
+/// The interrupted run in a folder, which is locked before the checkpoint is read: no other process can
+/// continue the run in between. `warning` reports harmless differences. Throws std::runtime_error with the
+/// reason if the run cannot be resumed.
+InterruptedRun interrupted_run(RunFolder folder, std::string& warning);
 
 /// A saved state of a run.
 struct SavedState {

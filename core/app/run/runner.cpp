@@ -268,9 +268,10 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
 }
 
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
-                       Checkpoint checkpoint) {
+                       InterruptedRun interrupted) {
+  const RunFolder& folder = interrupted.folder;
+  const Checkpoint& checkpoint = interrupted.checkpoint;
   require_fitting(checkpoint, experiment, scene);
-  const RunFolder folder = RunFolder::of_run(options.out);
   refuse_short_files(folder, checkpoint.recorder);
   return with_folder(folder, options, [&] {
     Recorder recorder(folder, experiment, scene, checkpoint.recorder);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/app/experiment/experiment.h"
-#include "core/app/run/checkpoint.h"
+#include "core/app/run/checkpoint_manager.h"
 #include "core/app/run/progress.h"
 
 namespace drape {
@@ -40,10 +40,10 @@ class RunAborted : public std::runtime_error {
 /// method; RunAborted after that.
 bool run_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options);
 
-/// Resumes a run from its checkpoint in its folder `options.out`. The results are those of an uninterrupted
-/// run, bit for bit. The checkpoint determines methods and first level. Throws std::runtime_error, before it
-/// writes, if the checkpoint does not fit; RunAborted after that.
+/// Resumes a run from its checkpoint in its folder, which stays locked meanwhile. The results are those of an
+/// uninterrupted run, bit for bit. The checkpoint determines methods and first level; `options.out` is not
+/// used. Throws std::runtime_error, before it writes, if the checkpoint does not fit; RunAborted after that.
 bool resume_experiment(const Experiment& experiment, const Scene& scene, const RunOptions& options,
-                       Checkpoint checkpoint);
+                       InterruptedRun interrupted);
 
 }  // namespace drape
