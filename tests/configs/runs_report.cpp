@@ -171,6 +171,25 @@ TEST_CASE("report of several folders takes a page's name, and groups runs by all
   CHECK(collection.runs[2].seed.value() == 3);
 }
 
+TEST_CASE("report replaces drape's own pages and no other file") {
+  const Scratch folder;
+  const auto written = [&](const std::string& runs, const std::string& page) {
+    return drape_with("report " + runs + " --out " + (folder / page).string(), sweep());
+  };
+  const std::string two = "runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2";
+  folder.write("notes.html", "<title>mine</title>");
+  for (const std::string& runs : {two, std::string(".")}) {
+    const Ended refused = written(runs, "notes.html");
+    CHECK(refused.exit_code == 2);
+    CHECK(refused.err == "error: " + (folder / "notes.html").string() +
+                             ": is there already, and no report of drape; name another page with --out\n");
+    CHECK(text_of(folder / "notes.html") == "<title>mine</title>");
+  }
+  CHECK(written(two, "page.html").exit_code == 0);
+  CHECK(written(".", "page.html").exit_code == 0);  // its own page is replaced
+  CHECK_THAT(text_of(folder / "page.html"), Contains("7 runs of 3 variations"));
+}
+
 TEST_CASE("an incomplete sweep is read as far as it got") {
   const Scratch folder;
   folder.write(

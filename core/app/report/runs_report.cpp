@@ -1,6 +1,7 @@
 #include "core/app/report/runs_report.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "core/app/report/run_rows.h"
 #include "core/app/report/tables.h"
@@ -66,9 +67,17 @@ std::string machines(const RunCollection& collection) {
   return text;
 }
 
+/// Only a page of drape's may be replaced: its title says so.
+void refuse_other_file(const std::filesystem::path& page) {
+  if (std::filesystem::exists(page) && read_file(page).find(" – drape</title>") == std::string::npos)
+    throw std::runtime_error(page.string() +
+                             ": is there already, and no report of drape; name another page with --out");
+}
+
 }  // namespace
 
 void write_runs_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& page) {
+  refuse_other_file(page);
   const RunCollection collection = read_runs(folders);
   const std::string failures = failures_table(collection);
   write_file(page,
