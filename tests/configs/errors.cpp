@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/app/files/snapshot_file.h"
 #include "core/app/run/reference.h"
 #include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
@@ -113,19 +114,19 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
       INFO(method << " level " << l);
       const Json& snapshots = level["snapshots"];
       const int vertices = level["vertices"];
-      const std::vector<Positions> states =
-          read_snapshots(folder / ("out/" + snapshots["file"].get<std::string>()), vertices);
-      REQUIRE(states.size() == snapshots["iterations"].size());
-      REQUIRE(states.size() == snapshots["seconds"].size());
-      CHECK(states.size() <= 8);
+      const std::size_t count = snapshots["iterations"].size();
+      const SnapshotFile states(folder / ("out/" + snapshots["file"].get<std::string>()), count, vertices,
+                                snapshots["checksum"].get<std::uint32_t>());
+      REQUIRE(snapshots["seconds"].size() == count);
+      CHECK(count <= 8);
       const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
-      CHECK((states.back() - last.vertices).norm() < 1e-5);
+      CHECK((states.positions(count - 1) - last.vertices).norm() < 1e-5);
       CHECK(snapshots["iterations"].back() == level["newton_iterations"]);
       if (method == "newton") flops = 0, iterations = 0;  // every level begins afresh
       flops += level["flops"].get<double>();
       iterations += level["newton_iterations"].get<int>();
       double seconds = 0;
-      for (std::size_t k = 0; k < states.size(); ++k, ++row) {
+      for (std::size_t k = 0; k < count; ++k, ++row) {
         REQUIRE(row < rows.size());
         const Row& r = rows[row];
         CHECK(r.at("method") == method);
@@ -138,7 +139,7 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
              {"own_rms", "own_hausdorff", "own_d_H_fit", "own_silhouette_mismatch", "own_energy_gap",
               "reference_rms", "reference_hausdorff", "reference_d_H_fit"})
           CHECK(std::stod(r.at(column)) >= 0);
-        if (k + 1 < states.size()) continue;
+        if (k + 1 < count) continue;
         CHECK(std::stod(r.at("flops")) == Approx(flops));
         CHECK(r.at("iterations") == std::to_string(iterations));
         const bool end = l == 1;

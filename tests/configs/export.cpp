@@ -192,6 +192,23 @@ TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse t
   CHECK(frames("--level 0").size() == recorded[0]);
 }
 
+TEST_CASE("snapshots that are damaged are neither exported nor shown") {
+  const Scratch folder;
+  fs::copy(finished_run(), folder / "out", fs::copy_options::recursive);
+  std::string snapshots = text_of(folder / "out/snapshots/pcs_l1.bin");
+  snapshots[snapshots.size() / 2] ^= 1;
+  folder.write("out/snapshots/pcs_l1.bin", snapshots);
+  for (const std::string name : {"a.glb", "a.png"}) {
+    const Ended ended = drape_with("export out --frames --to " + name, folder.path);
+    CHECK(ended.exit_code == 2);
+    CHECK_THAT(ended.err, EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));
+  }
+  CHECK(drape_with("export out --frames --level 0 --to a.glb", folder.path).exit_code == 0);
+  REQUIRE(drape_with("report out", folder.path).exit_code == 0);
+  CHECK_THAT(text_of(folder / "out/report.html"),
+             Contains("snapshots/pcs_l1.bin: is damaged: its checksum does not fit"));
+}
+
 TEST_CASE("an export replaces no file unless it is asked to") {
   const std::string run = finished_run().string();
   const Scratch folder;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/file.h"
+#include "core/app/files/snapshot_file.h"
 #include "tests/support/command.h"
 
 using namespace drape;
@@ -43,15 +43,21 @@ TEST_CASE("snapshots are spread evenly, never more than asked for, the last stat
     }
 }
 
-TEST_CASE("a snapshots file reads back in single precision; one cut short is refused") {
+TEST_CASE("a snapshots file reads back in single precision; one cut short or damaged is refused") {
   const Scratch folder;
-  write_snapshots(folder / "f.bin", {{{}, state(1)}, {{}, state(2)}});
-  CHECK(std::filesystem::file_size(folder / "f.bin") == 2 * 4 * 3 * 4);
-  const std::vector<Positions> read = read_snapshots(folder / "f.bin", 4);
-  REQUIRE(read.size() == 2);
-  CHECK((read[0] - state(1)).norm() < 1e-6);
-  CHECK((read[1] - state(2)).norm() < 1e-6);
-  CHECK_THROWS_WITH(
-      read_snapshots(folder / "f.bin", 5),
-      Catch::Matchers::EndsWith("f.bin: not made of snapshots of 5 vertices; is it cut short?"));
+  const std::filesystem::path file = folder / "f.bin";
+  const std::uint32_t checksum = write_snapshots(file, {{{}, state(1)}, {{}, state(2)}});
+  CHECK(std::filesystem::file_size(file) == 2 * 4 * 3 * 4);
+  const SnapshotFile read(file, 2, 4, checksum);
+  REQUIRE(read.count() == 2);
+  CHECK((read.positions(0) - state(1)).norm() < 1e-6);
+  CHECK((read.positions(1) - state(2)).norm() < 1e-6);
+  CHECK(SnapshotFile(file, 2, 4, std::nullopt).count() == 2);
+  CHECK_THROWS_WITH(SnapshotFile(file, 2, 5, checksum),
+                    Catch::Matchers::EndsWith("f.bin: holds 96 bytes, not 2 snapshots of 5 vertices"));
+  std::string bytes = text_of(file);
+  bytes[50] ^= 1;
+  folder.write("f.bin", bytes);
+  CHECK_THROWS_WITH(SnapshotFile(file, 2, 4, checksum),
+                    Catch::Matchers::EndsWith("f.bin: is damaged: its checksum does not fit"));
 }

@@ -143,8 +143,8 @@ class ReportViewMaker {
       const Snapshots snapshots = snapshots_of(results_.at("methods").at(method.name).at("levels").at(k), n);
       const std::size_t bytes = document_->state_bytes(level.level),
                         share = left / (method.levels.size() - k);
-      for (const std::size_t f : chosen_snapshots(snapshots.count, share / bytes)) {
-        const Positions x = snapshots.positions(f, n);
+      for (const std::size_t f : chosen_snapshots(snapshots.states.count(), share / bytes)) {
+        const Positions x = snapshots.states.positions(f);
         Json snapshot =
             document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
         snapshot["iteration"] = snapshots.iterations[f];

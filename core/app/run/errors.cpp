@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/app/files/snapshot_file.h"
 #include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/message_text.h"
 
@@ -71,6 +72,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   }
   make_folder(folder_.file("snapshots"));
   level.checksum = write_snapshots(folder_.file(level.file), snapshots);
+  entry["checksum"] = level.checksum;
   sync_to_disk(folder_.file(level.file));
   levels_.push_back(std::move(level));
   return entry;
@@ -93,17 +95,16 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
-    std::vector<Positions> states;
+    SnapshotFile states;
     try {
-      states = read_snapshots(folder_.file(level.file), vertices, level.checksum);
+      states = SnapshotFile(folder_.file(level.file), level.cost.size(), vertices, level.checksum);
     } catch (const std::exception& error) {
       fault(error.what());  // the snapshots have no copy to restore them from
       continue;
     }
-    if (states.size() != level.cost.size()) continue;
-    states.back() = level.last;
-    for (std::size_t k = 0; k < states.size() && !stop(); ++k) {
-      const Positions x = scene_.hierarchy.prolong(states[k], level.level, finest, weights);
+    for (std::size_t k = 0; k < states.count() && !stop(); ++k) {
+      const Positions state = k + 1 < states.count() ? states.positions(k) : level.last;
+      const Positions x = scene_.hierarchy.prolong(state, level.level, finest, weights);
       const auto against = [&](const std::optional<ErrorTarget>& target) {
         return target ? state_error(measures_, experiment_, scene_, x, level.energies[k], *target, fault)
                       : StateError(measures_.size());

@@ -1,14 +1,9 @@
 #include "core/app/run/snapshots.h"
 
-#include <bit>
-#include <cstring>
-#include <stdexcept>
-
+#include "core/app/files/snapshot_file.h"
 #include "core/kernel/mesh/file.h"
 
 namespace drape {
-
-static_assert(std::endian::native == std::endian::little, "snapshots are written as they lie in memory");
 
 void SnapshotRecorder::begin_level() { m_ = {}; }
 
@@ -35,30 +30,9 @@ std::vector<Snapshot> SnapshotRecorder::end_level(const Cost& cost, const Positi
 
 std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots) {
   std::string bytes;
-  for (const Snapshot& snapshot : snapshots) {
-    const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x = snapshot.x.cast<float>();
-    bytes.append(reinterpret_cast<const char*>(x.data()), sizeof(float) * x.size());
-  }
+  for (const Snapshot& snapshot : snapshots) bytes += SnapshotFile::bytes_of(snapshot.x);
   write_file(file, bytes);
   return checksum_of(bytes);
-}
-
-std::vector<Positions> read_snapshots(const std::filesystem::path& file, int vertices,
-                                      std::optional<std::uint32_t> checksum) {
-  const std::string bytes = read_file(file);
-  const std::size_t size = sizeof(float) * 3 * vertices;
-  if (size == 0 || bytes.size() % size != 0)
-    throw std::runtime_error(file.string() + ": not made of snapshots of " + std::to_string(vertices) +
-                             " vertices; is it cut short?");
-  if (checksum && checksum_of(bytes) != *checksum)
-    throw std::runtime_error(file.string() + ": is damaged: its checksum does not fit");
-  std::vector<Positions> snapshots;
-  for (std::size_t at = 0; at < bytes.size(); at += size) {
-    Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> x(vertices, 3);
-    std::memcpy(x.data(), bytes.data() + at, size);
-    snapshots.push_back(x.cast<double>());
-  }
-  return snapshots;
 }
 
 }  // namespace drape

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "core/kernel/model/solver.h"
@@ -54,13 +53,7 @@ class SnapshotRecorder {
   State m_;
 };
 
-/// Writes positions as little-endian float32, snapshot by snapshot, row by row. Returns the checksum of the
-/// file.
+/// Writes positions as a SnapshotFile. Returns the checksum of the file. Throws WriteError.
 std::uint32_t write_snapshots(const std::filesystem::path& file, const std::vector<Snapshot>& snapshots);
-
-/// The positions of such a file, `vertices` rows each. Throws std::runtime_error if the size or the checksum
-/// does not match.
-std::vector<Positions> read_snapshots(const std::filesystem::path& file, int vertices,
-                                      std::optional<std::uint32_t> checksum = std::nullopt);
 
 }  // namespace drape
