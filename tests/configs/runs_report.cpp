@@ -5,6 +5,7 @@
 
 #include "core/app/report/compare.h"
 #include "core/app/report/run_rows.h"
+#include "core/app/report/run_table.h"
 #include "tests/support/command.h"
 
 using namespace drape;
@@ -114,6 +115,39 @@ TEST_CASE("a direct method's cost is that of the level it ends with") {
     CHECK(m.cost(&LevelRecord::flops).value() == (m.name == "newton" ? *m.levels[1].flops : all));
     for (const CostPoint& p : error_curve(*collection.runs[0].data, m.name, 2, 1, "rms"))
       CHECK(p.cost <= all * 1.0001);
+  }
+}
+
+TEST_CASE("the table and the page of runs have the same costs by the same names") {
+  const RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
+  const RunTable table = table_of(collection);
+  const std::vector<RunRow> rows = rows_of(collection);
+  REQUIRE(table.rows.size() == rows.size());
+  int compared = 0;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (const RowQuantity& quantity : row_quantities(collection.error_measures())) {
+      if (!table.rows[k].contains(quantity.name)) continue;
+      const Repeat& repeat = rows[k].repeats.at(0);
+      INFO(rows[k].method << " " << quantity.name);
+      CHECK(table.rows[k]["method"] == rows[k].method);
+      CHECK(table.rows[k][quantity.name] == quantity.of(*repeat.run->data, *repeat.method).value());
+      ++compared;
+    }
+  CHECK(compared == 3 * 3);  // seconds, iterations and energy of each method
+}
+
+TEST_CASE("the table counts steps of the levels that the last state builds on") {
+  RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
+  RunData& run = *collection.runs[0].data;
+  for (IterationSeries& series : run.iterations)
+    for (StepRow& row : series.rows) row.step_length = 0.5;
+  const RunTable table = table_of(collection);
+  for (std::size_t k = 0; k < run.methods.size(); ++k) {
+    const MethodRecord& method = run.methods[k];
+    const bool direct = method.name == "newton";
+    INFO(method.name);
+    CHECK(table.rows[k]["steps"] == *method.levels[1].steps + (direct ? 0 : *method.levels[0].steps));
+    CHECK(table.rows[k]["shortened_steps"] == table.rows[k]["iterations"]);
   }
 }
 

@@ -16,16 +16,18 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
 
-/// What the iterations of a method tell beyond its levels.
+/// What the iterations of a method tell beyond its levels. Shortened steps are counted as costs are, on the
+/// levels that the last state builds on.
 struct IterationSummary {
   int shortened_steps = 0;
   OptionalNumber smallest_gap, intersections;
 
-  IterationSummary(const RunData& run, const std::string& method) {
+  IterationSummary(const RunData& run, const MethodRecord& method) {
     for (const IterationSeries& series : run.iterations) {
-      if (series.method != method) continue;
+      if (series.method != method.name) continue;
+      const bool counts = series.level >= method.first_level();
       for (const StepRow& row : series.rows) {
-        shortened_steps += row.step_length.value_or(1) < 1;
+        shortened_steps += counts && row.step_length.value_or(1) < 1;
         if (row.smallest_gap)
           smallest_gap = std::min(smallest_gap.value_or(*row.smallest_gap), *row.smallest_gap);
         if (row.intersections) intersections = intersections.value_or(0) + *row.intersections;
@@ -55,7 +57,7 @@ OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const
 }
 
 Json row_of(const RunData& run, const MethodRecord& method) {
-  IterationSummary iterations(run, method.name);
+  IterationSummary iterations(run, method);
   std::string fault, remark;
   for (const LevelRecord& level : method.levels) {
     if (level.smallest_gap)
@@ -70,10 +72,10 @@ Json row_of(const RunData& run, const MethodRecord& method) {
   }
   Json row = {{"method", method.name}, {"pass", false}, {"outcome", outcomes(method)}};
   row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
-  row["steps"] = json_of(method.sum(&LevelRecord::steps));
-  row["iterations"] = json_of(method.sum(&LevelRecord::newton_iterations));
+  row["steps"] = json_of(method.cost(&LevelRecord::steps));
+  row["iterations"] = json_of(method.cost(&LevelRecord::newton_iterations));
   row["shortened_steps"] = iterations.shortened_steps;
-  row["seconds"] = json_of(method.sum(&LevelRecord::seconds));
+  row["seconds"] = json_of(method.cost(&LevelRecord::seconds));
   row["energy"] = json_of(final_energy(run, method));
   row["smallest_gap"] = json_of(iterations.smallest_gap);
   row["intersections"] = json_of(iterations.intersections);
