@@ -5,9 +5,20 @@
 using namespace drape;
 
 TEST_CASE("the worst outcome of a method's levels does not depend on their order") {
-  CHECK(worse_of(Outcome::converged, Outcome::refined_early_at_tolerance) == Outcome::converged);
-  CHECK(worse_of(Outcome::converged_to_rounding, Outcome::converged) == Outcome::converged_to_rounding);
-  CHECK(worse_of(Outcome::stalled, Outcome::refined_early_on_request) == Outcome::stalled);
-  CHECK(worse_of(Outcome::max_steps_reached, Outcome::infeasible) == Outcome::infeasible);
-  CHECK(worse_of(Outcome::cancelled, Outcome::infeasible) == Outcome::cancelled);
+  const auto check = [](Outcome better, Outcome worse, Outcome expected) {
+    INFO(to_string(better) << ", " << to_string(worse));
+    CHECK(worse_of(better, worse) == expected);
+    CHECK(worse_of(worse, better) == expected);
+  };
+  check(Outcome::refined_early_at_tolerance, Outcome::converged, Outcome::converged);
+  const Outcome rising[] = {Outcome::converged,
+                            Outcome::converged_to_rounding,
+                            Outcome::refined_early_on_request,
+                            Outcome::max_steps_reached,
+                            Outcome::stalled,
+                            Outcome::infeasible,
+                            Outcome::cancelled};
+  for (std::size_t worse = 0; worse < std::size(rising); ++worse)
+    for (std::size_t better = 0; better <= worse; ++better)
+      check(rising[better], rising[worse], rising[worse]);
 }
