@@ -27,7 +27,8 @@ TEST_CASE("parallel_for covers a range once, in pieces that do not depend on the
       }
   }
   set_thread_count(0);
-  CHECK(thread_count() >= 1);
+  CHECK(core_count() >= 1);
+  CHECK(thread_count() == core_count());
 }
 
 TEST_CASE("parallel_for can be nested") {

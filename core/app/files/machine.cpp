@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <fstream>
-#include <thread>
 
 namespace drape {
 
@@ -35,8 +34,6 @@ std::string cpu_name() {
   const std::string name = proc_value("/proc/cpuinfo", "model name");
   return name.empty() ? "unknown" : name;
 }
-
-int core_count() { return static_cast<int>(std::thread::hardware_concurrency()); }
 
 double machine_memory() {
   double bytes = memory_of("MemTotal");

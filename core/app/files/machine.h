@@ -6,7 +6,6 @@
 namespace drape {
 
 std::string cpu_name();  ///< from the kernel, or "unknown"
-int core_count();
 /// Memory that this process may use [bytes]: the machine's, limited by container and shell (`ulimit -v`). A
 /// very large number if unknown.
 double machine_memory();

@@ -116,11 +116,6 @@ Pool& pool() {
 
 std::atomic<int> chosen_threads = 0;  // 0: one for each core
 
-int core_count() {
-  static const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
-  return cores;
-}
-
 void run_pieces(const Pieces& pieces, const std::function<void(int piece, int begin, int end)>& body) {
   const int threads = std::min(thread_count(), pieces.count);
   const Task task{pieces, body};
@@ -129,6 +124,11 @@ void run_pieces(const Pieces& pieces, const std::function<void(int piece, int be
 }
 
 }  // namespace
+
+int core_count() {
+  static const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
+  return cores;
+}
 
 int thread_count() {
   const int threads = chosen_threads.load(std::memory_order_relaxed);

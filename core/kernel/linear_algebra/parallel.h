@@ -4,6 +4,8 @@
 
 namespace drape {
 
+/// Number of the machine's cores; 1 if it is unknown.
+int core_count();
 /// Number of threads that parallel_for uses; at least 1.
 int thread_count();
 /// Sets the number for the process; 0 means one for each core. Call from the main thread, outside
