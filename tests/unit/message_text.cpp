@@ -34,6 +34,14 @@ TEST_CASE("a quantity is shown with three digits, whatever its size") {
   CHECK(three_digits(2) == "2");
 }
 
+TEST_CASE("columns are padded by characters, not by bytes") {
+  CHECK(display_width("") == 0);
+  CHECK(display_width("kg/m³ µ") == 7);
+  CHECK(padded("m²", 4) == "m²  ");
+  CHECK(padded("m²", 2) == "m²");
+  CHECK(padded("µm/m²", 3) == "µm/m²");
+}
+
 TEST_CASE("a long text keeps its beginning and its end, cut between characters") {
   const std::string text = "begin" + std::string(3000000, 'x') + "end";
   CHECK(excerpt(text).size() < 150);

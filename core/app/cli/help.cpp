@@ -33,10 +33,8 @@ std::string nearest_option(const CLI::App& command, const std::string& name) {
 
 std::string exit_codes_help() {
   std::string text = "Exit codes:\n";
-  for (const ExitCode& code : exit_codes) {
-    const std::string number = std::to_string(code.code);
-    text += "  " + number + std::string(6 - number.size(), ' ') + code.description + "\n";
-  }
+  for (const ExitCode& code : exit_codes)
+    text += "  " + padded(std::to_string(code.code), 6) + code.description + "\n";
   return text;
 }
 

@@ -59,8 +59,7 @@ int list(const std::string& kind, const Registry& registry) {
     if (!kind.empty() && kind != k) continue;
     std::cout << k << "\n";
     for (const RegistryEntry* entry : registry.of_kind(k))
-      std::cout << "  " << entry->name << std::string(std::max<int>(25 - int(entry->name.size()), 1), ' ')
-                << entry->summary << "\n";
+      std::cout << "  " << padded(entry->name, 24) << " " << entry->summary << "\n";
   }
   return exit_done;
 }

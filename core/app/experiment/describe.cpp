@@ -66,13 +66,6 @@ std::vector<Row> rows_of(const Schema& schema, const SharedSection* shared = nul
 
 std::string unit_of(const Parameter& p) { return p.unit == "1" ? "" : p.unit; }
 
-/// The number of code points: units contain ², ρ and the like.
-size_t width(const std::string& text) {
-  size_t n = 0;
-  for (const char c : text) n += (c & 0xC0) != 0x80;
-  return n;
-}
-
 std::string description_of(const Parameter& p) {
   return p.description + (p.from_experiment ? "; a key of the experiment" : "");
 }
@@ -94,11 +87,11 @@ std::string describe(const Schema& schema) {
   if (rows.empty()) return "  no parameters\n";
   std::array<size_t, 5> widths{};
   for (const auto& line : table)
-    for (size_t k = 0; k < 5; ++k) widths[k] = std::max(widths[k], width(line[k]));
+    for (size_t k = 0; k < 5; ++k) widths[k] = std::max(widths[k], display_width(line[k]));
   std::string text;
   for (size_t i = 0; i < table.size(); ++i) {
     std::string line = "  ";
-    for (size_t k = 0; k < 5; ++k) line += table[i][k] + std::string(widths[k] - width(table[i][k]) + 2, ' ');
+    for (size_t k = 0; k < 5; ++k) line += padded(table[i][k], widths[k] + 2);
     text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     if (i == 0) continue;
     const Parameter& p = *rows[i - 1].parameter;

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "core/kernel/mesh/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 
@@ -84,8 +85,7 @@ std::string Progress::line(const IterationRow& row) const {
   std::snprintf(text, sizeof text, "step %-4d residual %.2e  energy %.6g J", row.step, row.force_residual,
                 row.energy);
   const std::string level = "level " + std::to_string(row.level) + "/" + std::to_string(levels_ - 1) + " ";
-  return method_ + std::string(method_.size() < 10 ? 10 - method_.size() : 1, ' ') + level + increment + bar +
-         " " + text + to_go;
+  return padded(method_, 9) + " " + level + increment + bar + " " + text + to_go;
 }
 
 std::string Progress::details(const IterationRow& row) const {

@@ -55,4 +55,12 @@ std::string quoted_choice(const std::vector<std::string>& words) {
   return text;
 }
 
+std::size_t display_width(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, display_width(text)), ' ');
+}
+
 }  // namespace drape

@@ -14,4 +14,10 @@ std::string joined(const std::vector<std::string>& words);
 /// `"a", "b" or "c"`
 std::string quoted_choice(const std::vector<std::string>& words);
 
+/// Columns that UTF-8 text takes on a terminal: its code points, as of "m²".
+std::size_t display_width(const std::string& text);
+
+/// The text with as many spaces behind it as make it `width` columns wide; a wider one stays as it is.
+std::string padded(const std::string& text, std::size_t width);
+
 }  // namespace drape
