@@ -138,14 +138,14 @@ class Painting {
 
 }  // namespace
 
-Renderer::Renderer(int width, int height, std::function<bool()> leave)
-    : width_(width), height_(height), leave_(std::move(leave)) {}
+Renderer::Renderer(int width, int height, std::function<bool()> cancelled)
+    : width_(width), height_(height), cancelled_(std::move(cancelled)) {}
 
 void Renderer::for_tiles(const std::function<void(int column, int row)>& body) const {
   const int columns = (width_ - 1) / tile_size + 1, rows = (height_ - 1) / tile_size + 1;
   const std::thread::id caller = std::this_thread::get_id();
   parallel_for(columns * rows, 1, [&](int tile, int) {
-    if (leave_ && std::this_thread::get_id() == caller && leave_()) throw PictureLeft();
+    if (cancelled_ && std::this_thread::get_id() == caller && cancelled_()) throw RenderingCancelled();
     const int left = tile % columns * tile_size, top = tile / columns * tile_size;
     for (int row = top; row < std::min(top + tile_size, height_); ++row)
       for (int column = left; column < std::min(left + tile_size, width_); ++column) body(column, row);

@@ -38,19 +38,19 @@ struct Drawing {
 };
 
 /// A Renderer stopped before its picture was finished.
-struct PictureLeft : std::runtime_error {
-  PictureLeft() : std::runtime_error("the picture was left unfinished") {}
+struct RenderingCancelled : std::runtime_error {
+  RenderingCancelled() : std::runtime_error("the picture was cancelled") {}
 };
 
 /// Traces rays (Embree) on thread_count() threads: a wide key light with soft shadows, a fill light, and sky
 /// light with occlusion. The same drawing gives the same bits with any number of threads.
 class Renderer {
  public:
-  /// Size of the pictures [pixels]. `leave`, which may be empty, is polled between tiles, on the thread that
-  /// draws.
-  Renderer(int width, int height, std::function<bool()> leave = {});
+  /// Size of the pictures [pixels]. `cancelled`, which may be empty, is polled between tiles, on the thread
+  /// that draws.
+  Renderer(int width, int height, std::function<bool()> cancelled = {});
 
-  /// Throws PictureLeft once `leave` returns true, std::runtime_error if Embree fails.
+  /// Throws RenderingCancelled once `cancelled` returns true, std::runtime_error if Embree fails.
   Image draw(const Drawing& drawing, const Camera& camera) const;
 
  private:
@@ -58,7 +58,7 @@ class Renderer {
   void for_tiles(const std::function<void(int column, int row)>& body) const;
 
   int width_, height_;
-  std::function<bool()> leave_;
+  std::function<bool()> cancelled_;
 };
 
 }  // namespace drape

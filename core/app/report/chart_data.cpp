@@ -99,7 +99,7 @@ Json bars_json(const RunData& run, NamedNumbers LevelRecord::*member) {
 }
 
 /// Whether the method's last state builds on the level.
-bool leads_to_the_end(const RunData& run, const ErrorSeries& series) {
+bool contributes_to_final_state(const RunData& run, const ErrorSeries& series) {
   for (const MethodRecord& method : run.methods)
     if (method.name == series.method) return series.level >= method.first_level();
   return true;
@@ -108,7 +108,7 @@ bool leads_to_the_end(const RunData& run, const ErrorSeries& series) {
 Json errors_json(const RunData& run) {
   Json all = Json::array();
   for (const ErrorSeries& series : run.errors) {
-    if (!leads_to_the_end(run, series)) continue;
+    if (!contributes_to_final_state(run, series)) continue;
     Json entry = {{"method", series.method}, {"level", series.level}};
     for (std::size_t w = 0; w < error_costs.size(); ++w)
       for (const ErrorRow& row : series.rows) entry[error_costs[w]].push_back(rounded(row.cost[w]));

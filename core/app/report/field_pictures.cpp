@@ -121,7 +121,7 @@ class FieldPictureMaker {
       for (const LevelRecord& level : method.levels) {
         try {
           draw_threshold(pictures, method, level.level);
-        } catch (const PictureLeft&) {
+        } catch (const RenderingCancelled&) {
           throw;
         } catch (const std::exception& error) {
           set_.notes.push_back(threshold_picture(pictures.declared, method, level.level) + ": " +

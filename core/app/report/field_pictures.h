@@ -4,7 +4,8 @@
 
 namespace drape {
 
-/// Draws the fields of set.fields for every method that has them, and sets their scales. Throws PictureLeft.
+/// Draws the fields of set.fields for every method that has them, and sets their scales. Throws
+/// RenderingCancelled.
 void draw_fields(const RunData& run, PictureCanvas& canvas, PictureSet& set);
 
 }  // namespace drape

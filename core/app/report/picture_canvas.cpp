@@ -11,26 +11,26 @@ constexpr int map_size = 700;  // [pixels]
 
 }  // namespace
 
-PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& leave, PictureSet& set)
-    : run_(run), leave_(leave), set_(set), scene_(run, set.notes) {}
+PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, PictureSet& set)
+    : run_(run), cancelled_(cancelled), set_(set), scene_(run, set.notes) {}
 
 std::optional<TriangleMesh> PictureCanvas::try_mesh(const std::string& name) {
   return try_run_mesh(run_, name, set_.notes);
 }
 
 void PictureCanvas::draw(const std::string& name, const Drawing& drawing) {
-  if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height, leave_);
+  if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height, cancelled_);
   keep(name, scene_.draw(*renderer_, drawing));
 }
 
 void PictureCanvas::draw_outlined(const std::string& name, Image picture, const TriangleMesh& state) {
-  if (leave_ && leave_()) throw PictureLeft();
+  if (cancelled_ && cancelled_()) throw RenderingCancelled();
   draw_outline(picture, state, scene_.camera(), outline_colour());
   keep(name, std::move(picture));
 }
 
 void PictureCanvas::draw_map(const std::string& name, const TriangleMesh& flat, const Colours& colours) {
-  if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, leave_);
+  if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, cancelled_);
   keep(name, map_renderer_->draw({flat, nullptr, &colours, false, false}, Camera::facing(flat, 1)));
 }
 

@@ -14,26 +14,26 @@ namespace drape {
 /// Draws a report's pictures into the set that takes them, and into files.
 class PictureCanvas {
  public:
-  /// `run`, `leave` and `set` must outlive the canvas. What cannot be read becomes a note of the set.
-  PictureCanvas(const RunData& run, const std::function<bool()>& leave, PictureSet& set);
+  /// `run`, `cancelled` and `set` must outlive the canvas. What cannot be read becomes a note of the set.
+  PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, PictureSet& set);
 
   const PictureScene& scene() const { return scene_; }
   /// A mesh of the run's folder; empty if there is none, with a note if it cannot be read.
   std::optional<TriangleMesh> try_mesh(const std::string& name);
 
-  /// Draws cloth and obstacles with the common camera and stores the picture. Throws PictureLeft.
+  /// Draws cloth and obstacles with the common camera and stores the picture. Throws RenderingCancelled.
   void draw(const std::string& name, const Drawing& drawing);
   /// Draws the outline of a state over a picture that this canvas drew and stores the result. Throws
-  /// PictureLeft.
+  /// RenderingCancelled.
   void draw_outlined(const std::string& name, Image picture, const TriangleMesh& state);
-  /// Draws a flat mesh in flat colours, seen from above, and stores the picture. Throws PictureLeft.
+  /// Draws a flat mesh in flat colours, seen from above, and stores the picture. Throws RenderingCancelled.
   void draw_map(const std::string& name, const TriangleMesh& flat, const Colours& colours);
 
  private:
   void keep(const std::string& name, Image image);
 
   const RunData& run_;
-  const std::function<bool()>& leave_;
+  const std::function<bool()>& cancelled_;
   PictureSet& set_;
   const PictureScene scene_;
   std::unique_ptr<Renderer> renderer_, map_renderer_;

@@ -49,7 +49,7 @@ class PictureScene {
   const Triangles* triangles_of(Eigen::Index vertex_count) const;
   const Camera& camera() const { return camera_; }
 
-  /// Draws cloth among the obstacles. Throws PictureLeft.
+  /// Draws cloth among the obstacles. Throws RenderingCancelled.
   Image draw(const Renderer& renderer, Drawing drawing) const;
 
  private:

@@ -81,17 +81,17 @@ std::optional<LevelPair> widest_levels(const MethodRecord& method) {
   return widest && widest->fine > widest->coarse ? widest : std::nullopt;
 }
 
-PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave) {
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled) {
   PictureSet set;
   make_folder(run.folder / "pictures");
   for (const DeclaredMetric& metric : run.metrics)
     for (const MetricPicture& picture : metric.declaration.pictures) set.fields.push_back({picture});
-  PictureCanvas canvas(run, leave, set);
+  PictureCanvas canvas(run, cancelled, set);
   try {
     draw_states(run, canvas);
     draw_outlines(run, canvas, set);
     draw_fields(run, canvas, set);
-  } catch (const PictureLeft&) {
+  } catch (const RenderingCancelled&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
                         run.folder.string() + " draws them.");
   }

@@ -57,8 +57,8 @@ const ConsistencyRecord* widest_pair(const MethodRecord& method);
 std::optional<LevelPair> widest_levels(const MethodRecord& method);
 
 /// Draws all pictures of a run and writes them to DIR/pictures. A missing or unreadable mesh becomes a note.
-/// Once `leave` (may be empty) returns true, it skips the remaining pictures, with a note. Throws
+/// Once `cancelled` (may be empty) returns true, it skips the remaining pictures, with a note. Throws
 /// std::runtime_error if the folder is not writable.
-PictureSet draw_pictures(const RunData& run, const std::function<bool()>& leave = {});
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled = {});
 
 }  // namespace drape

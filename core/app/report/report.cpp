@@ -201,9 +201,9 @@ std::string notes(const PictureSet& set) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& run_directory, const std::function<bool()>& leave) {
+void write_report(const std::filesystem::path& run_directory, const std::function<bool()>& cancelled) {
   const RunData run = read_run(run_directory);
-  PictureSet set = draw_pictures(run, leave);
+  PictureSet set = draw_pictures(run, cancelled);
   const Gallery gallery(set);
   const ReportView view = report_view(run);
   set.notes.insert(set.notes.end(), view.notes.begin(), view.notes.end());

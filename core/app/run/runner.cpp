@@ -167,12 +167,12 @@ constexpr double seconds_for_pictures = 2;
 void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
   const std::string name = folder.path().string();
   std::optional<Stopwatch> since_stop;
-  const auto leave = [&] {
+  const auto cancelled = [&] {
     if (!since_stop && stopped()) since_stop.emplace();
     return since_stop && since_stop->seconds() > seconds_for_pictures;
   };
   try {
-    write_report(folder.path(), leave);
+    write_report(folder.path(), cancelled);
   } catch (const std::exception& error) {
     throw RunAborted(reason_of(error) + "; the results in " + name +
                      " are there without their report; write it with drape report " + name);
