@@ -17,7 +17,7 @@ std::string title(const std::string& name, int seed) {
   return "run \"" + name + "\", seed " + std::to_string(seed);
 }
 
-const char* const ways_out =
+const char* const remedies =
     "; give the new sweep another folder with --out, or undo the change, or delete that run's files to run "
     "it again: ";
 
@@ -63,7 +63,7 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
     const RunFiles files = this->files(run["folder"]);
     if (!folders.count(run["folder"]) && read_status(files).has_results())
       throw std::runtime_error(folder + ": has results of " + title(run["name"], run["seed"]) +
-                               ", which the sweep no longer has" + ways_out + run_paths(files));
+                               ", which the sweep no longer has" + remedies + run_paths(files));
   }
   for (const SweepRun& run : sweep.runs) {
     const RunFiles files = this->files(run.folder);
@@ -75,12 +75,12 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
     if (!resolve_interrupted(files, status).has_results()) continue;
     if (text_of_file(files.config()) != run.config)
       throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
-                               " are of another experiment than the sweep now says" + ways_out +
+                               " are of another experiment than the sweep now says" + remedies +
                                run_paths(files));
     if (status.threads != threads)
       throw std::runtime_error(folder + ": " + title(run.name, run.seed) + " was made with " +
                                std::to_string(status.threads) + " threads a run, not " +
-                               std::to_string(threads) + ", so times would not compare" + ways_out +
+                               std::to_string(threads) + ", so times would not compare" + remedies +
                                run_paths(files));
   }
 }

@@ -34,7 +34,7 @@ class Registry {
   /// implementation that is costly to make can have a second constructor, from the parameters and a `const
   /// Implementation&`: when a schedule changes its parameters, that one is given the object before, to share
   /// what stays the same.
-  /// Interface is one of the five of core/model. Throws std::runtime_error on a repeated name, with
+  /// Interface is one of the five of core/kernel/model. Throws std::runtime_error on a repeated name, with
   /// the paths of both libraries.
   template <class Interface, class Implementation>
   void add(const std::string& name, const std::string& summary);
