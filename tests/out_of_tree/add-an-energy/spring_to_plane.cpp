@@ -61,7 +61,7 @@ class SpringToPlane : public drape::Energy {
 
   explicit SpringToPlane(const Parameters& parameters) : p_(parameters) {}
 
-  drape::EnergyRole role() const override { return drape::EnergyRole::external; }
+  drape::EnergyRole role() const override { return drape::EnergyRole::position; }
 
   std::unique_ptr<drape::BoundEnergy> bind(const drape::Level& level,
                                            const drape::Material& material) const override {
