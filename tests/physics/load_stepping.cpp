@@ -30,6 +30,23 @@ void run(Solved& s, Increments& increments) {
   s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), increments);
 }
 
+/// A square above a ball, of which one pin is moved by the schedule.
+std::string dragged_onto_a_ball(int levels, const std::string& schedule) {
+  return R"(
+name: dragged
+cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
+start: {translate: [-0.25, -0.25, 0.22]}
+pins:
+  - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
+  - {region: nearest, point: [0, 0, 0]}
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.2}]
+methods: {pcs: {}}
+)" + std::string("levels: ") +
+         std::to_string(levels) + "\nschedule: " + schedule + "\n";
+}
+
 }  // namespace
 
 TEST_CASE("A strip that is lifted by its end while its weight grows follows the cantilever's tables",
@@ -129,22 +146,9 @@ methods: {pcs: {}}
 }
 
 TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[physics]") {
-  Solved s = scene_from(R"(
-name: dragged
-cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
-levels: 2
-start: {translate: [-0.25, -0.25, 0.22]}
-pins:
-  - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
-  - {region: nearest, point: [0, 0, 0]}
-energies: [neo_hookean, hinge, gravity]
-contact: [ipc, shapes]
-obstacles: [{name: ball, shape: sphere, radius: 0.2}]
-schedule:
-  steps: 3
-  keys: [{parameter: pins.0.translate, times: [0, 1], values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]
-methods: {pcs: {}}
-)");
+  Solved s = scene_from(dragged_onto_a_ball(2,
+                                            "{steps: 3, keys: [{parameter: pins.0.translate, times: [0, 1], "
+                                            "values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1]]}]}"));
   Increments increments(s);
   run(s, increments);
   REQUIRE(s.levels.size() == 2);
@@ -164,23 +168,10 @@ methods: {pcs: {}}
 }
 
 TEST_CASE("A target that an earlier increment did not reach stays in the level's message", "[physics]") {
-  Solved s = scene_from(R"(
-name: dragged_and_back
-cloth: {shape: square, side: 0.5, columns: 10, rows: 10}
-levels: 1
-start: {translate: [-0.25, -0.25, 0.22]}
-pins:
-  - {region: nearest, point: [0.222, 0.222, 0], translate: [-0.25, -0.25, 0.22]}
-  - {region: nearest, point: [0, 0, 0]}
-energies: [neo_hookean, hinge, gravity]
-contact: [ipc, shapes]
-obstacles: [{name: ball, shape: sphere, radius: 0.2}]
-schedule:
-  steps: 4
-  keys: [{parameter: pins.0.translate, times: [0, 1, 2],
-          values: [[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]
-methods: {pcs: {}}
-)");
+  Solved s = scene_from(
+      dragged_onto_a_ball(1,
+                          "{steps: 4, keys: [{parameter: pins.0.translate, times: [0, 1, 2], values: "
+                          "[[-0.25, -0.25, 0.22], [-0.25, -0.25, 0.1], [-0.25, -0.25, 0.22]]}]}"));
   Increments increments(s);
   run(s, increments);
   REQUIRE(s.levels.size() == 1);
