@@ -20,7 +20,10 @@ namespace {
 struct Candidate {
   std::string name;
   std::shared_ptr<Energy> energy;
-  bool internal() const { return energy->role() != EnergyRole::external; }
+  /// Whether it depends on the cloth's shape alone, not on where the cloth is.
+  bool internal() const {
+    return energy->role() != EnergyRole::external && energy->role() != EnergyRole::position;
+  }
   /// Scale on the rest shape for a state with stiffness: strain limits have none at rest.
   double enlarged() const { return energy->role() == EnergyRole::limit ? 1.2 : 1; }
 };
