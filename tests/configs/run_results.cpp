@@ -1,5 +1,7 @@
 // What a finished run leaves behind.
 
+#include <sched.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -221,6 +223,24 @@ TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
       INFO(mesh);
       CHECK((text_of(folder / ("out/" + mesh)) == text_of(finished_run() / mesh)));
     }
+}
+
+TEST_CASE("a run takes as many threads as there are cores that it may use") {
+  // The command inherits the test's cores.
+  cpu_set_t before, first;
+  REQUIRE(sched_getaffinity(0, sizeof before, &before) == 0);
+  CPU_ZERO(&first);
+  for (int cpu = 0; CPU_COUNT(&first) == 0; ++cpu)
+    if (CPU_ISSET(cpu, &before)) CPU_SET(cpu, &first);
+  REQUIRE(sched_setaffinity(0, sizeof first, &first) == 0);
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const Ended ended = drape_with("run e.yaml --out out --quiet --no-report", folder.path);
+  sched_setaffinity(0, sizeof before, &before);
+  REQUIRE(ended.exit_code == 0);
+  const Json machine = Json::parse(text_of(folder / "out/results.json"))["machine"];
+  CHECK(machine["threads"] == 1);
+  CHECK(machine["cores"] == 1);
 }
 
 TEST_CASE("the saved config has the defaults of omitted parameters") {

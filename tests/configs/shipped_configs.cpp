@@ -74,7 +74,7 @@ TEST_CASE("every shipped experiment converges, made small") {
     INFO(config);
     const Scratch folder;
     const Ended ended =
-        drape_with("run " + config.string() + " --out out --method all --quiet --no-report" + shrunk(config),
+        drape_with("run " + config.string() + " --out out --method all --threads 1 --quiet --no-report" + shrunk(config),
                    folder.path);
     CHECK(ended.err == "");
     CHECK(ended.exit_code == 0);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 
@@ -72,7 +73,7 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   const Ended one = drape_with(small_sweep + "--out one --workers 1", folder.path);
   CHECK(one.exit_code == 0);
   CHECK_THAT(one.err, Contains("[24/24] refiner=midpoint,levels=2,step_growth=3, seed 3: converged after "));
-  if (std::thread::hardware_concurrency() >= 2) {
+  if (drape::core_count() >= 2) {
     CHECK(drape_with(small_sweep + "--out two --workers 2", folder.path).exit_code == 0);
     const auto expected = outcome_of(folder / "one");
     CHECK(expected.size() == 24 * 2 + 12 * 2 + 12 * 4);  // energies by method; meshes by method and level
@@ -140,7 +141,7 @@ TEST_CASE("kill -9 loses only the active runs") {
   CHECK(ended.exit_code == 0);
   CHECK((outcome_of(folder / "cut") == outcome_of(folder / "whole")));
   const Json after = runs_of(folder / "cut");
-  const int workers = int(std::thread::hardware_concurrency());
+  const int workers = drape::core_count();
   int starts = 0;
   for (std::size_t k = 0; k < after.size(); ++k) {
     starts += after[k]["starts"].get<int>();
@@ -290,7 +291,7 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
   CHECK(said("") == "error: out: has results of run \"a\", seed 1, which the sweep no longer has" + ways +
                         "out/runs/a/seed_1*\n");
   folder.write("s.yaml", sweep);
-  if (std::thread::hardware_concurrency() >= 2)
+  if (drape::core_count() >= 2)
     CHECK(said(" --threads 2") ==
           "error: out: run \"a\", seed 1 was made with 1 threads a run, not 2, so times would not compare" +
               ways + "out/runs/a/seed_1*\n");
@@ -319,7 +320,7 @@ TEST_CASE("a foreign folder in the place of a run's stays") {
 }
 
 TEST_CASE("runs that exceed the memory together run one after another, with a warning") {
-  if (std::thread::hardware_concurrency() < 2) return;
+  if (drape::core_count() < 2) return;
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml", "name: s\nbase: e.yaml\nset: {levels: 1}\nmethods: [newton]\nrepeats: 4\n");

@@ -3,8 +3,8 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
-#include <thread>
 
+#include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 
@@ -133,10 +133,10 @@ TEST_CASE("a sweep with a run that may exceed the memory starts no run") {
 }
 
 TEST_CASE("conflicting options, and a foreign folder") {
-  const int cores = int(std::thread::hardware_concurrency());
+  const int cores = drape::core_count();
   const std::string count = std::to_string(cores), more = std::to_string(cores + 1);
   const std::string rest = " threads (workers × threads) are more than the " + count +
-                           " cores of this machine; lower --workers or --threads\n";
+                           " cores that this process may use; lower --workers or --threads\n";
   CHECK(said_of("", "--workers " + more) == "error: " + more + " × 1" + rest);
   CHECK(said_of("threads: " + more + "\n") == "error: 1 × " + more + rest);
   CHECK(said_of("", "--wait") == "error: --wait is of --engine slurm; give that too\n");

@@ -44,7 +44,7 @@ RunCommand::RunCommand(CLI::App& app) {
                    "methods to run, or all (default: pcs, or the experiment's only method)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command_->add_option("-j,--threads", threads_, "threads (default: one per core)")->check(positive_integer);
+  command_->add_option("-j,--threads", threads_, "threads (default: one per core that the process may use)")->check(positive_integer);
   command_->add_flag("--overwrite", options_.overwrite,
                      "replace the results of an earlier run in the folder");
   command_->add_option(

@@ -98,7 +98,7 @@ void SweepCommand::check_options(int threads) const {
     if (workers * threads > cores)
       throw std::runtime_error(std::to_string(workers) + " × " + std::to_string(threads) +
                                " threads (workers × threads) are more than the " + std::to_string(cores) +
-                               " cores of this machine; lower --workers or --threads");
+                               " cores that this process may use; lower --workers or --threads");
   }
 }
 

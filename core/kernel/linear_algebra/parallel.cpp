@@ -1,5 +1,7 @@
 #include "core/kernel/linear_algebra/parallel.h"
 
+#include <sched.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -126,7 +128,11 @@ void run_pieces(const Pieces& pieces, const std::function<void(int piece, int be
 }  // namespace
 
 int core_count() {
-  static const int cores = std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
+  static const int cores = [] {
+    cpu_set_t usable;
+    const bool known = sched_getaffinity(0, sizeof usable, &usable) == 0;
+    return std::max(known ? CPU_COUNT(&usable) : static_cast<int>(std::thread::hardware_concurrency()), 1);
+  }();
   return cores;
 }
 
