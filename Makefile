@@ -4,8 +4,8 @@
 # make demo     build the command and its plugins, drape a square over a sphere by PCS, show the preview first
 # make results  run what the pages state and fill their figures in; resumes; STUDIES=sphere,scale chooses some
 # make figures  fill the pages' figures in from the stored records; runs nothing
-# make table1   the study of the supplement's Table 1, hours (`make data` for all of its scenes); SCENES="sphere cube" LEVELS=3
-#               choose some scenes and fewer levels, and write no record
+# make table1   the study of the supplement's Table 1, hours (`make data` for all of its scenes); LEVELS=2 goes to at most so many
+#               levels, and writes no record
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
@@ -68,13 +68,12 @@ demo: build
 	@configs/demo $(BUILD)/bin/drape
 
 # Whole studies are those of `make results`; a part of one stays in results/.
+to_levels = $(BUILD)/bin/drape sweep configs/sweeps/$(1).yaml --out results/$(1)_levels_$(LEVELS) --most-levels $(LEVELS)
 table1: benchmarks
-	@$(if $(SCENES)$(LEVELS),benchmarks/table1 --drape $(BUILD)/bin/drape $(if $(SCENES),--scenes "$(SCENES)") $(if $(LEVELS),--levels $(LEVELS)),\
-	  benchmarks/run_studies $(BUILD) table1)
+	@$(if $(LEVELS),$(call to_levels,table1); benchmarks/table1 results/table1_levels_$(LEVELS),benchmarks/run_studies $(BUILD) table1)
 
 scenes: benchmarks
-	@$(if $(LEVELS),$(BUILD)/bin/drape sweep configs/sweeps/scenes.yaml --out results/scenes_levels_$(LEVELS) --most-levels $(LEVELS); \
-	  $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies $(BUILD) scenes)
+	@$(if $(LEVELS),$(call to_levels,scenes); $(BUILD)/bin/drape table results/scenes_levels_$(LEVELS),benchmarks/run_studies $(BUILD) scenes)
 
 test: build-tests
 	@ctest --preset $(PRESET) -j $(JOBS)

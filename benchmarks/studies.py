@@ -7,12 +7,14 @@ benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
+ALL_MESHES = [*MESHES, "bear.ply", "dragon.ply"]
 RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 METHOD_COLUMNS = "run,method,outcome,vertices,iterations,seconds,energy,intersections"
 
 
-def sweep(name, out="{out}"):
-    return ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
+def sweep(name, out="{out}", most_levels=None):
+    command = ["{drape}", "sweep", f"configs/sweeps/{name}.yaml", "-o", out, "-j", "{workers}", "--threads", "{threads}", "-q"]
+    return command + (["--most-levels", str(most_levels)] if most_levels else [])
 
 
 def previews(name, what, starts, timed=False, meshes=()):
@@ -20,10 +22,17 @@ def previews(name, what, starts, timed=False, meshes=()):
             "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
 
 
-def table(name, what, starts, columns, timed=True, meshes=()):
-    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name)], "twins": True,
-            "gather": [[">{results}/" + name + ".md", "{drape}", "table", "{out}", "--columns", columns]],
-            "records": [f"{name}.md"]}
+def table(name, what, starts, columns, timed=False, meshes=(), most_levels=None):
+    record = f"{name}_levels_{most_levels}.md" if most_levels else f"{name}.md"
+    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
+            "twins": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", columns]],
+            "records": [record]}
+
+
+def table1(what, most_levels=None):
+    record = f"table1_levels_{most_levels}" if most_levels else "table1"
+    return {"what": what, "timed": False, "starts": 1, "meshes": MESHES, "run": [sweep("table1", most_levels=most_levels)],
+            "gather": [["benchmarks/table1", "{out}", "{results}/" + record]], "records": [f"{record}.json", f"{record}.md"]}
 
 
 def program(name, what):
@@ -48,7 +57,8 @@ STUDIES = {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million")],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
-    "papers_settings": table("papers_settings", "PCS against direct, the paper's settings and ours", 3, METHOD_COLUMNS),
+    "papers_settings": table("papers_settings", "PCS against direct, the paper's settings and ours", 3, METHOD_COLUMNS,
+                             timed=True),
     "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
     "interpolation": previews("interpolation", "the choice of interpolation", 3),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
@@ -58,12 +68,11 @@ STUDIES = {
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
-    "table1": {
-        "what": "the supplement's Table 1", "timed": True, "starts": 1, "meshes": MESHES,
-        "run": [["benchmarks/table1", "--drape", "{drape}", "--out", "{out}"]],
-        "gather": [["cp", "{out}/table1.json", "{out}/table1.md", "{results}/"]], "records": ["table1.json", "table1.md"]},
-    "scenes": table("scenes", "every scene of the supplement's Table 2", 1, RUN_COLUMNS,
-                    meshes=[*MESHES, "bear.ply", "dragon.ply"]),
+    "table1_levels_3": table1("the supplement's Table 1, to three levels", 3),
+    "scenes_levels_3": table("scenes", "every scene of the supplement's Table 2, to three levels", 1, RUN_COLUMNS,
+                             meshes=ALL_MESHES, most_levels=3),
+    "table1": table1("the supplement's Table 1"),
+    "scenes": table("scenes", "every scene of the supplement's Table 2", 1, RUN_COLUMNS, meshes=ALL_MESHES),
     "dragon_decrements": table("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, METHOD_COLUMNS,
-                               meshes=["dragon.ply"]),
+                               timed=True, meshes=["dragon.ply"]),
 }
