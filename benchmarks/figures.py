@@ -211,7 +211,7 @@ def scale():
                      figure(million["peak_bytes"] / 1e9, 2)])
     exponents = record["exponents"]
     rows.append(["exponent", "", figure(exponents["seconds"], 3), figure(exponents["peak_bytes"], 3)])
-    lines = table(["vertices", "iterations", "seconds an iteration", "peak memory [GB]"], rows, [], "rrrr")[1:]
+    lines = table(["vertices", "iterations", "seconds per iteration", "peak memory [GB]"], rows, [], "rrrr")[1:]
     if "stopped_by" in million:
         lines += ["", f"A million vertices: {million['stopped_by']}."]
     largest = record["rows"][-1]

@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
 

@@ -1,6 +1,6 @@
 // How texts of users and files appear in messages, and what is read of files at all.
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 #include <sys/stat.h>
 
@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
 #include "tests/support/command.h"

@@ -14,8 +14,9 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/colours.h"
 #include "core/app/view/html.h"
+#include "core/kernel/files/base64.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/topology.h"
 #include "tests/support/declared_metrics.h"
@@ -245,7 +246,7 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
     INFO(name);
     const std::string file = read_file(run.folder / "pictures" / name);
     CHECK(file.substr(1, 3) == "PNG");
-    CHECK(contains(page, html::base64(file)));
+    CHECK(contains(page, base64(file)));
     // PCS keeps its ripples, so its difference is one colour all over.
     if (name == "pcs_l0_l1_H_difference.png") {
       CHECK(contrast(picture.image) < 1);
@@ -398,9 +399,9 @@ TEST_CASE("figures in a report have three digits") {
   CHECK(html::count(1234567) == "1\u202f234\u202f567");
   CHECK(html::count(123) == "123");
   CHECK(html::bytes(2.5e9) == "2.50 GB");
-  CHECK(html::base64("light work.") == "bGlnaHQgd29yay4=");
-  CHECK(html::base64("light wor") == "bGlnaHQgd29y");
-  CHECK(html::base64("light wo") == "bGlnaHQgd28=");
+  CHECK(base64("light work.") == "bGlnaHQgd29yay4=");
+  CHECK(base64("light wor") == "bGlnaHQgd29y");
+  CHECK(base64("light wo") == "bGlnaHQgd28=");
   CHECK_THROWS_WITH(html::fill("a {{b}} c", {}), Catch::Contains("{{b}}"));
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {

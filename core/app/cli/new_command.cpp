@@ -10,7 +10,7 @@
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

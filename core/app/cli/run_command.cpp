@@ -12,8 +12,8 @@
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/view/live_view.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
@@ -44,7 +44,8 @@ RunCommand::RunCommand(CLI::App& app) {
                    "methods to run, or all (default: pcs, or the experiment's only method)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command_->add_option("-j,--threads", threads_, "threads (default: one per core that the process may use)")->check(positive_integer);
+  command_->add_option("-j,--threads", threads_, "threads (default: one per core that the process may use)")
+      ->check(positive_integer);
   command_->add_flag("--overwrite", options_.overwrite,
                      "replace the results of an earlier run in the folder");
   command_->add_option(

@@ -13,8 +13,8 @@
 #include "core/app/sweep/local_engine.h"
 #include "core/app/sweep/memory.h"
 #include "core/app/sweep/slurm_engine.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 

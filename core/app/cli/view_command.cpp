@@ -14,7 +14,7 @@
 #include "core/app/report/run_collection.h"
 #include "core/app/report/runs_report.h"
 #include "core/app/view/html.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameter_path.h"
 #include "core/kernel/plugin/string_utils.h"
 

@@ -9,7 +9,7 @@
 #include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/method_choice.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/parameter_path.h"
 

@@ -8,10 +8,10 @@
 #include "core/app/experiment/reference_file.h"
 #include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/size_estimate.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/message_text.h"
 #include "core/kernel/mesh/same_triangles.h"
 
 namespace drape {

@@ -5,7 +5,7 @@
 
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/string_utils.h"
 

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/file.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

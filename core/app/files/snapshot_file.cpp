@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

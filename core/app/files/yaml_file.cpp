@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {

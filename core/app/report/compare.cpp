@@ -8,7 +8,7 @@
 #include "core/app/report/run_rows.h"
 #include "core/app/report/text_table.h"
 #include "core/app/view/html.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/plugin/string_utils.h"
 

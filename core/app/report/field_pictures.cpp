@@ -6,8 +6,8 @@
 #include "core/app/picture/surface.h"
 #include "core/app/report/midpoint_surface.h"
 #include "core/app/view/colours.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 

@@ -1,7 +1,7 @@
 #include "core/app/report/picture_canvas.h"
 
 #include "core/app/picture/outline.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -8,7 +8,7 @@
 #include "core/app/picture/outline.h"
 #include "core/app/report/picture_scene.h"
 #include "core/app/report/recorded_snapshots.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "core/app/picture/surface.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 

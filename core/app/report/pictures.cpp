@@ -4,7 +4,7 @@
 
 #include "core/app/report/field_pictures.h"
 #include "core/app/report/picture_canvas.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -9,8 +9,8 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/run_data.h"
 #include "core/app/report/undeclared_metrics.h"
-#include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

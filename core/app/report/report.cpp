@@ -7,7 +7,8 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/base64.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 
@@ -34,7 +35,7 @@ class Gallery {
       return "<figure class=\"absent\"><p>no picture</p><figcaption>" + caption + "</figcaption></figure>\n";
     const Image& full = picture->image;
     const Image half = halve_ ? shrink(full, 2) : Image();
-    const std::string data = html::base64(halve_ ? encode_png(half) : picture->png);
+    const std::string data = base64(halve_ ? encode_png(half) : picture->png);
     return "<figure><img width=\"" + std::to_string(halve_ ? half.width : full.width) + "\" height=\"" +
            std::to_string(halve_ ? half.height : full.height) + "\" alt=\"" + escape(alt) +
            "\" src=\"data:image/png;base64," + data + "\"><figcaption>" + caption +

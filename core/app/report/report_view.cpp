@@ -8,9 +8,9 @@
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/view_document.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 

@@ -10,7 +10,7 @@
 #include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -10,7 +10,7 @@
 #include "core/app/picture/surface.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/report/run_data.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
 

@@ -7,7 +7,7 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

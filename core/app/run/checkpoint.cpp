@@ -1,7 +1,7 @@
 #include "core/app/run/checkpoint.h"
 
 #include "core/app/files/archive.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
 #include "core/kernel/version.h"

@@ -4,8 +4,8 @@
 #include <cstdio>
 
 #include "core/app/files/snapshot_file.h"
-#include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

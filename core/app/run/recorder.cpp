@@ -6,9 +6,9 @@
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io_formats.h"
 #include "core/kernel/version.h"
 

@@ -5,7 +5,7 @@
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/reference.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 
 namespace drape {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io_formats.h"
 
 namespace drape {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/model/metric_declaration.h"
 
 namespace drape {

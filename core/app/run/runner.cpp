@@ -11,10 +11,10 @@
 #include "core/app/run/progress.h"
 #include "core/app/run/recorder_files.h"
 #include "core/app/view/live_view.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/file.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/message_text.h"
 #include "core/kernel/plugin/string_utils.h"
 #include "core/kernel/solve/resumable_solver.h"
 

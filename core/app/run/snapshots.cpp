@@ -1,7 +1,7 @@
 #include "core/app/run/snapshots.h"
 
 #include "core/app/files/snapshot_file.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

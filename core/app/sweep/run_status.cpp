@@ -8,8 +8,8 @@
 
 #include "core/app/experiment/method_choice.h"
 #include "core/app/files/json_file.h"
-#include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/model/solver.h"
 
 namespace drape {

@@ -7,8 +7,8 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/sweep/memory.h"
-#include "core/kernel/mesh/file.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

@@ -10,7 +10,7 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/experiment_files.h"
 #include "core/app/sweep/variations.h"
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "core/app/files/json_file.h"
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 namespace drape {
 

@@ -46,6 +46,4 @@ std::string fill(std::string_view page, const std::map<std::string, std::string>
 /// A path as a URL, reserved characters as %XX.
 std::string url_path(const std::filesystem::path& path);
 
-std::string base64(std::string_view bytes);
-
 }  // namespace drape::html

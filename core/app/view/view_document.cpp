@@ -6,6 +6,7 @@
 #include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
 #include "core/kernel/elements/vertex_fields.h"
+#include "core/kernel/files/base64.h"
 
 namespace drape {
 
@@ -101,7 +102,7 @@ ViewDocument::Json ViewDocument::document(const std::string& title, Json methods
 
 std::string block_element(const std::string& name, const std::string& bytes) {
   return "<script type=\"application/octet-stream\" id=\"viewer-" + html::escape(name) + "\">" +
-         html::base64(deflated(bytes)) + "</script>\n";
+         base64(deflated(bytes)) + "</script>\n";
 }
 
 std::string document_element(const ViewDocument::Json& document) {

@@ -14,8 +14,7 @@ namespace drape {
 /// t/m²], beyond any cloth, for scenes from a millimetre to a hundred metres: κ is within [9.81e-5, 9.81e7]
 /// Pa, and a weightless material still has a barrier. Source: this project.
 inline double contact_stiffness(const Material& material) {
-  const double gravity = 9.81;  // [m/s²]
-  return 10 * gravity * std::clamp(material.area_density(), 1e-6, 1e6);
+  return 10 * standard_gravity * std::clamp(material.area_density(), 1e-6, 1e6);
 }
 
 }  // namespace drape

@@ -1,4 +1,4 @@
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "core/kernel/mesh/text_reader.h"
+#include "core/kernel/files/text_reader.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 namespace {

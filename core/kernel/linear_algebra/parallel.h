@@ -4,8 +4,8 @@
 
 namespace drape {
 
-/// Number of cores that the process may use: the machine's, or fewer where taskset, Slurm or a container binds
-/// it. 1 if it is unknown.
+/// Number of cores that the process may use: the machine's, or fewer where taskset, Slurm or a container's
+/// cpuset binds it. 1 if it is unknown.
 int core_count();
 /// Number of threads that parallel_for uses; at least 1.
 int thread_count();

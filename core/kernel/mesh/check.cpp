@@ -9,9 +9,9 @@
 #include <numeric>
 #include <utility>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/extent.h"
 #include "core/kernel/mesh/half_edges.h"
-#include "core/kernel/mesh/message_text.h"
 
 namespace drape {
 namespace {

@@ -3,10 +3,10 @@
 #include <charconv>
 #include <iterator>
 
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/text_reader.h"
 #include "core/kernel/mesh/io_formats.h"
 #include "core/kernel/mesh/mesh_builder.h"
-#include "core/kernel/mesh/message_text.h"
-#include "core/kernel/mesh/text_reader.h"
 
 namespace drape {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 namespace {

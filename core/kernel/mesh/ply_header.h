@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/mesh/text_reader.h"
+#include "core/kernel/files/text_reader.h"
 
 namespace drape {
 

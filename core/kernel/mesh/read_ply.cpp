@@ -6,11 +6,11 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/io_formats.h"
 #include "core/kernel/mesh/mesh_builder.h"
-#include "core/kernel/mesh/message_text.h"
 #include "core/kernel/mesh/ply_header.h"
 
 namespace drape {

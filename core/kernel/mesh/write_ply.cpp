@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/io_formats.h"
 

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/kernel/mesh/file.h"
+#include "core/kernel/files/base64.h"
+#include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/io_formats.h"
 
@@ -12,20 +13,6 @@ namespace drape {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
-
-std::string base64(const std::string& bytes) {
-  constexpr char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (std::size_t k = 0; k < 4; ++k)
-      text += i + k <= bytes.size() ? digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::string escaped(const std::string& text) {
   std::string result;

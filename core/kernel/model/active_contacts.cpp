@@ -9,7 +9,7 @@ namespace drape {
 void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
   candidates_.clear();
   for (const auto& model : models_) candidates_.push_back(model->build_candidates(x0, x1));
-  candidates_motion_ = std::make_shared<const LinearMotion>(LinearMotion{x0, x1});
+  candidates_motion_ = std::make_shared<const PositionPair>(PositionPair{x0, x1});
 }
 
 void ActiveContacts::build_collisions(const Positions& x) {

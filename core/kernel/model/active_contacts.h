@@ -65,7 +65,7 @@ class ActiveContacts {
   double smallest_gap() const;  ///< there [m]; +∞ without a contact
 
  private:
-  struct LinearMotion {
+  struct PositionPair {
     Positions begin, end;
   };
   void build_candidates(const Positions& x0, const Positions& x1);
@@ -78,7 +78,7 @@ class ActiveContacts {
   BoundContacts models_;
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
-  std::shared_ptr<const LinearMotion> candidates_motion_, collisions_motion_;  // that each was built for
+  std::shared_ptr<const PositionPair> candidates_motion_, collisions_motion_;  // that each was built for
   // Of each model, or null without friction; empty before a step.
   std::vector<std::unique_ptr<const LaggedFriction>> friction_;
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model

@@ -220,8 +220,8 @@ double LevelModel::residual_scale(const Positions& x, const Positions& gradient)
   double weight = 0;
   for (int i = 0; i < masses_.size(); ++i)
     if (!fixed_[i]) weight += masses_[i] * masses_[i];
-  constexpr double gravity = 9.81;  // [m/s²]
-  return std::max({norm_where(gradient, fixed_, 1), min_weight_fraction * gravity * std::sqrt(weight),
+  return std::max({norm_where(gradient, fixed_, 1),
+                   min_weight_fraction * standard_gravity * std::sqrt(weight),
                    std::numeric_limits<double>::min()});
 }
 

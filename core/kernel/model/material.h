@@ -4,6 +4,9 @@
 
 namespace drape {
 
+/// What estimates of a cloth's weight take for gravity [m/s²].
+inline constexpr double standard_gravity = 9.81;
+
 /// An isotropic cloth material. Moduli are Young's moduli of the bulk, as in the supplement's Table 2.
 struct Material {
   double density = 472.6;         ///< ρ [kg/m³]

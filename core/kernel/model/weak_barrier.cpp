@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/model/smallest_gap.h"
 
 namespace drape {

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <set>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {

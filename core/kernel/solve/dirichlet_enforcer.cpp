@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/kernel/mesh/message_text.h"
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/model/weak_barrier.h"
 #include "core/kernel/solve/dirichlet_predictor.h"
 #include "core/kernel/solve/newton_state.h"

@@ -43,7 +43,7 @@ std::vector<std::array<int, 4>> find_rest_proximity_pairs(const Surface& cloth, 
   if (!tree->overlaps(max_pairs, rows))
     throw std::runtime_error(
         "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
-        "within \"dhat\" of each other; lower it to about the length of an edge");
+        "within \"dhat\" of each other; lower it to half the length of an edge");
   BroadPhasePairs found;
   find_self_pairs(cloth, boxes, rows, {rest, rest, dhat, none, none}, 0, unlimited, found);
   std::vector<std::array<int, 4>> pairs;
