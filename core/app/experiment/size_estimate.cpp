@@ -19,9 +19,8 @@ constexpr double max_finest_vertices = 4e7;
 constexpr double max_vertex_ratio = 2;
 
 // Peak memory is 0.1 GB for the program and then grows as n log₂ n, as factors of plane meshes do. The
-// constant is the largest of the runs of Table 1's scenes with 6K to 224K vertices
-// (benchmarks/results/table1*.json, peak_memory_bytes): 980 to 1410 bytes without much contact, 2000 around
-// the cube.
+// constant is the largest of the runs in benchmarks/results/table1.json (peak_memory_bytes) and scale.json
+// (peak_bytes), of 98K to a million vertices: 2000 bytes around the cube, 920 to 1740 elsewhere.
 constexpr double program = 1e8, bytes_each = 2000;
 
 std::string about(double number) {
