@@ -1,6 +1,7 @@
 #include "tests/support/eigenvalues.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& symmetric) {
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
@@ -9,4 +10,8 @@ Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& symmetric) {
 Eigenpairs eigenpairs_of(const Eigen::MatrixXd& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+Eigen::VectorXd singular_values_of(const Eigen::MatrixXd& matrix) {
+  return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
 }

@@ -131,7 +131,7 @@ TEST_CASE("A folder that is deleted during a run aborts it with its own code, an
     CHECK_THAT(all["aborted"].get<std::string>(), StartsWith("cannot write out/levels/odd_l1.ply"));
     CHECK(all["methods"]["odd"]["status"] == "aborted");
     CHECK(events(folder, "run_aborted").size() == 1);
-    CHECK(drape_with("report out", folder.path).exit_code == drape::exit_done);
+    CHECK(drape_with("report out --width 90", folder.path).exit_code == drape::exit_done);
     CHECK_THAT(text_of(folder / "out/report.html"), Contains("The run was aborted (cannot write "));
     const Ended on = drape_with("run --resume out --quiet --no-report", folder.path,
                                 with_failing);  // which fails at the same

@@ -19,8 +19,8 @@ std::string experiment_with(const std::string& mesh_name) {
 }
 
 /// Standard error of a run, and of a check, of the experiment in a subfolder with this mesh beside it.
-std::string said_of(const std::string& mesh, const std::string& mesh_name = "cloth.obj",
-                    const std::string& arguments = "") {
+std::string said_of_mesh(const std::string& mesh, const std::string& mesh_name = "cloth.obj",
+                         const std::string& arguments = "") {
   const Scratch folder;
   std::filesystem::create_directory(folder / "in");
   folder.write("in/e.yaml", experiment_with(mesh_name));
@@ -56,65 +56,65 @@ TEST_CASE("a missing or unreadable mesh file") {
   CHECK(ended.exit_code == 2);
   CHECK(ended.err == "error: e.yaml:2:8: cannot read cloth.obj: No such file or directory\n");
   CHECK(!std::filesystem::exists(folder / "out"));
-  CHECK(said_of("solid", "cloth.stl") ==
+  CHECK(said_of_mesh("solid", "cloth.stl") ==
         "error: in/e.yaml:2:8: in/cloth.stl: unknown mesh format '.stl'; known are .obj, .off, .ply\n");
-  CHECK(said_of(sheet, "cloth.obj", "--set 'cloth={shape: file}'") ==
+  CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: file}'") ==
         "error: --set cloth: \"shape: file\" needs \"file\", the mesh to read\n");
-  CHECK(said_of(sheet, "cloth.obj", "--set 'cloth={shape: polygon}'") ==
+  CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: polygon}'") ==
         "error: --set cloth: \"shape: polygon\" needs \"loops\", its outline and holes\n");
 }
 
 TEST_CASE("a malformed mesh file is named with its line") {
-  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 one 0\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 one 0\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: 'one' is not a number\n");
-  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 nan 0\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 nan 0\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: 'nan' is not a finite coordinate\n");
-  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 1\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 1\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:5: a vertex needs three coordinates\n");
-  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 10\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 9 10\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:17: face names vertex 10, but 9 vertices precede it\n");
-  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 9\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj:17: a face needs at least three vertices\n");
   CHECK(
-      said_of("OFF\n3 1 0\n0 0 0\n1 0 0\n", "cloth.off") ==
+      said_of_mesh("OFF\n3 1 0\n0 0 0\n1 0 0\n", "cloth.off") ==
       "error: in/e.yaml:2:8: in/cloth.off:4: the file ends before vertex 2 (the header declares 3 vertices, "
       "1 faces)\n");
-  CHECK(said_of("ply\nformat ascii 1.0\nelement vertex 3\n", "cloth.ply") ==
+  CHECK(said_of_mesh("ply\nformat ascii 1.0\nelement vertex 3\n", "cloth.ply") ==
         "error: in/e.yaml:2:8: in/cloth.ply:3: the header has no end_header\n");
 }
 
 TEST_CASE("a mesh that is no surface with one side up is named with the element") {
-  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 7) runs in the same direction in triangles 4 and 7: "
         "one of them is inverted\n"
         "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 8) runs in the same direction in triangles 6 and 7: "
         "one of them is inverted\n"
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 7, 8) faces the other way than most of this flat "
         "mesh\n");
-  CHECK(said_of("") == "error: in/e.yaml:2:8: in/cloth.obj: is empty\n");
-  CHECK(said_of("v 0 0 0\n") ==
+  CHECK(said_of_mesh("") == "error: in/e.yaml:2:8: in/cloth.obj: is empty\n");
+  CHECK(said_of_mesh("v 0 0 0\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n"
         "error: in/e.yaml:2:8: in/cloth.obj: vertex 0 belongs to no triangle\n");
-  CHECK(said_of(sheet + "v 0 0 1\nf 1 10 5\n") ==
+  CHECK(said_of_mesh(sheet + "v 0 0 1\nf 1 10 5\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n");
-  CHECK(said_of(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 8) repeats a vertex\n");
-  CHECK(said_of(replaced(sheet, "v 2 2 0\n", "v 1 1 0\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "v 2 2 0\n", "v 1 1 0\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 6 (4, 5, 8) has no area\n"
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 7) has no area\n");
-  CHECK(said_of(sheet + "f 1 2 5\n") ==
+  CHECK(said_of_mesh(sheet + "f 1 2 5\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 8 (0, 1, 4) has the same vertices as triangle 0\n"
         "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 1) runs in the same direction in triangles 0 and 8: "
         "one of them is inverted\n"
         "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n"
         "error: in/e.yaml:2:8: in/cloth.obj: edge (1, 4) has 3 triangles: 0, 3, 8\n");
-  CHECK(said_of(sheet + "v 5 5 5\n") ==
+  CHECK(said_of_mesh(sheet + "v 5 5 5\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: vertex 9 belongs to no triangle\n");
 }
 
 TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
   const std::string bent = replaced(sheet, "v 1 1 0\n", "v 1 1 0.5\n");
-  CHECK(said_of(bent, "cloth.obj", "--set 'energies=[neo_hookean, quadratic_bending, gravity]'") ==
+  CHECK(said_of_mesh(bent, "cloth.obj", "--set 'energies=[neo_hookean, quadratic_bending, gravity]'") ==
         "error: --set energies: quadratic_bending: the rest shape of level 0 is not flat (angle 0.420534 at "
         "the edge of vertices 1 and 4); use hinge\n");
 }
@@ -122,7 +122,7 @@ TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
 TEST_CASE("few faults are listed for any number in a mesh") {
   std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
   for (int k = 0; k < 200000; ++k) mesh += " 1 2 3";
-  const std::string said = said_of(mesh + "\n");
+  const std::string said = said_of_mesh(mesh + "\n");
   CHECK(said.size() < 10000);
   CHECK_THAT(said, Catch::Matchers::Contains("in/cloth.obj: and ") &&
                        Catch::Matchers::EndsWith("more faults like these\n"));
@@ -130,12 +130,12 @@ TEST_CASE("few faults are listed for any number in a mesh") {
   mesh = "v 0 0 0\nv 1 0 0\n";
   for (int k = 0; k < 1000; ++k)
     mesh += "v " + std::to_string(k) + " 1 " + std::to_string(k) + "\nf 1 2 -1\n";
-  CHECK_THAT(said_of(mesh),
+  CHECK_THAT(said_of_mesh(mesh),
              Catch::Matchers::Contains("edge (0, 1) has 1000 triangles: 0, 1, 2, 3, 4, 5, 6, 7, …\n"));
 }
 
 TEST_CASE("a mesh whose squares overflow is not said to have no area") {
-  CHECK(said_of(replaced(sheet, "v 1 1 0\n", "v 1 1e100 0\n")) ==
+  CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 1e100 0\n")) ==
         "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 has a coordinate of 1e+100 m; at most 1e+09 m can "
         "be computed with\n");
 }

@@ -8,7 +8,7 @@
 
 namespace {
 
-const std::string experiment = R"(name: caged
+const std::string caged = R"(name: caged
 cloth: {shape: square, side: 0.4, columns: 9, rows: 9}
 levels: 3
 start: {translate: [-0.2, -0.2, 0.15], perturbation: 1e-3}
@@ -30,7 +30,7 @@ double nearest_to_centre(const std::filesystem::path& ply) {
 
 TEST_CASE("a cloth passes from cage to cage without intersection, and ends on the obstacle itself") {
   const Scratch folder;
-  folder.write("e.yaml", experiment);
+  folder.write("e.yaml", caged);
   const Ended ended = drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
   INFO(ended.err);
   REQUIRE(ended.exit_code == 0);
@@ -60,7 +60,7 @@ TEST_CASE("a cloth passes from cage to cage without intersection, and ends on th
 
 TEST_CASE("a start within a cage is refused, which is named") {
   const Scratch folder;
-  folder.write("e.yaml", replaced(experiment, "0.15], perturbation", "0.11], perturbation"));
+  folder.write("e.yaml", replaced(caged, "0.15], perturbation", "0.11], perturbation"));
   const Ended ended = drape_with("check e.yaml", folder.path);
   CHECK(ended.exit_code == 2);
   CHECK_THAT(ended.err, Catch::Contains("the start of level 0 touches: cloth triangle ") &&

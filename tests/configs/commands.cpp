@@ -251,6 +251,9 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
   CHECK(ended.out == "report: out/report.html\n");
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
   CHECK(refused_by("report nowhere") == "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK_THAT(refused_by("report out --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
+  CHECK(refused_by("report out out --out both.html --width 90") ==
+        "error: --width is for the pictures of one run; a page of several runs has none\n");
   folder.write("out/results.json", "{\"experiment\": ");
   const Ended broken = drape_with("report out", folder.path);
   CHECK(broken.exit_code == 2);

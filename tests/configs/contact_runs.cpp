@@ -19,7 +19,7 @@ std::string contact_experiment() {
 }
 
 /// Standard error of a run that is refused, as a check is.
-std::string said_of(const std::string& experiment, const std::string& arguments = "") {
+std::string said_of_contact(const std::string& experiment, const std::string& arguments = "") {
   const Scratch folder;
   folder.write("e.yaml", experiment);
   const Ended run = drape_with("run e.yaml --out out " + arguments, folder.path);
@@ -32,7 +32,7 @@ std::string said_of(const std::string& experiment, const std::string& arguments 
   return run.err;
 }
 
-std::vector<std::vector<std::string>> rows_of(const fs::path& csv) {
+std::vector<std::vector<std::string>> csv_rows_of(const fs::path& csv) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(text_of(csv));
   for (std::string line; std::getline(lines, line);) {
@@ -50,24 +50,24 @@ const std::string quiet = " --quiet --no-report --threads 1 ";
 
 TEST_CASE("a start that touches an obstacle is refused, with the pairs and the location") {
   const std::string text = contact_experiment(), place = "error: e.yaml:4:8: the start of level 0 touches: ";
-  CHECK(said_of(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
+  CHECK(said_of_contact(text, "--set start.translate=[-0.2,-0.2,0.099] --set start.perturbation=0") ==
         place + "cloth triangle 54 and ball: sphere at (-0.01667, -0.03333, 0.099)\n" + place +
             "cloth triangle 55 and ball: sphere at (-0.03333, -0.01667, 0.099)\n" + place +
             "cloth triangle 57 and ball: sphere at (0.01667, -0.01667, 0.099)\n"
             "error: e.yaml:4:8: … and 3 more pairs; move the start and the obstacle apart\n");
   const std::string table =
       "[{name: table, meshed_shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]";
-  CHECK_THAT(said_of(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),
+  CHECK_THAT(said_of_contact(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),
              Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
 }
 
 TEST_CASE("a start is checked on every level") {
   // Noise whose valleys only the finer level is fine enough for.
   const std::string said =
-      said_of(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
-              "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
-              "start.perturbation=5e-3 "
-              "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
+      said_of_contact(replaced(contact_experiment(), "{type: strain_limit, limit: 1.06}, ", ""),
+                      "--set contact=shapes --set 'obstacles=[{name: floor, shape: half_space}]' --set "
+                      "start.perturbation=5e-3 "
+                      "--set start.perturbation_wavelength=0.06 --set start.translate=[0,0,0.0075]");
   CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 1 touches: cloth triangle ") &&
                        Contains(" and floor: half_space at ("));
 }
@@ -120,7 +120,7 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
     CHECK((method["levels"][1]["seconds_by_phase"].contains("refinement")) == (name != "newton"));
   }
   int near = 0, far = 0;
-  for (const auto& row : rows_of(folder / "out/steps.csv")) {
+  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) {
     REQUIRE(row.size() == 15);
     CHECK(row[13] == "0");
     REQUIRE(!row[11].empty());
@@ -138,7 +138,7 @@ TEST_CASE("intersections are counted at the end of each level, or after every st
   folder.write("e.yaml", contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
   REQUIRE(drape_with(run, folder.path).exit_code == 0);
-  for (const auto& row : rows_of(folder / "out/steps.csv")) CHECK(row[13] == "");
+  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) CHECK(row[13] == "");
   CHECK(Json::parse(
             text_of(folder / "out/results.json"))["methods"]["newton"]["levels"][0]["intersections"] == 0);
 }
@@ -199,7 +199,7 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
     }
   }
   std::string counts;
-  for (const auto& row : rows_of(folder / "out/steps.csv")) counts += row[13];
+  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) counts += row[13];
   CHECK_THAT(counts, Catch::StartsWith("0") && Contains("01"));
   CHECK_THAT(text_of(folder / "out/log.jsonl"),
              Contains("\"event\":\"intersection\"") && Contains(" and floor: plane at ("));

@@ -226,7 +226,9 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
   folder.write("e.yaml", small_experiment());
   const auto run = [&](const std::string& options) {
     const Ended ended = drape_with(
-        "run e.yaml --overwrite --out out --method all --threads 1 --quiet --set reference=lowest " + options,
+        "run e.yaml --overwrite --out out --method all --threads 1 --quiet --no-report --set "
+        "reference=lowest " +
+            options,
         folder.path);
     INFO(ended.err);
     REQUIRE(ended.exit_code <= 1);
@@ -244,6 +246,7 @@ TEST_CASE("the lowest of the states that have converged may be the reference, wh
     CHECK(method["reference"]["against"] == lowest);
     CHECK(method["reference"]["energy_above_end"] > 0);  // of the method's state, above the reference
   }
+  REQUIRE(drape_with("report out --width 90", folder.path).exit_code == 0);
   CHECK(text_of(folder / "out/report.html")
             .find("The reference is <b>" + lowest +
                   "</b>'s finest state, the lowest in energy of all that have converged, solved on to") !=

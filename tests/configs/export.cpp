@@ -44,7 +44,7 @@ std::string exported(const std::string& name, const std::string& options = "") {
   return text_of(folder / name);
 }
 
-std::string refused(const std::string& arguments) {
+std::string export_refusal(const std::string& arguments) {
   const Scratch folder;
   const Ended ended = drape_with("export " + arguments, folder.path);
   CHECK(ended.exit_code == 2);
@@ -151,11 +151,11 @@ TEST_CASE("the other formats have the cloth of the finest level, or of the one t
 TEST_CASE("a .png is the report's picture of a state, at any width") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
-  REQUIRE(drape_with("report run", folder.path).exit_code == 0);
+  REQUIRE(drape_with("report run --width 300", folder.path).exit_code == 0);
   const auto reported = [&](const std::string& name) { return text_of(folder / ("run/pictures/" + name)); };
-  CHECK((exported("a.png", "--width 900") == reported("pcs_l1.png")));
-  CHECK((exported("a.png", "--width 900 --level 0 --method newton") == reported("newton_l0.png")));
-  CHECK((exported("a.png", "--width 900 --outline") == reported("pcs_l0_on_l1.png")));
+  CHECK((exported("a.png", "--width 300") == reported("pcs_l1.png")));
+  CHECK((exported("a.png", "--width 300 --level 0 --method newton") == reported("newton_l0.png")));
+  CHECK((exported("a.png", "--width 300 --outline") == reported("pcs_l0_on_l1.png")));
   CHECK((reported("pcs_l0_on_l1.png") != reported("pcs_l1.png")));
   const std::string small = exported("a.png", "--width 90");
   CHECK((size_of_png(small) == std::pair(90, 70)));
@@ -204,7 +204,7 @@ TEST_CASE("snapshots that are damaged are neither exported nor shown") {
     CHECK_THAT(ended.err, EndsWith("snapshots/pcs_l1.bin: is damaged: its checksum does not fit\n"));
   }
   CHECK(drape_with("export out --frames --level 0 --to a.glb", folder.path).exit_code == 0);
-  REQUIRE(drape_with("report out", folder.path).exit_code == 0);
+  REQUIRE(drape_with("report out --width 90", folder.path).exit_code == 0);
   CHECK_THAT(text_of(folder / "out/report.html"),
              Contains("snapshots/pcs_l1.bin: is damaged: its checksum does not fit"));
 }
@@ -231,28 +231,30 @@ TEST_CASE("an export replaces no file unless it is asked to") {
 
 TEST_CASE("an export that cannot be is refused, with what there is") {
   const std::string run = finished_run().string();
-  CHECK(refused("nowhere --to a.glb") == "error: nowhere: no results.json here; give the folder of a run\n");
-  CHECK(refused(run + " --to a.fbx") ==
+  CHECK(export_refusal("nowhere --to a.glb") ==
+        "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK(export_refusal(run + " --to a.fbx") ==
         "error: --to a.fbx: the formats are .glb (glTF 2.0), .obj, .ply, .vtp and .png (pictures)\n");
-  CHECK(refused(run + " --to a.obj --frames") ==
+  CHECK(export_refusal(run + " --to a.obj --frames") ==
         "error: --frames makes an animation, which .obj cannot hold; take .glb, or .png for numbered "
         "pictures\n");
   for (const std::string option : {"--width 90", "--view 0,0,1", "--outline"})
-    CHECK(refused(run + " --to a.glb " + option) ==
+    CHECK(export_refusal(run + " --to a.glb " + option) ==
           "error: --width, --view and --outline are of pictures; take .png\n");
-  CHECK_THAT(refused(run + " --to a.png --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
+  CHECK_THAT(export_refusal(run + " --to a.png --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
   for (const std::string direction : {"0,0,0", "1,2", "1,2,x", "1,2,3,4", "1,,2"})
-    CHECK_THAT(refused(run + " --to a.png --view " + direction),
+    CHECK_THAT(export_refusal(run + " --to a.png --view " + direction),
                Contains("must be a direction, as in 1,-1,0.5, not " + direction));
-  CHECK(refused(run + " --to a.ply --level 2") == "error: --level 2: the levels of pcs are 0, 1\n");
-  CHECK(refused(run + " --to a.ply --method cascadic") ==
+  CHECK(export_refusal(run + " --to a.ply --level 2") == "error: --level 2: the levels of pcs are 0, 1\n");
+  CHECK(export_refusal(run + " --to a.ply --method cascadic") ==
         "error: --method cascadic: the run's methods are pcs, newton\n");
-  CHECK(refused(run) == "error: --to is required; see `drape export --help`\n");
+  CHECK(export_refusal(run) == "error: --to is required; see `drape export --help`\n");
 }
 
 TEST_CASE("view writes the page if it is missing or old, and opens it, or prints its address") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "a run", fs::copy_options::recursive);
+  fs::remove_all(folder / "a run/levels");  // of which pictures would be drawn
   const fs::path page = folder / "a run/report.html";
   const auto view = [&](const std::string& environment) {
     const Ended ended = drape_with("view 'a run'", folder.path, environment);

@@ -77,7 +77,7 @@ TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report"
       if (extension == ".vtp" || extension == ".pvd") CHECK(text_of(entry.path()).ends_with("</VTKFile>\n"));
     }
     if (level_lines != 10) continue;
-    CHECK(drape_with("report out", folder.path).exit_code == 0);
+    CHECK(drape_with("report out --width 90", folder.path).exit_code == 0);
     CHECK(drape_with(endless, folder.path).exit_code == 2);  // still somebody's results
     const Ended again = drape_with(
         endless + "--overwrite --quiet --no-report --levels 1 --set newton.max_steps=3", folder.path);

@@ -18,7 +18,7 @@ constexpr int levels = 3;
 const std::vector<std::string> methods = {"cascadic", "newton", "pcs"};
 
 /// The small experiment on three levels, run once for all cases.
-const fs::path& finished_run() {
+const fs::path& whole_run() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", small_experiment());
@@ -33,7 +33,7 @@ const fs::path& finished_run() {
   return path;
 }
 
-Json results() { return Json::parse(text_of(finished_run() / "results.json")); }
+Json results() { return Json::parse(text_of(whole_run() / "results.json")); }
 
 std::set<std::string> keys(const Json& object) {
   std::set<std::string> names;
@@ -126,10 +126,10 @@ TEST_CASE("every mesh and field that is named reads back, on the level's triangl
   const Json all = results();
   std::vector<drape::Triangles> triangles;
   for (int l = 0; l < levels; ++l)
-    triangles.push_back(drape::read_mesh(finished_run() / ("rest/l" + std::to_string(l) + ".ply")).triangles);
+    triangles.push_back(drape::read_mesh(whole_run() / ("rest/l" + std::to_string(l) + ".ply")).triangles);
   for (const auto& [name, method] : all["methods"].items()) {
     for (int l = 0; l < levels; ++l) {
-      const fs::path file = finished_run() / method["levels"][l]["mesh"].get<std::string>();
+      const fs::path file = whole_run() / method["levels"][l]["mesh"].get<std::string>();
       INFO(file);
       const drape::TriangleMesh mesh = drape::read_mesh(file);
       CHECK(mesh.vertices.rows() == method["levels"][l]["vertices"].get<int>());
@@ -143,7 +143,7 @@ TEST_CASE("every mesh and field that is named reads back, on the level's triangl
       if (!pair.contains("fields")) continue;
       ++fields;
       for (const drape::VertexField& field :
-           drape::read_ply_fields(finished_run() / pair["fields"].get<std::string>())) {
+           drape::read_ply_fields(whole_run() / pair["fields"].get<std::string>())) {
         INFO(field.name);
         CHECK(field.values.allFinite());
       }
@@ -153,7 +153,7 @@ TEST_CASE("every mesh and field that is named reads back, on the level's triangl
 }
 
 TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where it is minimised") {
-  std::istringstream lines(text_of(finished_run() / "steps.csv"));
+  std::istringstream lines(text_of(whole_run() / "steps.csv"));
   std::string line;
   std::getline(lines, line);
   CHECK(line ==
@@ -181,7 +181,7 @@ TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where i
 }
 
 TEST_CASE("log.jsonl is one JSON object a line, from start to end") {
-  std::istringstream lines(text_of(finished_run() / "log.jsonl"));
+  std::istringstream lines(text_of(whole_run() / "log.jsonl"));
   std::map<std::string, int> events;
   double last = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -199,11 +199,11 @@ TEST_CASE("log.jsonl is one JSON object a line, from start to end") {
 }
 
 TEST_CASE("the report exists, and no incomplete file") {
-  const std::string page = text_of(finished_run() / "report.html");
+  const std::string page = text_of(whole_run() / "report.html");
   CHECK(page.ends_with("</html>\n"));
   for (const std::string& method : methods) CHECK(page.find(method) != std::string::npos);
   int files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(finished_run())) {
+  for (const auto& entry : fs::recursive_directory_iterator(whole_run())) {
     INFO(entry.path());
     CHECK(entry.path().extension() != ".part");
     ++files;
@@ -213,7 +213,7 @@ TEST_CASE("the report exists, and no incomplete file") {
 
 TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
   const Scratch folder;
-  const std::string config = (finished_run() / "config.yaml").string();
+  const std::string config = (whole_run() / "config.yaml").string();
   REQUIRE(drape_with("run " + config + " --out out --method all --threads 1 --quiet --no-report", folder.path)
               .exit_code == 0);
   CHECK(text_of(folder / "out/config.yaml") == text_of(config));
@@ -221,7 +221,7 @@ TEST_CASE("the saved config reproduces itself and the meshes, bit for bit") {
     for (int l = 0; l < levels; ++l) {
       const std::string mesh = "levels/" + method + "_l" + std::to_string(l) + ".ply";
       INFO(mesh);
-      CHECK((text_of(folder / ("out/" + mesh)) == text_of(finished_run() / mesh)));
+      CHECK((text_of(folder / ("out/" + mesh)) == text_of(whole_run() / mesh)));
     }
 }
 
@@ -244,7 +244,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
 }
 
 TEST_CASE("the saved config has the defaults of omitted parameters") {
-  const std::string config = text_of(finished_run() / "config.yaml");
+  const std::string config = text_of(whole_run() / "config.yaml");
   for (const char* line : {"\n  density: 472.6\n", "\n  type: none\n", "\n  corner_angle: 30\n",
                            "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
     CHECK_THAT(config, Catch::Matchers::Contains(line));

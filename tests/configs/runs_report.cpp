@@ -11,7 +11,7 @@
 using namespace drape;
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -21,7 +21,7 @@ const fs::path& sweep() {
   static const Scratch folder;
   static const fs::path path = [] {
     folder.write("e.yaml", small_experiment());
-    Json runs = Json::array();
+    OrderedJson runs = OrderedJson::array();
     for (const std::string matrix : {"galerkin", "coarse"})
       for (int seed = 1; seed <= 3; ++seed) {
         const std::string run = "runs/matrix=" + matrix + "/seed_" + std::to_string(seed);
@@ -39,20 +39,21 @@ const fs::path& sweep() {
                     {"folder", "runs/wrong"},
                     {"status", "failed"},
                     {"error", "error: a < b\nand more"}});
-    folder.write("sweep/sweep.json", Json{{"sweep", "matrices"}, {"complete", true}, {"runs", runs}}.dump());
+    folder.write("sweep/sweep.json",
+                 OrderedJson{{"sweep", "matrices"}, {"complete", true}, {"runs", runs}}.dump());
     return folder / "sweep";
   }();
   return path;
 }
 
 /// The JSON that the page's script reads.
-Json data_of(const std::string& page) {
+OrderedJson data_of(const std::string& page) {
   const std::string open = "<script type=\"application/json\" id=\"data\">";
   const std::size_t begin = page.find(open) + open.size();
-  return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  return OrderedJson::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string refused(const std::string& arguments) {
+std::string sweep_refusal(const std::string& arguments) {
   const Ended ended = drape_with(arguments, sweep());
   CHECK(ended.exit_code == 2);
   CHECK(ended.out == "");
@@ -66,7 +67,7 @@ struct Edited {
   explicit Edited(Edit edit) {
     fs::copy(sweep() / "runs/matrix=galerkin/seed_1", folder / "a", fs::copy_options::recursive);
     fs::copy(folder / "a", folder / "b", fs::copy_options::recursive);
-    Json results = Json::parse(text_of(folder / "b/results.json"));
+    OrderedJson results = OrderedJson::parse(text_of(folder / "b/results.json"));
     edit(results);
     folder.write("b/results.json", results.dump());
   }
@@ -88,10 +89,11 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
   CHECK(rows[0].converged == 3);
   std::vector<double> iterations;
   for (int seed = 1; seed <= 3; ++seed) {
-    const Json all = Json::parse(
+    const OrderedJson all = OrderedJson::parse(
         text_of(sweep() / ("runs/matrix=galerkin/seed_" + std::to_string(seed) + "/results.json")));
     double sum = 0;
-    for (const Json& level : all["methods"]["pcs"]["levels"]) sum += level["newton_iterations"].get<double>();
+    for (const OrderedJson& level : all["methods"]["pcs"]["levels"])
+      sum += level["newton_iterations"].get<double>();
     iterations.push_back(sum);
   }
   std::sort(iterations.begin(), iterations.end());
@@ -159,34 +161,34 @@ TEST_CASE("report of a sweep is one page with every row, curve and failure") {
   const std::string page = text_of(sweep() / "report.html");
   CHECK_THAT(page, Contains("7 runs of 3 variations: 6 converged, 1 failed.") &&
                        Contains("matrix=galerkin") && Contains("error: a &lt; b\nand more"));
-  const Json data = data_of(page);
+  const OrderedJson data = data_of(page);
   CHECK(data["rows"].size() == 6);
   for (const char* work : {"seconds", "iterations", "flops"})
     for (const char* target : {"own", "reference"})
       for (const char* measure : {"rms", "hausdorff", "d_H_fit", "silhouette_mismatch", "energy_gap"}) {
-        const Json& plot = data["errors"][work][target][measure];
+        const OrderedJson& plot = data["errors"][work][target][measure];
         INFO(work << " " << target << " " << measure);
         REQUIRE(plot["curves"].size() == 6);
         REQUIRE(!plot["front"].empty());
         double last = 0, error = 1e300;
-        for (const Json& point : plot["front"]) {
+        for (const OrderedJson& point : plot["front"]) {
           CHECK(point[0].get<double>() >= last);
           CHECK(point[1].get<double>() <= error);  // of six digits, which may be the same
           last = point[0], error = point[1];
         }
       }
   // A run's own page is linked to where it is.
-  REQUIRE(drape_with("report 'runs/matrix=coarse/seed_2'", sweep()).exit_code == 0);
+  REQUIRE(drape_with("report 'runs/matrix=coarse/seed_2' --width 90", sweep()).exit_code == 0);
   REQUIRE(drape_with("report .", sweep()).exit_code == 0);
   CHECK_THAT(text_of(sweep() / "report.html"), Contains("href=\"runs/matrix=coarse/seed_2/report.html\""));
 }
 
 TEST_CASE("report of several folders takes a page's name, and groups runs by all but their seed") {
-  CHECK(refused("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2") ==
+  CHECK(sweep_refusal("report runs/matrix=galerkin/seed_1 runs/matrix=galerkin/seed_2") ==
         "error: several folders: name the page with --out, as in --out results/together.html\n");
-  CHECK(refused("report runs/matrix=galerkin/seed_1 runs --out x.html") ==
+  CHECK(sweep_refusal("report runs/matrix=galerkin/seed_1 runs --out x.html") ==
         "error: runs: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
-  CHECK(refused("report runs/matrix=galerkin/seed_1 --out x.html") ==
+  CHECK(sweep_refusal("report runs/matrix=galerkin/seed_1 --out x.html") ==
         "error: --out is for the page of several runs; a run's own is report.html in its folder\n");
   CHECK(!fs::exists(sweep() / "x.html"));
   const Scratch folder;
@@ -257,10 +259,10 @@ TEST_CASE("compare finds nothing between a run and itself") {
 }
 
 TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
-  const Edited run([](Json& all) {
-    Json& pcs = all["methods"]["pcs"];
+  const Edited run([](OrderedJson& all) {
+    OrderedJson& pcs = all["methods"]["pcs"];
     pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
-    for (Json& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
+    for (OrderedJson& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
     all["methods"]["cascadic"]["levels"][1]["newton_iterations"] = 1000;
   });
   const Ended plain = run.compare();
@@ -277,19 +279,19 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
 }
 
 TEST_CASE("a bound is broken if a method no longer converges or exists") {
-  const Edited stalled([](Json& all) { all["methods"]["pcs"]["status"] = "stalled"; });
+  const Edited stalled([](OrderedJson& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);
   const Ended ended = stalled.compare(" --bound seconds=2");
   CHECK(ended.exit_code == 1);
   CHECK_THAT(ended.out, Contains("broken: pcs: converged before and does not now; no bound holds\n"));
-  const Edited gone([](Json& all) { all["methods"].erase("pcs"); });
+  const Edited gone([](OrderedJson& all) { all["methods"].erase("pcs"); });
   CHECK_THAT(gone.compare().out, Contains("only in the first: pcs\n"));
   CHECK(gone.compare(" --bound seconds=2").exit_code == 1);
 }
 
 TEST_CASE("bounds on negative energies and on counts that were zero") {
-  const Edited run([](Json& all) {
-    Json& level = all["methods"]["pcs"]["levels"][1];
+  const Edited run([](OrderedJson& all) {
+    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
     level["energy_on_finest"] = level["energy_on_finest"].get<double>() + 0.1;
   });
   CHECK(run.compare(" --bound energy=1.05").exit_code == 1);
@@ -297,16 +299,16 @@ TEST_CASE("bounds on negative energies and on counts that were zero") {
 }
 
 TEST_CASE("compare refuses meaningless bounds") {
-  CHECK(refused("compare . . --bound seconds") ==
+  CHECK(sweep_refusal("compare . . --bound seconds") ==
         "error: --bound seconds: write it as KEY=RATIO, as in --bound seconds=1.1\n");
-  CHECK(refused("compare . . --bound second=1") ==
+  CHECK(sweep_refusal("compare . . --bound second=1") ==
         "error: --bound second=1: there is no quantity \"second\"; did you mean \"seconds\"?\n");
-  CHECK(refused("compare . . --bound seconds=fast") ==
+  CHECK(sweep_refusal("compare . . --bound seconds=fast") ==
         "error: --bound seconds=fast: the ratio must be a number above 0, as in --bound seconds=1.1\n");
-  CHECK(refused("compare . . --bound seconds=-1") ==
+  CHECK(sweep_refusal("compare . . --bound seconds=-1") ==
         "error: --bound seconds=-1: the ratio must be a number above 0, as in --bound seconds=1.1\n");
-  CHECK(refused("compare . . --bound smallest_gap=2") ==
+  CHECK(sweep_refusal("compare . . --bound smallest_gap=2") ==
         "error: --bound smallest_gap: no match has this quantity on both sides\n");
-  CHECK(refused("compare . nowhere") ==
+  CHECK(sweep_refusal("compare . nowhere") ==
         "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
 }

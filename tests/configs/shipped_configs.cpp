@@ -10,22 +10,22 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path source = folders::source();
+const fs::path root_folder = folders::source();
 
 /// Obstacles that `make data` makes are not part of the project.
 bool needs_missing_data(const fs::path& config) {
   std::stringstream text;
   text << std::ifstream(config).rdbuf();
-  return text.str().find("../data/") != std::string::npos && !fs::exists(source / "data/bunny.ply");
+  return text.str().find("../data/") != std::string::npos && !fs::exists(root_folder / "data/bunny.ply");
 }
 
-bool is_sweep(const fs::path& config) { return config.parent_path().filename() == "sweeps"; }
+bool is_in_sweeps(const fs::path& config) { return config.parent_path().filename() == "sweeps"; }
 
 /// Experiments and sweeps.
 std::vector<fs::path> all_shipped() {
   std::vector<fs::path> files;
   for (const char* folder : {"configs", "benchmarks"})
-    for (const auto& entry : fs::recursive_directory_iterator(source / folder))
+    for (const auto& entry : fs::recursive_directory_iterator(root_folder / folder))
       if (entry.path().extension() == ".yaml" || entry.path().extension() == ".yml")
         if (!needs_missing_data(entry.path())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -35,7 +35,7 @@ std::vector<fs::path> all_shipped() {
 /// Experiments alone.
 std::vector<fs::path> shipped() {
   std::vector<fs::path> files = all_shipped();
-  std::erase_if(files, is_sweep);
+  std::erase_if(files, is_in_sweeps);
   return files;
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("every shipped experiment converges, made small") {
 TEST_CASE("every shipped sweep passes drape sweep --dry-run") {
   int checked = 0;
   for (const fs::path& config : all_shipped()) {
-    if (!is_sweep(config)) continue;
+    if (!is_in_sweeps(config)) continue;
     INFO(config);
     const Scratch folder;
     const Ended ended = drape_with("sweep " + config.string() + " --dry-run", folder.path);

@@ -42,7 +42,7 @@ Eigen::Vector3d moved(const std::string& text) {
   return way;
 }
 
-std::string refused(const std::string& text) {
+std::string repair_refusal(const std::string& text) {
   const Scratch folder;
   folder.write("e.yaml", text);
   const Ended ended = drape_with("run e.yaml --out out --allow-start-repair", folder.path);
@@ -132,7 +132,7 @@ TEST_CASE("a start is not moved into a closed mesh") {
 TEST_CASE("a start with pins is not translated") {
   const std::string pinned =
       experiment(ball_at("[0, 0, 0]"), "[-0.2, -0.2, 0.06]") + "pins: [{point: [0, 0, 0]}]\n";
-  const std::string said = refused(pinned);
+  const std::string said = repair_refusal(pinned);
   CHECK_THAT(said, Catch::StartsWith("error: e.yaml:4:8: the start of level 0 touches: cloth triangle ") &&
                        Catch::Contains(" and ball: sphere at (") &&
                        Catch::EndsWith("; a cloth with pins is not moved: move the pins or "
@@ -147,13 +147,13 @@ TEST_CASE("a start without a free position is refused, with the pairs") {
   };
   const std::string ways = "error: e.yaml:4:8: moving the start by up to 0.566 m up or to a side ";
   // A gap below what the noise needs: the top is met everywhere.
-  CHECK_THAT(refused(experiment(between("0.001"), "[0, 0, 0]")),
+  CHECK_THAT(repair_refusal(experiment(between("0.001"), "[0, 0, 0]")),
              Catch::StartsWith(ways + "does not part cloth triangle ") &&
                  Catch::Contains(" and top: half_space at (") &&
                  Catch::EndsWith(" on level 0; change the start's shape or the obstacle\n"));
   // No gap: low down the bottom is met, high up the top.
   CHECK_THAT(
-      refused(experiment(between("-0.005"), "[0, 0, -0.02]")),
+      repair_refusal(experiment(between("-0.005"), "[0, 0, -0.02]")),
       Catch::StartsWith(ways + "finds no position without intersections; at the start these intersect: cloth "
                                "triangle 0 and bottom: half_space at (") &&
           Catch::EndsWith(" on level 0\n"));

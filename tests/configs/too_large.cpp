@@ -12,7 +12,7 @@ using Catch::StartsWith;
 namespace {
 
 /// What `drape check` says to an experiment with these settings, which it must refuse.
-std::string refused(const Scratch& folder, const std::string& sets) {
+std::string check_refusal(const Scratch& folder, const std::string& sets) {
   const Ended ended = drape_with("check e.yaml " + sets, folder.path);
   INFO(ended.err);
   CHECK(ended.exit_code == 2);
@@ -20,16 +20,16 @@ std::string refused(const Scratch& folder, const std::string& sets) {
   return ended.err;
 }
 
-std::string refused(const std::string& sets) {
+std::string check_refusal(const std::string& sets) {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
-  return refused(folder, sets);
+  return check_refusal(folder, sets);
 }
 
 /// The same of one key, whose range the message must give with the value.
 void check_out_of_range(const std::string& key, const std::string& value, const std::string& range) {
   const std::string name = key.substr(key.rfind('.') + 1);
-  const std::string said = refused("--set '" + key + "=" + value + "'");
+  const std::string said = check_refusal("--set '" + key + "=" + value + "'");
   CHECK_THAT(said, Contains("\"" + name + "\" must be " + range + ", not "));
 }
 
@@ -50,9 +50,9 @@ TEST_CASE("numbers that overflow, or never end, are refused by name with their b
   check_out_of_range("start.translate", "[0, 0, 1e20]", "at most 1.0e+09 m");
   check_out_of_range("start.translate", "[-1e20, 0, 0]", "at least -1.0e+09 m");
   check_out_of_range("cloth.columns", "2000000000", "at most 1.0e+07");
-  CHECK(refused("--set 'energies=[neo_hookean, {type: gravity, acceleration: [0, 0, -1e300]}]'") ==
+  CHECK(check_refusal("--set 'energies=[neo_hookean, {type: gravity, acceleration: [0, 0, -1e300]}]'") ==
         "error: --set energies: item 3 of \"acceleration\" must be at least -1.0e+07 m/s², not -1e300\n");
-  CHECK(refused("--set 'metrics=[{type: curvature_consistency, rings: 2147483647}]'") ==
+  CHECK(check_refusal("--set 'metrics=[{type: curvature_consistency, rings: 2147483647}]'") ==
         "error: --set metrics: \"rings\" must be at most 50, not 2147483647\n");
 }
 
@@ -60,7 +60,7 @@ TEST_CASE("contact's numbers too") {
   const auto said = [](const std::string& contact) {
     const Scratch folder;
     folder.write("e.yaml", with("contact: " + contact));
-    const std::string text = refused(folder, "");
+    const std::string text = check_refusal(folder, "");
     return text.substr(text.find('"'));
   };
   CHECK(said("{type: ipc, dhat: 1e39}") == "\"dhat\" must be at most 1000 m, not 1e39\n");
@@ -82,11 +82,12 @@ TEST_CASE("a mesh with coordinates beyond what can be computed with is refused, 
   folder.write("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1e30 0\nf 1 2 3\n");
   folder.write("e.yaml", replaced(small_experiment(), "shape: square, side: 1, columns: 6, rows: 6",
                                   "shape: file, file: far.obj"));
-  CHECK_THAT(refused(folder, ""),
+  CHECK_THAT(check_refusal(folder, ""),
              StartsWith("error: e.yaml:2:8: far.obj: vertex 2 has a coordinate of 1e+30 m; "
                         "at most 1e+09 m can be computed with\n"));
   folder.write("e.yaml", with("contact: ipc\nobstacles: [{mesh: far.obj}]"));
-  CHECK_THAT(refused(folder, ""), Contains("far.obj: vertex 2 has a coordinate of 1e+30 m; at most 1e+09 m"));
+  CHECK_THAT(check_refusal(folder, ""),
+             Contains("far.obj: vertex 2 has a coordinate of 1e+30 m; at most 1e+09 m"));
 }
 
 TEST_CASE("a cloth whose vertices cannot be about as many as asked for is refused with both numbers") {
@@ -94,7 +95,7 @@ TEST_CASE("a cloth whose vertices cannot be about as many as asked for is refuse
     const Scratch folder;
     folder.write("e.yaml",
                  replaced(small_experiment(), "shape: square, side: 1, columns: 6, rows: 6", cloth));
-    return refused(folder, "");
+    return check_refusal(folder, "");
   };
   CHECK(said("shape: rectangle, size: [1e6, 1e-6]") ==
         "error: e.yaml:2:8: rectangle: about 1024 vertices are asked for, but its grid of even cells "
@@ -106,11 +107,11 @@ TEST_CASE("a cloth whose vertices cannot be about as many as asked for is refuse
 TEST_CASE(
     "a run that may take more memory than there is, is refused before anything is built, unless allowed") {
   CHECK_THAT(
-      refused("--levels 10 --set cloth.columns=12 --set cloth.rows=12"),
+      check_refusal("--levels 10 --set cloth.columns=12 --set cloth.rows=12"),
       Matches("error: --set levels: level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of "
               "memory, where this machine has [0-9.]+ GB; take at most [0-9] levels, or allow it with "
               "--allow-memory\n"));
-  CHECK_THAT(refused("--levels 10 --allow-memory --set cloth.columns=1000 --set cloth.rows=1000"),
+  CHECK_THAT(check_refusal("--levels 10 --allow-memory --set cloth.columns=1000 --set cloth.rows=1000"),
              Contains("level 9 would have about 2.6e+11 vertices, more than the 4e+07 that can be counted"));
 
   // The shell's limit is the machine's. Sanitizers ask for terabytes of addresses.

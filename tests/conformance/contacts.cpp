@@ -23,13 +23,6 @@ namespace {
 const std::vector<std::pair<std::string, std::string>> common = {
     {"dhat", "0.02"}, {"stiffness", "50"}, {"friction", "0.3"}, {"friction_smoothing_distance", "1e-3"}};
 
-Positions noise(Eigen::Index vertices, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  Positions p(vertices, 3);
-  for (Eigen::Index i = 0; i < p.size(); ++i) p.data()[i] = size * (random() / 2147483648.0 - 1);
-  return p;
-}
-
 /// Two sheets, side by side at rest.
 Level two_sheets(int vertices) {
   const TriangleMesh one = random_triangulation({0.5, 0.4}, vertices, 1),

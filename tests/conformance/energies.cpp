@@ -48,13 +48,6 @@ const Material material = [] {
   return m;
 }();
 
-Positions noise(int vertices, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  Positions p(vertices, 3);
-  for (Eigen::Index i = 0; i < p.size(); ++i) p.data()[i] = size * (random() / 2147483648.0 - 1);
-  return p;
-}
-
 Level flat_level() { return Level::of(0, random_triangulation({0.6, 0.5}, 40, 7)); }
 
 Level curved_level() {

@@ -7,8 +7,7 @@ using namespace drape;
 
 namespace {
 
-constexpr double gravity = 9.81;
-const std::string models[] = {"hinge", "quadratic_bending"};
+const std::string bending_models[] = {"hinge", "quadratic_bending"};
 /// Cells of the strips, each half as long as the last.
 const std::vector<int> refinements = {5, 10, 20, 40};
 /// The tolerance is an order above what rounding of the positions makes of forces this stiff (EA/q L is 1e5).
@@ -18,7 +17,7 @@ const std::string newton =
 /// A strip whose weight gives Γ = ρ g d L³ / D_eff.
 BeamStrip strip_for_gamma(int cells, double gamma) {
   BeamStrip strip{cells};
-  strip.stiffness = strip.density * gravity * strip.thickness * std::pow(strip.length, 3) / gamma;
+  strip.stiffness = strip.density * standard_gravity * strip.thickness * std::pow(strip.length, 3) / gamma;
   return strip;
 }
 
@@ -100,14 +99,14 @@ TEST_CASE("Both bending models give linear beam theory at small angles", "[physi
     strip.slenderness = 0.1;  // narrower cells make quadratic_bending's rounding errors too large here
     double deflection[2];
     for (int model : {0, 1}) {
-      const Solved s = under_weight(strip, models[model]);
+      const Solved s = under_weight(strip, bending_models[model]);
       deflection[model] = -place(s, cells, cells).z();
       errors[model].push_back(std::abs(deflection[model] / exact - 1));
     }
     row("%8d %12.7f %18.7f", cells, deflection[0] / (gamma / 8), deflection[1] / (gamma / 8));
   }
   for (int model : {0, 1}) {
-    INFO(models[model]);
+    INFO(bending_models[model]);
     check_order(errors[model], 2);
     CHECK(errors[model].back() < 2e-3);
   }
@@ -123,7 +122,7 @@ TEST_CASE("Quadratic bending departs from the hinge where hinges turn far", "[ph
     for (int cells : {5, 10, 20}) {
       double angle[2], sharpest = 0;
       for (int model : {0, 1}) {
-        const Solved s = under_weight(strip_for_gamma(cells, gamma), models[model]);
+        const Solved s = under_weight(strip_for_gamma(cells, gamma), bending_models[model]);
         angle[model] = tip_angle(s, cells);
         for (int c = 1; c < cells && model == 0; ++c) {
           const Eigen::Vector3d a = place(s, cells, c) - place(s, cells, c - 1),

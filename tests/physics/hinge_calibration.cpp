@@ -63,7 +63,7 @@ double per_cell(const Function& f) {
 }
 
 /// Energy density over k κ² of the pattern where its vertices lie on z = ½ κ (p·A p).
-double density(const Pattern& pattern, const Eigen::Matrix2d& shape) {
+double bending_energy_density(const Pattern& pattern, const Eigen::Matrix2d& shape) {
   const double a = 0.1, curvature = 1e-4;
   const auto energy = [&](int n) {
     const TriangleMesh rest = pattern.patch(n, a);
@@ -158,7 +158,7 @@ TEST_CASE("What the hinge model charges for a curvature depends on the triangula
   for (const Pattern& pattern : patterns) {
     double d[5];
     for (int i = 0; i < 5; ++i) {
-      d[i] = density(pattern, shapes[i]);
+      d[i] = bending_energy_density(pattern, shapes[i]);
       INFO(pattern.name << ", shape " << i);
       CHECK(d[i] == Approx(pattern.expected[i]).epsilon(1e-5));
     }

@@ -79,7 +79,7 @@ std::string end_tractions(const Solved& s, double length, double traction) {
   return "{type: constant_load, points: [" + points + "]}";
 }
 
-std::string newton(double tolerance) {
+std::string newton_to(double tolerance) {
   return "newton: {step_size: 0.01, step_growth: 2, max_steps: 200, force_tolerance: " + text(tolerance) +
          "}\n";
 }
@@ -100,7 +100,7 @@ TEST_CASE("A strip that hangs stretches by rho g L² / 2E", "[physics]") {
       const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane +
                                              ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
                                              "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" +
-                                             newton(1e-6)));
+                                             newton_to(1e-6)));
       INFO(s.levels.back().message);
       REQUIRE(s.levels.back().outcome == Outcome::converged);
       double worst = 0, end = 0;
@@ -130,7 +130,7 @@ TEST_CASE("A grid that hangs has the exact displacement at every row", "[physics
       const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane +
                                              ", gravity]\nstart: {rotate: [0, 90, 0]}\n"
                                              "pins: [{region: box, lower: [0, 0, 0], upper: [0, 1, 0]}]\n" +
-                                             newton(1e-6)));
+                                             newton_to(1e-6)));
       REQUIRE(s.levels.back().outcome == Outcome::converged);
       double worst = 0;
       for (int i = 1; i < 21; ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("A sheet under end tractions stretches homogeneously, exactly", "[phys
           REQUIRE(free_energy(stretch[0] + d, stretch[1]) > free_energy(stretch[0], stretch[1]));
           REQUIRE(free_energy(stretch[0], stretch[1] + d) > free_energy(stretch[0], stretch[1]));
         }
-        const std::string pin = "pins: [{region: nearest, point: [0, 0, 0]}]\n" + newton(1e-9);
+        const std::string pin = "pins: [{region: nearest, point: [0, 0, 0]}]\n" + newton_to(1e-9);
         const Solved bare = scene_from(sheet.yaml("energies: [" + membrane + "]\n" + pin));
         const std::string load_item = end_tractions(bare, 1, stress * sheet.thickness);
         const Solved s = solve_yaml(sheet.yaml("energies: [" + membrane + ", " + load_item + "]\n" + pin));

@@ -32,8 +32,6 @@ const Model models[] = {{"hinge", "hinge"},
                         {"average", "{type: midedge_bending, correction_tolerance: 1}"},
                         {"midedge", "midedge_bending"}};
 
-const std::string triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
-
 /// With edges of about a.
 TriangleMesh mesh_of(const std::string& triangulation, const Eigen::Vector2d& size, double a) {
   const Eigen::Vector2i cells = (size / a).array().round().cast<int>();
@@ -164,7 +162,7 @@ TEST_CASE("Only midedge_bending is a plate, and on every triangulation", "[physi
   for (const LoadCase& load : load_cases) {
     row("\nStiffness of a %s over that of the plate", load.name.c_str());
     row("%14s %8s %10s %10s %10s %10s", "triangles", "a", "hinge", "quadratic", "average", "midedge");
-    for (const std::string& triangulation : triangulations) {
+    for (const std::string& triangulation : all_triangulations) {
       double last = 0;
       for (const double a : {0.1, 0.05, 0.025}) {
         double s[4];
@@ -188,7 +186,7 @@ TEST_CASE("midedge_bending has the modes of a plate on every triangulation, and 
   for (int m = 1; m < 8; ++m)
     for (int n = 1; n < 8; ++n) expected.push_back(std::pow(M_PI, 4) * std::pow(m * m + n * n, 2));
   std::sort(expected.begin(), expected.end());
-  for (const std::string& triangulation : triangulations)
+  for (const std::string& triangulation : all_triangulations)
     for (const Model& model : models) {
       if (model.name == "quadratic") continue;
       const Level level = Level::of(0, mesh_of(triangulation, {1, 1}, 0.05));

@@ -9,8 +9,7 @@ using namespace drape;
 
 namespace {
 
-const std::string triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
-constexpr double density = 1000, thickness = 0.01, gravity = 9.81;
+constexpr double density = 1000, strip_thickness = 0.01;
 
 /// A strip of cells × across square cells' size along x, clamped where x is up to one cell. On grids the
 /// clamp is in the middle of that cell (see BeamStrip), on others somewhere in it: L = (cells - 1/2) cells is
@@ -25,20 +24,20 @@ struct Strip {
 
   /// `stiffness` is EI per width [N m]: D for midedge_bending, 3 D for hinge along a grid's edges (ν = 0).
   Solved solved(const std::string& bending, double stiffness, const std::string& load) const {
-    const double modulus = (bending == "hinge" ? 4 : 12) * stiffness / std::pow(thickness, 3);
+    const double modulus = (bending == "hinge" ? 4 : 12) * stiffness / std::pow(strip_thickness, 3);
     const bool grid = triangulation == "one_way" || triangulation == "criss_cross";
     const std::string counts =
         grid ? ", columns: " + std::to_string(cells + 1) + ", rows: " + std::to_string(across + 1)
              : ", vertices: " + std::to_string((cells + 1) * (across + 1));
-    Solved s =
-        solve_yaml("name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
-                   text(length()) + ", " + text(width()) + "]" + counts +
-                   "}\nlevels: 1\nmaterial: {density: " + text(density) + ", thickness: " + text(thickness) +
-                   ", membrane_modulus: 1e8, bending_modulus: " + text(modulus) +
-                   ", poisson_ratio: 0}\npins: [{region: box, lower: [-1, -1, -1], upper: [" +
-                   text(1.01 * cell()) + ", 1, 1]}]\nenergies: [neo_hookean, " + bending + ", " + load +
-                   "]\nmethods: {newton: {}}\n"
-                   "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n");
+    Solved s = solve_yaml(
+        "name: strip\ncloth: {shape: rectangle, triangulation: " + triangulation + ", size: [" +
+        text(length()) + ", " + text(width()) + "]" + counts +
+        "}\nlevels: 1\nmaterial: {density: " + text(density) + ", thickness: " + text(strip_thickness) +
+        ", membrane_modulus: 1e8, bending_modulus: " + text(modulus) +
+        ", poisson_ratio: 0}\npins: [{region: box, lower: [-1, -1, -1], upper: [" + text(1.01 * cell()) +
+        ", 1, 1]}]\nenergies: [neo_hookean, " + bending + ", " + load +
+        "]\nmethods: {newton: {}}\n"
+        "newton: {step_size: 0.1, step_growth: 2, force_tolerance: 1e-5, max_steps: 500}\n");
     INFO(triangulation << ", " << cells << " cells, " << bending << ": " << s.levels.back().message);
     REQUIRE(s.levels.back().outcome == Outcome::converged);
     return s;
@@ -95,11 +94,11 @@ TEST_CASE(
   const double gamma = 5, exact = cantilever_under_weight(gamma).tip * 180 / M_PI;
   row("\nTip angle [degrees], exactly %.4f, and twist [mm] of a strip of 1 × 0.2 m under its weight", exact);
   row("%14s %8s %12s %10s %12s %10s", "triangles", "cells", "hinge", "twist", "midedge", "twist");
-  for (const std::string& triangulation : triangulations) {
+  for (const std::string& triangulation : all_triangulations) {
     std::vector<double> errors;
     for (const int cells : {10, 20, 40}) {
       const Strip strip{triangulation, cells, cells / 5};
-      const double stiffness = density * gravity * thickness / gamma;
+      const double stiffness = density * standard_gravity * strip_thickness / gamma;
       const Solved by_hinge = strip.solved("hinge", stiffness, "gravity"),
                    by_midedge = strip.solved("midedge_bending", stiffness, "gravity");
       const double twist = strip.twist(by_midedge);
@@ -124,7 +123,7 @@ TEST_CASE("A strip with a load at its end bends alike on every triangulation wit
           "[physics]") {
   row("\nDeflection over the length of strips with a load at the end, P L²/EI = 1 and 4");
   row("%14s %8s %12s %12s", "triangles", "cells", "1", "4");
-  for (const std::string& triangulation : triangulations) {
+  for (const std::string& triangulation : all_triangulations) {
     std::vector<double> errors[2];
     for (const int cells : {10, 20, 40}) {
       const Strip strip{triangulation, cells, 2};

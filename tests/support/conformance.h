@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <regex>
 #include <string>
 #include <utility>
@@ -33,4 +34,12 @@ inline std::string conformance_config(const drape::RegistryEntry& entry, const s
   if (own.empty()) return text + "}";
   // Indented, as YAML asks of what belongs to a key.
   return text + ",\n  " + std::regex_replace(own, std::regex("\n"), "\n  ") + "}";
+}
+
+/// Coordinates within `size` of 0, the same on every machine.
+inline drape::Positions noise(Eigen::Index vertices, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  drape::Positions p(vertices, 3);
+  for (Eigen::Index i = 0; i < p.size(); ++i) p.data()[i] = size * (random() / 2147483648.0 - 1);
+  return p;
 }

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-// Eigen's solver for symmetric matrices of any size, compiled once for all tests (tests/eigenvalues.cpp):
-// each file that instantiates it takes seconds longer.
+// Eigen's decompositions of matrices of any size, compiled once for all tests (tests/eigenvalues.cpp): each
+// file that instantiates one takes seconds longer.
 
 /// Eigenvalues of a symmetric matrix, in ascending order.
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& symmetric);
@@ -14,3 +14,6 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;
 };
 Eigenpairs eigenpairs_of(const Eigen::MatrixXd& symmetric);
+
+/// Singular values, in descending order.
+Eigen::VectorXd singular_values_of(const Eigen::MatrixXd& matrix);

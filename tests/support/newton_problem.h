@@ -6,7 +6,7 @@
 /// An iterate at the rest shape of a sheet of 4×4 vertices, evaluated, for tests of the Newton solver's
 /// parts.
 struct NewtonProblem {
-  drape::Level level = drape::Level::of(0, drape::grid({1, 1}, 4, 4, drape::Diagonals::one_way));
+  drape::Level level = sheet();
   drape::LevelModel model;
   drape::PlainObjective objective;
   drape::LevelResult result;
@@ -20,6 +20,8 @@ struct NewtonProblem {
     move_to(level.rest.vertices);
   }
 
+  static drape::Positions rest() { return sheet().rest.vertices; }
+
   void move_to(const drape::Positions& x) {
     iterate.move_to(x);
     iterate.set_constraints(model.fixed(), nullptr);
@@ -28,6 +30,9 @@ struct NewtonProblem {
   }
 
  private:
+  static drape::Level sheet() {
+    return drape::Level::of(0, drape::grid({1, 1}, 4, 4, drape::Diagonals::one_way));
+  }
   static std::vector<drape::NamedEnergy> named(const std::vector<std::shared_ptr<drape::Energy>>& energies) {
     std::vector<drape::NamedEnergy> result;
     for (const auto& energy : energies) result.push_back({"energy", energy});

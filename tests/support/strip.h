@@ -16,6 +16,9 @@ inline std::string text(const Eigen::Vector3d& v) {
   return "[" + text(v.x()) + ", " + text(v.y()) + ", " + text(v.z()) + "]";
 }
 
+/// The ways in which a rectangle is cut into triangles.
+inline const std::string all_triangulations[] = {"one_way", "criss_cross", "equilateral", "random"};
+
 /// A beam made of cloth along x, clamped at the left, of `cells` cells by two, cut like a union jack:
 /// mirrored at its middle line, so that bending does not twist it. Its cells are far longer than wide: with
 /// wide ones the diagonals would bend along (see docs/results/validation.md, "What the hinge model's

@@ -8,7 +8,7 @@
 using namespace drape;
 using Catch::Matchers::Contains;
 using Catch::Matchers::StartsWith;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
@@ -49,7 +49,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
 
   const Ended ended = drape_with("table out --format json", folder.path);
   CHECK(ended.exit_code == 1);
-  const Json rows = Json::parse(ended.out);
+  const OrderedJson rows = OrderedJson::parse(ended.out);
   REQUIRE(rows.size() == 5);
   const auto outcome = [&](int k) {
     return rows[k]["run"].get<std::string>() + ": " + rows[k]["outcome"].get<std::string>() +

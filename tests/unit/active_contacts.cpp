@@ -103,7 +103,7 @@ class Frozen : public ContactModel {
   }
 };
 
-struct Rows : Observer {
+struct ObservedRows : Observer {
   std::vector<IterationRow> rows;
   std::vector<Positions> states;
   void iteration(const IterationRow& row, const Positions& x) override {
@@ -116,7 +116,7 @@ struct Rows : Observer {
 struct Falling {
   Level level = sheet();
   LevelModel model;
-  Rows rows;
+  ObservedRows rows;
 
   explicit Falling(const std::vector<std::shared_ptr<ContactModel>>& contacts)
       : model(level, Material(),

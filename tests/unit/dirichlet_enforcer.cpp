@@ -12,20 +12,18 @@ using namespace drape;
 
 namespace {
 
-Positions rest() { return Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices; }
-
 const Eigen::Vector3d lift(0, 0, 0.1);
 
 /// Two pins: vertex 0 is to be lifted, vertex 3 stays.
 std::vector<DirichletVertex> pins() {
-  return {{0, rest().row(0).transpose() + lift, 0}, {3, rest().row(3), 1}};
+  return {{0, NewtonProblem::rest().row(0).transpose() + lift, 0}, {3, NewtonProblem::rest().row(3), 1}};
 }
 
 /// Σ k/2 ‖(x_a − x_b) − (X_a − X_b)‖² over a chain of all vertices: a quadratic energy that every rigid
 /// translation leaves at 0.
 class Chain : public Energy, public BoundEnergy {
  public:
-  explicit Chain(bool broken = false) : broken_(broken), rest_(rest()) {}
+  explicit Chain(bool broken = false) : broken_(broken), rest_(NewtonProblem::rest()) {}
 
   EnergyRole role() const override { return EnergyRole::membrane; }
   std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
@@ -89,15 +87,15 @@ struct Prediction {
 }  // namespace
 
 TEST_CASE("Only Dirichlet vertices away from their targets are unsatisfied") {
-  NewtonProblem problem({std::make_shared<Wells>(rest(), 10, 0)}, pins());
+  NewtonProblem problem({std::make_shared<Wells>(NewtonProblem::rest(), 10, 0)}, pins());
   DirichletEnforcer enforcer(problem.model);
   CHECK(!enforcer.active());
-  enforcer.begin(rest());
+  enforcer.begin(NewtonProblem::rest());
   CHECK(enforcer.active());
   Positions expected = Positions::Zero(16, 3);
   expected.row(0) = lift.transpose();
-  CHECK((enforcer.displacement_to_targets(rest()) - expected).norm() < 1e-15);
-  CHECK(enforcer.max_violation(rest()) == Approx(0.1));
+  CHECK((enforcer.displacement_to_targets(NewtonProblem::rest()) - expected).norm() < 1e-15);
+  CHECK(enforcer.max_violation(NewtonProblem::rest()) == Approx(0.1));
   CHECK(enforcer.fixed()[0] == 1);
   CHECK(enforcer.penalty() == nullptr);
   enforcer.set_satisfied();
@@ -106,22 +104,22 @@ TEST_CASE("Only Dirichlet vertices away from their targets are unsatisfied") {
 }
 
 TEST_CASE("The penalty pulls released vertices to their targets and doubles") {
-  NewtonProblem problem({std::make_shared<Wells>(rest(), 10, 0)}, pins());
+  NewtonProblem problem({std::make_shared<Wells>(NewtonProblem::rest(), 10, 0)}, pins());
   DirichletEnforcer enforcer(problem.model);
-  enforcer.begin(rest());
+  enforcer.begin(NewtonProblem::rest());
   enforcer.begin_penalty("the post");
   CHECK(enforcer.fixed()[0] == 0);
   CHECK(enforcer.fixed()[3] == 1);
   REQUIRE(enforcer.penalty());
   const auto pull = [&] {
     Positions g = Positions::Zero(16, 3);
-    enforcer.penalty()->add_gradient(rest(), g);
+    enforcer.penalty()->add_gradient(NewtonProblem::rest(), g);
     CHECK(g.bottomRows(15).norm() == 0);
     return -g.row(0).dot(lift);
   };
   const double before = pull();
   CHECK(before > 0);
-  CHECK(enforcer.increase_penalty(rest(), "the post"));
+  CHECK(enforcer.increase_penalty(NewtonProblem::rest(), "the post"));
   CHECK(pull() == Approx(2 * before));
   enforcer.set_satisfied();
   CHECK(enforcer.penalty() == nullptr);
@@ -129,24 +127,25 @@ TEST_CASE("The penalty pulls released vertices to their targets and doubles") {
 }
 
 TEST_CASE("Targets that doublings bring no nearer are infeasible, and named") {
-  NewtonProblem problem({std::make_shared<Wells>(rest(), 10, 0)}, pins());
+  NewtonProblem problem({std::make_shared<Wells>(NewtonProblem::rest(), 10, 0)}, pins());
   DirichletEnforcer enforcer(problem.model);
-  enforcer.begin(rest());
+  enforcer.begin(NewtonProblem::rest());
   enforcer.begin_penalty("the post");
   int doublings = 0;
-  while (enforcer.increase_penalty(rest(), "the post")) {
+  while (enforcer.increase_penalty(NewtonProblem::rest(), "the post")) {
     REQUIRE(++doublings < 100);
     // A restored enforcer is in the same state.
     DirichletEnforcer restored(problem.model);
     restored.restore(enforcer.state());
     CHECK(restored.fixed() == enforcer.fixed());
-    CHECK(restored.penalty()->value(rest()) == enforcer.penalty()->value(rest()));
+    CHECK(restored.penalty()->value(NewtonProblem::rest()) ==
+          enforcer.penalty()->value(NewtonProblem::rest()));
   }
   CHECK(doublings >= 4);
   CHECK(enforcer.infeasible());
   CHECK(!enforcer.active());
   CHECK(enforcer.fixed()[0] == 1);
-  CHECK(enforcer.message(rest()) ==
+  CHECK(enforcer.message(NewtonProblem::rest()) ==
         "pin 0 stopped 0.1 m short of its target (vertex 0), blocked by the post");
 }
 
@@ -156,7 +155,7 @@ TEST_CASE("The predictor moves the whole cloth by its linearised response") {
   Prediction c({std::make_shared<Chain>()}, both);
   c.predictor.enforce();
   CHECK(!c.enforcer.active());
-  const Positions moved = c.problem.iterate.x() - rest();
+  const Positions moved = c.problem.iterate.x() - NewtonProblem::rest();
   CHECK(c.problem.iterate.x().row(0) == both[0].target.transpose());
   CHECK((moved.rowwise() - lift.transpose()).norm() < 1e-12);
   CHECK(c.problem.iterate.gradient().norm() < 1e-11);  // evaluated there
@@ -168,7 +167,7 @@ TEST_CASE("Where a limit blocks the motion, the cloth moves as far as it may and
   CHECK(c.enforcer.active());
   CHECK(c.enforcer.penalty());
   CHECK(c.problem.iterate.fixed()[0] == 0);
-  CHECK((c.problem.iterate.x() - rest()).row(0).norm() == Approx(0.025));
+  CHECK((c.problem.iterate.x() - NewtonProblem::rest()).row(0).norm() == Approx(0.025));
   CHECK(c.problem.iterate.limited_by() == "the limiter");
 
   // Near equilibrium only the whole motion counts.
@@ -181,6 +180,6 @@ TEST_CASE("Where a limit blocks the motion, the cloth moves as far as it may and
 TEST_CASE("Without a factor nothing moves, and the cache says why") {
   Prediction c({std::make_shared<Chain>(true)}, pins());
   c.predictor.enforce();
-  CHECK(c.problem.iterate.x() == rest());
+  CHECK(c.problem.iterate.x() == NewtonProblem::rest());
   CHECK_THAT(c.step.factor().fault(), Catch::Contains("not finite"));
 }

@@ -10,7 +10,6 @@
 #include "tests/support/pages.h"
 
 namespace fs = std::filesystem;
-using pages::text_of;
 
 namespace {
 
@@ -20,7 +19,7 @@ std::string sources() {
   for (const char* folder : {"core", "plugins"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(folders::source()) / folder))
       if (entry.path().extension() == ".cpp" || entry.path().extension() == ".h")
-        all += text_of(entry.path());
+        all += pages::text_of(entry.path());
   return std::regex_replace(all, std::regex("\"\\s*\n\\s*\""), "");
 }
 
@@ -58,7 +57,7 @@ std::set<std::string> fragments_of(const fs::path& page) {
 }  // namespace
 
 TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
-  const std::string page = text_of(fs::path(folders::source()) / "docs/guide/troubleshooting.md");
+  const std::string page = pages::text_of(fs::path(folders::source()) / "docs/guide/troubleshooting.md");
   const std::string code = sources();
   const std::regex row("\n\\| `([^`]+)` \\|");
   int rows = 0;
@@ -70,7 +69,7 @@ TEST_CASE("docs/guide/troubleshooting.md speaks of messages that there are") {
 }
 
 TEST_CASE("docs/reference/exit-codes.md has every code as `drape --help` does") {
-  const std::string page = text_of(fs::path(folders::source()) / "docs/reference/exit-codes.md");
+  const std::string page = pages::text_of(fs::path(folders::source()) / "docs/reference/exit-codes.md");
   for (const drape::ExitCode& code : drape::exit_codes) {
     INFO(code.code);
     CHECK(page.find("\n| `" + std::to_string(code.code) + "` | " + code.description + " |\n") !=
@@ -82,7 +81,7 @@ TEST_CASE("every link between the pages leads somewhere") {
   const std::regex link("\\]\\(([^)#]*)(#([^)]*))?\\)");
   int links = 0, fragments = 0;
   for (const fs::path& page : linked_pages()) {
-    const std::string text = text_of(page);
+    const std::string text = pages::text_of(page);
     for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
       const std::string target = (*it)[1], fragment = (*it)[3];
       if (target.starts_with("http")) continue;
@@ -108,14 +107,14 @@ TEST_CASE("pages that sources and scripts name are there, with the sections that
     for (const auto& entry : fs::recursive_directory_iterator(root / folder))
       if (entry.is_regular_file() && entry.file_size() < 200000) files.push_back(entry.path());
   for (const fs::path& file : files) {
-    const std::string text = text_of(file);
+    const std::string text = pages::text_of(file);
     for (std::sregex_iterator it(text.begin(), text.end(), name), end; it != end; ++it) {
       INFO(file.string() << " names " << (*it)[0].str());
       const fs::path page = root / (*it)[1].str();
       REQUIRE(fs::exists(page));
       ++names;
       if (!(*it)[3].matched) continue;
-      CHECK(text_of(page).find("\n## " + (*it)[3].str() + ". ") != std::string::npos);
+      CHECK(pages::text_of(page).find("\n## " + (*it)[3].str() + ". ") != std::string::npos);
       ++sections;
     }
   }
@@ -125,9 +124,9 @@ TEST_CASE("pages that sources and scripts name are there, with the sections that
 
 TEST_CASE("docs/README.md is the map of every page, and a page shows every picture") {
   const fs::path docs = fs::path(folders::source()) / "docs";
-  const std::string map = text_of(docs / "README.md");
+  const std::string map = pages::text_of(docs / "README.md");
   std::string all;
-  for (const fs::path& page : pages::documents()) all += text_of(page);
+  for (const fs::path& page : pages::documents()) all += pages::text_of(page);
   for (const auto& entry : fs::recursive_directory_iterator(docs)) {
     const std::string name = fs::relative(entry.path(), docs).generic_string();
     INFO(name);

@@ -10,10 +10,8 @@ using namespace drape;
 
 namespace {
 
-Positions rest() { return Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices; }
-
 /// At the minimum of a bowl.
-NewtonProblem at_minimum() { return NewtonProblem({std::make_shared<Wells>(rest(), 10, 0)}); }
+NewtonProblem at_minimum() { return NewtonProblem({std::make_shared<Wells>(NewtonProblem::rest(), 10, 0)}); }
 
 }  // namespace
 
@@ -37,7 +35,7 @@ TEST_CASE("The tolerances ask for a small residual, and for three small decremen
   }
   restored.restart();  // for another objective, to which earlier decrements say nothing
   CHECK(!restored.in_tolerance());
-  problem.move_to(rest().array() + 0.1);
+  problem.move_to(NewtonProblem::rest().array() + 0.1);
   CHECK(!check.in_tolerance());
 }
 
@@ -47,7 +45,7 @@ TEST_CASE("The drift is the displacement of the free vertices' centroid, in diag
   EquilibriumCheck check(problem.iterate, p);
   check.restart_drift();
   CHECK(check.drift() == 0);
-  Positions x = rest();
+  Positions x = NewtonProblem::rest();
   x.col(0).array() += 3;
   problem.move_to(x);
   CHECK(check.drift() == Approx(3 / std::sqrt(2.0)));
@@ -60,9 +58,9 @@ TEST_CASE("The drift is the displacement of the free vertices' centroid, in diag
 
 TEST_CASE("Forces within their round-off bounds are at the rounding floor, which restarts the idle steps") {
   const NewtonParameters p;
-  NewtonProblem problem({std::make_shared<Wells>(rest(), 1e7, 0.1)});
+  NewtonProblem problem({std::make_shared<Wells>(NewtonProblem::rest(), 1e7, 0.1)});
   EquilibriumCheck check(problem.iterate, p);
-  Positions x = rest();
+  Positions x = NewtonProblem::rest();
   x.col(2).array() += 0.1 + 1e-6;
   problem.move_to(x);
   for (int k = 0; k < 11; ++k) {
@@ -73,7 +71,7 @@ TEST_CASE("Forces within their round-off bounds are at the rounding floor, which
   CHECK(!check.is_at_rounding_floor());
   CHECK(!check.is_idle());
 
-  x.col(2) = rest().col(2).array() + 0.1;
+  x.col(2) = NewtonProblem::rest().col(2).array() + 0.1;
   problem.move_to(x);
   CHECK(check.is_at_rounding_floor());
   CHECK(check.rounding_residual() > 0);

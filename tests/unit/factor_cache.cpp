@@ -12,14 +12,13 @@ namespace {
 
 constexpr double mass_shift = 100;
 
-Positions rest() { return Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices; }
-
 /// The cache of a problem with one fixed vertex, and how often it has factorised.
-struct Case {
-  NewtonProblem problem{{std::make_shared<Wells>(rest().array() + 0.3, 10, 0.1)}, {{0, rest().row(0), 0}}};
+struct CacheCase {
+  NewtonProblem problem{{std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1)},
+                        {{0, NewtonProblem::rest().row(0), 0}}};
   FactorCache cache;
 
-  explicit Case(int interval) : cache(problem.iterate, with(interval)) {}
+  explicit CacheCase(int interval) : cache(problem.iterate, with(interval)) {}
   static NewtonParameters with(int interval) {
     NewtonParameters p;
     p.hessian_update_interval = interval;
@@ -37,7 +36,7 @@ struct Case {
 }  // namespace
 
 TEST_CASE("A factor serves as many iterations as the interval says") {
-  Case c(3);
+  CacheCase c(3);
   for (int round = 0; round < 2; ++round) {
     CHECK(c.iterate() == 1);
     CHECK(c.cache.age() == 1);
@@ -47,12 +46,12 @@ TEST_CASE("A factor serves as many iterations as the interval says") {
   }
   CHECK(c.cache.analyses() == 1);
   CHECK(c.problem.result.flops > 0);
-  Case single(1);
+  CacheCase single(1);
   for (int k = 0; k < 3; ++k) CHECK(single.iterate() == 1);
 }
 
 TEST_CASE("A shortened step makes an old factor stale, but not a new one") {
-  Case c(5);
+  CacheCase c(5);
   CHECK(c.iterate(0.5) == 1);
   CHECK(c.iterate(0.5) == 0);
   CHECK(c.iterate(1) == 1);
@@ -62,7 +61,7 @@ TEST_CASE("A shortened step makes an old factor stale, but not a new one") {
 }
 
 TEST_CASE("The factor is of the shifted matrix without fixed vertices") {
-  Case c(1);
+  CacheCase c(1);
   REQUIRE(c.iterate() == 1);
   const Positions b = Positions::Random(16, 3);
   Positions solution, product;
@@ -78,14 +77,14 @@ TEST_CASE("The factor is of the shifted matrix without fixed vertices") {
 }
 
 TEST_CASE("A restored cache solves with the same factor, bit for bit") {
-  Case c(3);
+  CacheCase c(3);
   c.iterate();
-  c.problem.move_to(rest().array() + 0.01);  // the factor is of another x
+  c.problem.move_to(NewtonProblem::rest().array() + 0.01);  // the factor is of another x
   const FactorCache::State state = c.cache.state();
   CHECK(!state.values.empty());
   CHECK(state.shift == mass_shift);
 
-  Case again(3);
+  CacheCase again(3);
   again.problem.move_to(c.problem.iterate.x());
   again.cache.restore(state);
   CHECK(again.iterate() == 0);
@@ -103,19 +102,19 @@ TEST_CASE("A restored cache solves with the same factor, bit for bit") {
 
   FactorCache::State other = state;
   other.values.pop_back();
-  Case third(3);
+  CacheCase third(3);
   CHECK_THROWS_WITH(third.cache.restore(other), Catch::Contains("belongs to another matrix"));
 }
 
 TEST_CASE("A stale factor is not stored") {
-  Case c(1);
+  CacheCase c(1);
   c.iterate();
   CHECK(c.cache.state().values.empty());
   CHECK(c.cache.state().analysis.count == 1);
 }
 
 TEST_CASE("A failed factorisation says why, and the next one may succeed") {
-  Case c(1);
+  CacheCase c(1);
   const Positions x = c.problem.iterate.x();
   c.problem.move_to(Positions::Constant(16, 3, std::numeric_limits<double>::quiet_NaN()));
   CHECK(!c.cache.update(c.problem.model.fixed(), mass_shift, 1));

@@ -13,7 +13,7 @@ using namespace drape;
 namespace {
 
 /// A sheet of 3 × 3 vertices in some state, all of whose normals are the same.
-GltfState state(double lift) {
+GltfState lifted_sheet(double lift) {
   Positions x = grid({1, 0.5}, 3, 3, Diagonals::one_way).vertices;
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = lift * x(i, 0) * x(i, 0) - 1;
   Positions normals = Positions::Zero(x.rows(), 3);
@@ -27,7 +27,7 @@ GltfSurface surface(const std::string& name) {
   GltfSurface s;
   s.name = name;
   s.triangles = mesh.triangles;
-  s.state = state(0.3);
+  s.state = lifted_sheet(0.3);
   s.uv = mesh.vertices.leftCols<2>();
   return s;
 }
@@ -93,7 +93,7 @@ TEST_CASE("scenes show their surfaces, and the last one is shown first") {
 
 TEST_CASE("earlier states are morph targets, shown one after the other, and the last state at the end") {
   GltfSurface cloth = surface("cloth");
-  cloth.earlier = {state(0), state(-0.7)};
+  cloth.earlier = {lifted_sheet(0), lifted_sheet(-0.7)};
   const Glb glb(glb_bytes({cloth}, {{"one", {0}}}));
   const auto& mesh = glb.json.at("meshes").at(0);
   const auto& primitive = mesh.at("primitives").at(0);

@@ -9,9 +9,9 @@ using namespace drape;
 namespace {
 
 /// Σ over pairs of ½ |x_a - x_b|²: its Hessian is known. A partner of -1 is the origin.
-class Springs : public BoundEnergy {
+class PairSprings : public BoundEnergy {
  public:
-  explicit Springs(std::vector<std::pair<int, int>> pairs) : pairs_(std::move(pairs)) {}
+  explicit PairSprings(std::vector<std::pair<int, int>> pairs) : pairs_(std::move(pairs)) {}
   double value(const Positions&) const override { return 0; }
   double add_gradient(const Positions&, Positions&) const override { return 0; }
   Stencils stencils() const override {
@@ -46,9 +46,9 @@ class Springs : public BoundEnergy {
 };
 
 /// A chain of vertices, whose matrix is the smooth part.
-struct Chain {
+struct ChainOfSprings {
   static constexpr int n = 12;
-  Springs springs{[] {
+  PairSprings springs{[] {
     std::vector<std::pair<int, int>> pairs;
     for (int i = 0; i + 1 < n; ++i) pairs.emplace_back(i, i + 1);
     return pairs;
@@ -58,7 +58,8 @@ struct Chain {
   Positions x = Positions::Zero(n, 3);
   HessianAssembler assembler;
 
-  const BlockMatrix& with(const Springs& transient, const std::vector<const BoundEnergy*>& persistent = {}) {
+  const BlockMatrix& with(const PairSprings& transient,
+                          const std::vector<const BoundEnergy*>& persistent = {}) {
     matrix.set_zero();
     const BlockSlots slots(*pattern, springs.stencils());
     BlockSink sink(slots, matrix);
@@ -70,52 +71,53 @@ struct Chain {
 }  // namespace
 
 TEST_CASE("elements whose blocks the pattern has are added in place", "[hessian_assembler]") {
-  Chain chain;
-  const Springs near({{3, 4}, {7, 6}, {0, -1}});
+  ChainOfSprings chain;
+  const PairSprings near({{3, 4}, {7, 6}, {0, -1}});
   const BlockMatrix& sum = chain.with(near);
   CHECK(&sum == &chain.matrix);
-  CHECK(dense(sum) == chain.springs.expected(Chain::n) + near.expected(Chain::n));
+  CHECK(dense(sum) == chain.springs.expected(ChainOfSprings::n) + near.expected(ChainOfSprings::n));
 }
 
 TEST_CASE("elements with missing blocks extend the pattern", "[hessian_assembler]") {
-  Chain chain;
-  const Springs far({{11, 2}, {5, 0}, {3, 4}}), persistent({{8, 9}, {2, -1}});
-  const Eigen::MatrixXd expected =
-      chain.springs.expected(Chain::n) + far.expected(Chain::n) + persistent.expected(Chain::n);
+  ChainOfSprings chain;
+  const PairSprings far({{11, 2}, {5, 0}, {3, 4}}), persistent({{8, 9}, {2, -1}});
+  const Eigen::MatrixXd expected = chain.springs.expected(ChainOfSprings::n) +
+                                   far.expected(ChainOfSprings::n) + persistent.expected(ChainOfSprings::n);
   CHECK(dense(chain.with(far, {&persistent})) == expected);
   CHECK(dense(chain.with(far, {&persistent})) == expected);  // independent of the last call
 }
 
 TEST_CASE("the pattern stays while contacts slide, and drops blocks that were long unused",
           "[hessian_assembler]") {
-  Chain chain;
-  const auto first = chain.with(Springs({{2, 9}})).pattern;
+  ChainOfSprings chain;
+  const auto first = chain.with(PairSprings({{2, 9}})).pattern;
   CHECK(first != chain.pattern);
   CHECK(first->find(2, 8) >= 0);  // padding: where contacts slide next
   CHECK(first->find(2, 6) < 0);
-  CHECK(chain.with(Springs({{2, 8}})).pattern == first);
-  CHECK(chain.with(Springs({})).pattern == first);
-  for (int k = 0; k < 30; ++k) chain.with(Springs({}));
-  const auto later = chain.with(Springs({{0, 5}})).pattern;
+  CHECK(chain.with(PairSprings({{2, 8}})).pattern == first);
+  CHECK(chain.with(PairSprings({})).pattern == first);
+  for (int k = 0; k < 30; ++k) chain.with(PairSprings({}));
+  const auto later = chain.with(PairSprings({{0, 5}})).pattern;
   CHECK(later != first);
   CHECK(later->find(0, 5) >= 0);
   CHECK(later->find(2, 9) < 0);
-  const Springs again({{2, 9}, {0, 5}});
-  CHECK(dense(chain.with(again)) == chain.springs.expected(Chain::n) + again.expected(Chain::n));
+  const PairSprings again({{2, 9}, {0, 5}});
+  CHECK(dense(chain.with(again)) ==
+        chain.springs.expected(ChainOfSprings::n) + again.expected(ChainOfSprings::n));
 }
 
 TEST_CASE("a restored extra pattern grows and shrinks as if not interrupted", "[hessian_assembler]") {
   // Contacts that appear, slide, vanish for long and appear again.
-  std::vector<Springs> transient;
+  std::vector<PairSprings> transient;
   for (int k = 0; k < 60; ++k)
     transient.emplace_back(k % 25 < 3   ? std::vector<std::pair<int, int>>{{2, 9 - k % 3}}
                            : k % 7 == 0 ? std::vector<std::pair<int, int>>{{k % 4, 6 + k % 5}}
                                         : std::vector<std::pair<int, int>>{});
-  Chain whole;
+  ChainOfSprings whole;
   std::vector<HessianAssembler::ExtraPattern> extras;
   std::vector<std::vector<int>> columns;
   std::size_t most = 0, shrunk = 0;
-  for (const Springs& springs : transient) {
+  for (const PairSprings& springs : transient) {
     extras.push_back(whole.assembler.extra());
     columns.push_back(whole.with(springs).pattern->columns);
     shrunk += columns.back().size() < most;
@@ -123,7 +125,7 @@ TEST_CASE("a restored extra pattern grows and shrinks as if not interrupted", "[
   }
   REQUIRE(shrunk > 0);
   for (std::size_t k = 0; k < transient.size(); ++k) {
-    Chain again;
+    ChainOfSprings again;
     const auto pattern = again.assembler.restore(again.pattern, extras[k]);
     if (k > 0) CHECK(pattern->columns == columns[k - 1]);
     for (std::size_t i = k; i < transient.size(); ++i)

@@ -39,13 +39,13 @@ class Slope : public Energy {
 };
 
 /// ½ Σ |x_i|², as an energy or a limit.
-class Springs : public Energy, public BoundEnergy {
+class OriginSprings : public Energy, public BoundEnergy {
  public:
-  Springs(EnergyRole role, int count) : role_(role), count_(count) {}
+  OriginSprings(EnergyRole role, int count) : role_(role), count_(count) {}
 
   EnergyRole role() const override { return role_; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material&) const override {
-    return std::make_unique<Springs>(role_, level.vertex_count());
+    return std::make_unique<OriginSprings>(role_, level.vertex_count());
   }
   double value(const Positions& x) const override { return 0.5 * x.squaredNorm(); }
   double add_gradient(const Positions& x, Positions& g) const override {
@@ -90,8 +90,8 @@ class Traced : public ContactModel, public Rebindable {
 TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 150, 100, Diagonals::one_way));
   const auto slope = [](double size, double at_origin) { return std::make_shared<Slope>(size, at_origin); };
-  const auto springs = std::make_shared<Springs>(EnergyRole::membrane, 0);
-  const auto limit = std::make_shared<Springs>(EnergyRole::limit, 0);
+  const auto springs = std::make_shared<OriginSprings>(EnergyRole::membrane, 0);
+  const auto limit = std::make_shared<OriginSprings>(EnergyRole::limit, 0);
   const LevelModel model(level, Material(),
                          {{"a", slope(2, 0)}, {"springs", springs}, {"limit", limit}, {"b", slope(-0.5, 3)}},
                          {});
@@ -111,7 +111,8 @@ TEST_CASE("linear energies are evaluated together, and limits apart", "[level_mo
 TEST_CASE("A model shares with another what is equal, and binds contacts from those before",
           "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
-  const std::vector<NamedEnergy> energies = {{"limit", std::make_shared<Springs>(EnergyRole::limit, 0)}};
+  const std::vector<NamedEnergy> energies = {
+      {"limit", std::make_shared<OriginSprings>(EnergyRole::limit, 0)}};
   const auto kept = std::make_shared<Traced>(), changed = std::make_shared<Traced>();
   const auto from = [](const LevelModel& model, std::size_t k) {
     return dynamic_cast<const Traced::Bound&>(*model.contacts().at(k)).from;

@@ -9,8 +9,6 @@ using namespace drape;
 
 namespace {
 
-Positions rest() { return Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way)).rest.vertices; }
-
 /// Three increments that change nothing and are applied as far as a test says.
 class FakeLoads : public LoadStepping {
  public:
@@ -53,20 +51,20 @@ class FakeLoads : public LoadStepping {
   double applied_ = 1;
 };
 
-struct Recorder : Observer {
+struct IncrementRecorder : Observer {
   std::vector<IncrementRow> rows;
   void increment_finished(const IncrementRow& row, const Positions&) override { rows.push_back(row); }
 };
 
-struct Case {
-  NewtonProblem problem{{std::make_shared<Wells>(rest().array() + 0.3, 10, 0)}};
+struct StepperCase {
+  NewtonProblem problem{{std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0)}};
   FakeLoads loads;
-  Recorder observer;
+  IncrementRecorder observer;
   Stopwatch clock;
   DirichletEnforcer dirichlet{problem.model};
   LoadStepper stepper{&loads, problem.iterate, dirichlet, clock, observer};
 
-  Case() { loads.unchanged = &problem.model; }
+  StepperCase() { loads.unchanged = &problem.model; }
 
   /// Moves the cloth as a solve to equilibrium would.
   void move(double by) { problem.move_to(problem.iterate.x().array() + by); }
@@ -75,7 +73,7 @@ struct Case {
 }  // namespace
 
 TEST_CASE("Without load stepping there are no increments") {
-  Case c;
+  StepperCase c;
   LoadStepper none(nullptr, c.problem.iterate, c.dirichlet, c.clock, c.observer);
   CHECK(!none.has_schedule());
   CHECK(!none.loading());
@@ -90,7 +88,7 @@ TEST_CASE("Without load stepping there are no increments") {
 }
 
 TEST_CASE("Each increment that ends is reported with its own counts") {
-  Case c;
+  StepperCase c;
   c.problem.result.level = 2;
   c.problem.result.steps = 4;
   c.problem.result.iterations = 6;
@@ -120,7 +118,7 @@ TEST_CASE("Each increment that ends is reported with its own counts") {
 }
 
 TEST_CASE("The seconds of a level's first increment are without those of coarser levels") {
-  Case c;
+  StepperCase c;
   const Stopwatch method(1000);
   LoadStepper stepper(&c.loads, c.problem.iterate, c.dirichlet, method, c.observer);
   stepper.report_increment();
@@ -130,7 +128,7 @@ TEST_CASE("The seconds of a level's first increment are without those of coarser
 }
 
 TEST_CASE("Without equilibrium the next increment begins at once, but never the rest of one") {
-  Case c;
+  StepperCase c;
   CHECK(!c.stepper.advances_at_once());
   c.loads.to_equilibrium = false;
   CHECK(c.stepper.advances_at_once());
@@ -142,20 +140,20 @@ TEST_CASE("Without equilibrium the next increment begins at once, but never the 
 }
 
 TEST_CASE("The rest of an increment takes the cloth along by its response to the first part") {
-  Case c;
+  StepperCase c;
   c.loads.allowed = 0.4;
   c.stepper.advance(true);
   CHECK(c.stepper.state().response.fraction == 0.4);
-  CHECK(c.stepper.state().response.from == rest());
+  CHECK(c.stepper.state().response.from == NewtonProblem::rest());
   CHECK(c.problem.iterate.limited_by() == "the post");
-  CHECK(c.problem.iterate.x() == rest());
-  CHECK(c.loads.last == rest());
+  CHECK(c.problem.iterate.x() == NewtonProblem::rest());
+  CHECK(c.loads.last == NewtonProblem::rest());
 
   c.move(0.02);
   c.stepper.advance(true);
   // 0.4 moved it by 0.02, so the remaining 0.6 by 0.03.
-  CHECK((c.problem.iterate.x() - rest()).minCoeff() == Approx(0.05));
-  CHECK((c.problem.iterate.x() - rest()).maxCoeff() == Approx(0.05));
+  CHECK((c.problem.iterate.x() - NewtonProblem::rest()).minCoeff() == Approx(0.05));
+  CHECK((c.problem.iterate.x() - NewtonProblem::rest()).maxCoeff() == Approx(0.05));
   CHECK(c.loads.fractions == std::vector<double>{1});
   CHECK(c.loads.last == c.problem.iterate.x());
   CHECK(c.loads.complete());
@@ -164,12 +162,12 @@ TEST_CASE("The rest of an increment takes the cloth along by its response to the
 }
 
 TEST_CASE("A prediction that equilibrium corrects is trusted less") {
-  Case c;
+  StepperCase c;
   c.loads.allowed = 0.1;
   c.stepper.advance(true);
   LoadStepper::State state = c.stepper.state();
   // The last prediction moved the cloth by 0.02, and equilibrium by as much again.
-  state.response.predicted = rest().array() + 0.02;
+  state.response.predicted = NewtonProblem::rest().array() + 0.02;
   c.stepper.restore(state);
   c.move(0.04);
   c.stepper.advance(true);
@@ -180,7 +178,7 @@ TEST_CASE("A prediction that equilibrium corrects is trusted less") {
 }
 
 TEST_CASE("If the obstacles cannot follow the cloth, they advance without it") {
-  Case c;
+  StepperCase c;
   c.loads.allowed = 0.4;
   c.stepper.advance(true);
   c.move(0.02);
@@ -194,12 +192,12 @@ TEST_CASE("If the obstacles cannot follow the cloth, they advance without it") {
 }
 
 TEST_CASE("An increment that twenty attempts hardly advance is blocked") {
-  Case c;
+  StepperCase c;
   c.loads.allowed = 1e-4;
   for (int k = 0; k < 19; ++k) c.stepper.advance(true);
   CHECK(!c.stepper.blocked());
 
-  Case freed;
+  StepperCase freed;
   freed.stepper.restore(c.stepper.state());
   freed.loads.allowed = 0.5;
   freed.stepper.advance(true);

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/kernel/files/file.h"
 #include "core/kernel/linear_algebra/block_matrix.h"
 #include "core/kernel/model/refiner.h"
 #include "core/kernel/plugin/abi.h"
@@ -25,7 +26,7 @@ namespace {
 
 const fs::path plugins = folders::test_plugins();
 
-fs::path library(const std::string& name) { return plugins / name / ("lib" + name + ".so"); }
+fs::path test_library(const std::string& name) { return plugins / name / ("lib" + name + ".so"); }
 
 /// DRAPE_PLUGIN_PATH for the life of the object.
 class PluginPath {
@@ -68,7 +69,7 @@ TEST_CASE("a plugin's entries are registered, made and destroyed") {
   REQUIRE(registry.entries().size() == 1);
   const RegistryEntry* entry = registry.find("refiner", "good");
   REQUIRE(entry);
-  CHECK(entry->library == library("good").string());
+  CHECK(entry->library == test_library("good").string());
   CHECK(entry->summary == "A refiner that loads.");
 
   ConfigErrors errors;
@@ -92,8 +93,8 @@ TEST_CASE("a folder named twice is loaded once, and another registry may load it
 TEST_CASE("a repeated name is refused with both libraries") {
   Registry registry;
   REQUIRE_THROWS_WITH(load_plugins(registry, {plugins / "good", plugins / "duplicate"}),
-                      "refiner \"good\" of " + library("duplicate").string() + " is already registered by " +
-                          library("good").string() +
+                      "refiner \"good\" of " + test_library("duplicate").string() +
+                          " is already registered by " + test_library("good").string() +
                           "; rename it or take one of them out of the search path");
   CHECK(registry.entries().size() == 1);
 }
@@ -101,7 +102,7 @@ TEST_CASE("a repeated name is refused with both libraries") {
 TEST_CASE("a plugin of another build is refused before any of it runs") {
   Registry registry;
   REQUIRE_THROWS_WITH(load_plugins(registry, {plugins / "wrong_abi"}),
-                      library("wrong_abi").string() +
+                      test_library("wrong_abi").string() +
                           ": does not fit this drape, rebuild it: "
                           "the compiler is GCC 4.8 in the plugin and " +
                           ours.compiler + " in drape; the Eigen version is 3.3.9 in the plugin and " +
@@ -131,7 +132,7 @@ TEST_CASE("mismatch names what differs, on both sides") {
 TEST_CASE("a library that is no plugin, or no library, is refused with its path") {
   Registry registry;
   CHECK_THROWS_WITH(load_plugins(registry, {plugins / "not_a_plugin"}),
-                    library("not_a_plugin").string() +
+                    test_library("not_a_plugin").string() +
                         ": is not a drape plugin: it exports no function drape_plugin"
                         " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   const TemporaryFolder folder;
@@ -152,24 +153,24 @@ TEST_CASE("a plugin that gives nothing where something is needed is refused with
     }
     return "";
   };
-  CHECK(error_of("null_descriptor") == library("null_descriptor").string() +
+  CHECK(error_of("null_descriptor") == test_library("null_descriptor").string() +
                                            ": is not a drape plugin: its function drape_plugin returns null"
                                            " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   CHECK(error_of("null_names") ==
-        library("null_names").string() +
+        test_library("null_names").string() +
             ": does not fit this drape, rebuild it: the compiler is not given in the plugin and " +
             ours.compiler + " in drape; the standard library is not given in the plugin and " +
             ours.standard_library + " in drape; the Eigen version is not given in the plugin and " +
             ours.eigen_version + " in drape; the scalar type is not given in the plugin and double in drape");
   CHECK(error_of("null_entries") ==
-        library("null_entries").string() +
+        test_library("null_entries").string() +
             ": is not a drape plugin: its descriptor has no function that names its entries"
             " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
   CHECK(error_of("no_entries") ==
-        library("no_entries").string() + ": names no entries; add some in its DRAPE_PLUGIN");
+        test_library("no_entries").string() + ": names no entries; add some in its DRAPE_PLUGIN");
   CHECK(error_of("no_name") ==
-        library("no_name").string() + ": registers a refiner without a name; give it one");
-  CHECK(error_of("throwing") == library("throwing").string() + ": its DRAPE_PLUGIN throws: out of luck");
+        test_library("no_name").string() + ": registers a refiner without a name; give it one");
+  CHECK(error_of("throwing") == test_library("throwing").string() + ": its DRAPE_PLUGIN throws: out of luck");
 }
 
 namespace {
@@ -190,15 +191,10 @@ std::string error_of_bytes(const std::string& bytes) {
   return "";
 }
 
-std::string bytes_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 TEST_CASE("a plugin cut short at any length is refused, and ends no process") {
-  const std::string whole = bytes_of(library("good"));
+  const std::string whole = read_file(test_library("good"));
   REQUIRE(whole.size() > 4096);
   CHECK(error_of_bytes(whole) == "");
   CHECK(error_of_bytes(whole.substr(0, whole.size() - 1)) ==
@@ -214,7 +210,7 @@ TEST_CASE("a plugin cut short at any length is refused, and ends no process") {
 }
 
 TEST_CASE("a library of another machine or kind, with damaged headers, or none is refused") {
-  const std::string whole = bytes_of(library("good"));
+  const std::string whole = read_file(test_library("good"));
   const auto with = [&](std::size_t at, int value) {
     std::string bytes = whole;
     bytes[at] = static_cast<char>(bytes[at] ^ value);

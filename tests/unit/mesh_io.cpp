@@ -19,22 +19,16 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A directory of one test, removed with it.
-struct Scratch {
+struct MeshFolder {
   fs::path root = fs::temp_directory_path() / ("drape_mesh_io_" + std::to_string(::getpid()));
-  Scratch() { fs::create_directories(root); }
-  ~Scratch() { fs::remove_all(root); }
+  MeshFolder() { fs::create_directories(root); }
+  ~MeshFolder() { fs::remove_all(root); }
 
   fs::path file(const std::string& name, const std::string& bytes) const {
     std::ofstream(root / name, std::ios::binary) << bytes;
     return root / name;
   }
 };
-
-std::string bytes_of(const fs::path& path) {
-  std::ostringstream out;
-  out << std::ifstream(path, std::ios::binary).rdbuf();
-  return out.str();
-}
 
 bool same_bits(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices.rows() == b.vertices.rows() && a.triangles.rows() == b.triangles.rows() &&
@@ -75,7 +69,7 @@ void append(std::string& bytes, Number number, bool big_endian) {
 }  // namespace
 
 TEST_CASE("PLY and OBJ read back to the same bits", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string name = GENERATE("mesh.ply", "mesh.obj", "MESH.PLY");
   const TriangleMesh mesh = awkward_mesh();
   write_mesh(scratch.root / name, mesh);
@@ -84,7 +78,7 @@ TEST_CASE("PLY and OBJ read back to the same bits", "[io]") {
 }
 
 TEST_CASE("fields of a PLY read back to the same bits", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const TriangleMesh mesh = awkward_mesh();
   VertexFields fields{{"mean_curvature", mesh.vertices.col(0) / 7}, {"rest.z", mesh.vertices.col(2)}};
   fields[0].values[1] = std::numeric_limits<double>::quiet_NaN();
@@ -102,7 +96,7 @@ TEST_CASE("fields of a PLY read back to the same bits", "[io]") {
 }
 
 TEST_CASE("OBJ faces in all their forms", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string vertices =
       "# a square\r\no cloth\nv 0 0 0\nv +1 0 0 1.0\nvt 0 0\nvn 0 0 1\n  v 1 15e-1 0\nv 0 1 -.25 # last\n";
   const std::string faces =
@@ -112,7 +106,7 @@ TEST_CASE("OBJ faces in all their forms", "[io]") {
 }
 
 TEST_CASE("OFF with and without colours, normals, comments", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string text = GENERATE("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1.5 0\n0 1 -0.25\n3 0 1 2\n3 0 2 3\n",
                                     "OFF 4 1 5\n\n0 0 0\n1 0 0\n1 1.5 0\n0 1 -0.25\n4 0 1 2 3 255 0 0\n",
                                     "COFF\n# colours\n4 2 0\n0 0 0 1 0 0 1\n1 0 0 1 0 0 1\n1 1.5 0 1 0 0 "
@@ -121,7 +115,7 @@ TEST_CASE("OFF with and without colours, normals, comments", "[io]") {
 }
 
 TEST_CASE("PLY as text", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const fs::path path = scratch.file(
       "m.ply",
       "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info none\r\nelement vertex 4\r\nproperty "
@@ -138,7 +132,7 @@ TEST_CASE("PLY as text", "[io]") {
 }
 
 TEST_CASE("PLY in binary of either byte order and mixed types", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const bool big = GENERATE(false, true);
   std::string bytes =
       std::string("ply\nformat binary_") + (big ? "big" : "little") +
@@ -166,7 +160,7 @@ TEST_CASE("PLY in binary of either byte order and mixed types", "[io]") {
 }
 
 TEST_CASE("malformed files are refused with file and line", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
@@ -221,7 +215,7 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
 }
 
 TEST_CASE("counts that do not fit the file are told as such", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const auto said = [&](const std::string& name, const std::string& text) -> std::string {
     try {
       read_mesh(scratch.file(name, text));
@@ -274,7 +268,7 @@ TEST_CASE("counts that do not fit the file are told as such", "[io]") {
 }
 
 TEST_CASE("what is declared twice, left over, not finite or no text is refused", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string element = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n";
   const auto [name, text, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
       {"a.ply", element + "property float x\n", ":5: property 'x' is declared twice"},
@@ -311,7 +305,7 @@ TEST_CASE("what is declared twice, left over, not finite or no text is refused",
 }
 
 TEST_CASE("a word of a megabyte is shortened in the message", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const std::string word(1000000, 'x');
   for (const std::string& text : {"v 0 0 " + word, "f " + word, word, "v 0 0 0\nf 1/" + word + " 1 1"}) try {
       read_mesh(scratch.file("a.obj", text));
@@ -322,7 +316,7 @@ TEST_CASE("a word of a megabyte is shortened in the message", "[io]") {
 }
 
 TEST_CASE("a byte order mark is no part of the first word", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   check_square(
       read_mesh(scratch.file("m.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 1 1.5 0\nv 0 1 -.25\nf 1 2 3 4\n")));
 }
@@ -337,7 +331,7 @@ TEST_CASE("unknown formats and missing files name what to do", "[io]") {
 }
 
 TEST_CASE("a write that fails leaves the old file and no part", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   fs::create_directories(scratch.root / "m.ply" / "full");  // a directory cannot be replaced by a file
   CHECK_THROWS_WITH(write_mesh(scratch.root / "m.ply", awkward_mesh()),
                     "cannot write " + (scratch.root / "m.ply").string() + ": Is a directory");
@@ -401,11 +395,11 @@ std::vector<Number> data_array(const std::string& xml, const std::string& attrib
 }  // namespace
 
 TEST_CASE("VTP arrays decode to the mesh and its fields", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   const int rows = GENERATE(2, 3, 4);  // different remainders of the byte counts by three
   const TriangleMesh mesh = grid({1. / 3, 1}, 2, rows, Diagonals::one_way);
   write_vtp(scratch.root / "m.vtp", mesh, {{"a<b&\"", mesh.vertices.col(0)}});
-  const std::string xml = bytes_of(scratch.root / "m.vtp");
+  const std::string xml = read_file(scratch.root / "m.vtp");
   const auto n = mesh.vertices.rows(), m = mesh.triangles.rows();
   CHECK(xml.find("<Piece NumberOfPoints=\"" + std::to_string(n) + "\" NumberOfPolys=\"" + std::to_string(m) +
                  "\">") != std::string::npos);
@@ -424,9 +418,9 @@ TEST_CASE("VTP arrays decode to the mesh and its fields", "[io]") {
 }
 
 TEST_CASE("a ParaView collection lists times and files", "[io]") {
-  const Scratch scratch;
+  const MeshFolder scratch;
   write_pvd(scratch.root / "run.pvd", {{0, "frames/0.vtp"}, {0.1, "frames/1.vtp"}});
-  CHECK(bytes_of(scratch.root / "run.pvd") ==
+  CHECK(read_file(scratch.root / "run.pvd") ==
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "<Collection>\n"

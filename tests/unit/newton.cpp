@@ -51,7 +51,7 @@ class Silent : public Observer {
   bool stop_requested() override { return seen >= stop_after; }
 };
 
-struct Case {
+struct NewtonCase {
   Level level = Level::of(0, grid({1, 1}, 4, 4, Diagonals::one_way));
   Positions centres = level.rest.vertices.array() + 0.3;
   Silent observer;
@@ -76,7 +76,7 @@ TEST_CASE("Newton finds the ring of minima around a hump, in both forms and with
           "[newton]") {
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (Projection::Kind projection : {Projection::clamp, Projection::none}) {
-      Case c;
+      NewtonCase c;
       c.centres = c.level.rest.vertices.array() + 0.05;  // the start is on the hump
       NewtonParameters p = tight();
       p.form = form;
@@ -92,7 +92,7 @@ TEST_CASE("Newton finds the ring of minima around a hump, in both forms and with
 }
 
 TEST_CASE("Energy never rises from one implicit step to the next", "[newton]") {
-  Case c;
+  NewtonCase c;
   NewtonParameters p = tight();
   p.step_size = 0.05;
   c.solve(p, 0.4);
@@ -102,7 +102,7 @@ TEST_CASE("Energy never rises from one implicit step to the next", "[newton]") {
 }
 
 TEST_CASE("The decrement is the mean speed of the step", "[newton]") {
-  Case c;
+  NewtonCase c;
   NewtonParameters p = tight();
   p.max_steps = 1;
   p.step_size = 0.2;
@@ -114,7 +114,7 @@ TEST_CASE("The decrement is the mean speed of the step", "[newton]") {
 }
 
 TEST_CASE("The outcome tells how a minimisation ended", "[newton]") {
-  Case c;
+  NewtonCase c;
   NewtonParameters p = tight();
   p.max_steps = 2;
   p.step_size = 0.01;
@@ -123,20 +123,20 @@ TEST_CASE("The outcome tells how a minimisation ended", "[newton]") {
   REQUIRE(r.steps == 2);
   REQUIRE(r.message.find("max_steps = 2") != std::string::npos);
 
-  Case stopped;
+  NewtonCase stopped;
   stopped.observer.stop_after = 3;
   r = stopped.solve(p = tight(), 0.4);
   REQUIRE(r.outcome == Outcome::cancelled);
   REQUIRE(r.iterations == 3);
 
-  Case broken;
+  NewtonCase broken;
   broken.centres(3, 1) = std::nan("");
   r = broken.solve(tight());
   REQUIRE(r.outcome == Outcome::infeasible);
 }
 
 TEST_CASE("The step size stays the same within an implicit step, and altogether without growth", "[newton]") {
-  Case several;
+  NewtonCase several;
   NewtonParameters p = tight();
   p.iterations_per_step = 3;
   several.solve(p, 0.4);
@@ -154,7 +154,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
   REQUIRE(within > 3);
   REQUIRE(between > 0);
 
-  Case constant;
+  NewtonCase constant;
   p = tight();
   p.step_growth = 1;
   p.step_size = 2 * p.step_size_limit;
@@ -164,7 +164,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
 }
 
 TEST_CASE("NaN forces are no equilibrium") {
-  Case c;
+  NewtonCase c;
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<NoForces>(c.centres, 1, 0.4)}},
                          {});
   PlainObjective objective(model);
@@ -177,7 +177,7 @@ TEST_CASE("A Newton matrix with NaN ends the level as stalled and names the vert
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (const PsdBlend blend : {PsdBlend::adaptive, PsdBlend::full})
       for (const double lift : {0.0, 0.1}) {  // of the pin's target: the predictor needs a factor too
-        Case c;
+        NewtonCase c;
         NewtonParameters p = tight();
         p.form = form;
         p.psd_blend = blend;
@@ -196,7 +196,7 @@ TEST_CASE("A Newton matrix with NaN ends the level as stalled and names the vert
 }
 
 TEST_CASE("NaN in the Hessian at a fixed vertex is not part of the Newton matrix", "[newton]") {
-  Case c;
+  NewtonCase c;
   const LevelModel model(c.level, Material(), {{"broken", std::make_shared<BrokenHessian>(c.centres, 0)}},
                          {{0, c.level.rest.vertices.row(0), 0}});
   PlainObjective objective(model);
@@ -233,7 +233,7 @@ class Idle : public LoadStepping {
 TEST_CASE("Steps from an equilibrium in doubles change nothing and do not fail", "[newton]") {
   for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics})
     for (const double away : {0.0, 1e-15}) {
-      Case c;
+      NewtonCase c;
       NewtonParameters p;
       p.form = form;
       const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, 1e7, 0.1)}};
@@ -254,7 +254,7 @@ TEST_CASE("Steps from an equilibrium in doubles change nothing and do not fail",
 
 TEST_CASE("Reusing a factor over several iterations reaches the same minimum with fewer factorisations",
           "[newton]") {
-  Case updated, reused;
+  NewtonCase updated, reused;
   NewtonParameters p = tight();
   p.hessian_update_interval = 1;
   const LevelResult a = updated.solve(p, 0.4);
@@ -267,7 +267,7 @@ TEST_CASE("Reusing a factor over several iterations reaches the same minimum wit
 }
 
 TEST_CASE("An implicit step ends when it is solved, however many iterations it may take", "[newton]") {
-  Case patient;
+  NewtonCase patient;
   NewtonParameters p = tight();
   p.iterations_per_step = 50;
   p.step_size = 0.01;
@@ -290,7 +290,7 @@ TEST_CASE("The smooth part is evaluated once for the same x, and again for anoth
       return PlainObjective::smooth_gradient(x, g);
     }
   };
-  Case c;
+  NewtonCase c;
   const auto model_of = [&](double k) {
     const std::vector<NamedEnergy> wells = {{"wells", std::make_shared<Wells>(c.centres, k, 0)}};
     return std::make_shared<const LevelModel>(c.level, Material(), wells, std::vector<DirichletVertex>());
@@ -317,7 +317,7 @@ TEST_CASE("The smooth part is evaluated once for the same x, and again for anoth
 TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
   // Constant forces on a cloth without pins: it falls without end.
   for (NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
-    Case c;
+    NewtonCase c;
     const LevelModel model(c.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
     PlainObjective objective(model);
     NewtonParameters p;
@@ -331,7 +331,7 @@ TEST_CASE("A cloth that nothing holds is detected, in both forms", "[newton]") {
 }
 
 TEST_CASE("A cloth without any force is at equilibrium: the residual scale has a lower bound") {
-  Case c;
+  NewtonCase c;
   const std::vector<DirichletVertex> dirichlet = {{0, c.level.rest.vertices.row(0), 0}};
   c.centres = c.level.rest.vertices;  // the Dirichlet vertex is at its target
   c.centres.bottomRows(15).array() += 0.01;
@@ -359,7 +359,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
   for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
       for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {
-        Case c;
+        NewtonCase c;
         NewtonParameters p = tight();
         p.linear_solver = solver;
         p.hessian_update_interval = interval;

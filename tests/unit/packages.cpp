@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string text_of(const char* name) { return pages::text_of(fs::path(folders::source()) / name); }
+std::string project_text(const char* name) { return pages::text_of(fs::path(folders::source()) / name); }
 
 std::vector<std::string> packages_of(const char* list) {
   std::vector<std::string> packages;
@@ -55,7 +55,7 @@ TEST_CASE("Makefile, Dockerfile and CI install packages by the lists alone") {
   for (const char* name : {"Makefile", "Dockerfile"}) {
     INFO(name);
     const std::vector<std::string> installed =
-        found(text_of(name), "third_party/setup((?: (?:run|test|use-python))+)[ \n]");
+        found(project_text(name), "third_party/setup((?: (?:run|test|use-python))+)[ \n]");
     CHECK_FALSE(installed.empty());
     for (const std::string& lists : installed) {
       std::istringstream words(lists);
@@ -63,16 +63,16 @@ TEST_CASE("Makefile, Dockerfile and CI install packages by the lists alone") {
         CHECK(fs::exists(fs::path(folders::source()) / "third_party" / ("packages-to-" + list + ".txt")));
     }
     if (std::string(name) == "Makefile")
-      CHECK(found(text_of(name), "(third_party/setup)").size() == installed.size());
+      CHECK(found(project_text(name), "(third_party/setup)").size() == installed.size());
   }
-  CHECK_FALSE(found(text_of(".ci/run"), "(make setup)").empty());
-  CHECK(found(text_of("Makefile"), "(apt-get install)").empty());
-  CHECK(found(text_of(".ci/run"), "(apt-get)").empty());
+  CHECK_FALSE(found(project_text(".ci/run"), "(make setup)").empty());
+  CHECK(found(project_text("Makefile"), "(apt-get install)").empty());
+  CHECK(found(project_text(".ci/run"), "(apt-get)").empty());
 }
 
 TEST_CASE("the Dockerfile is of Debian 12, and its commands are the README's") {
-  const std::string text = text_of("Dockerfile"), makefile = text_of("Makefile"),
-                    readme = text_of("README.md");
+  const std::string text = project_text("Dockerfile"), makefile = project_text("Makefile"),
+                    readme = project_text("README.md");
   CHECK(found(text, "\nFROM ([^\n]+)\n") == std::vector<std::string>{"debian:12"});
   // What the first command needs; everything else is in the lists.
   CHECK(found(text, "apt-get install -y --no-install-recommends ([^&]*) &&") ==

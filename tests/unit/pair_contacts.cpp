@@ -91,7 +91,7 @@ struct OnePair {
 
 double barrier_slope(double s) { return -2 * (s - 1) * std::log(s) - (s - 1) * (s - 1) / s; }
 
-PairPositions random_positions(std::mt19937& random) {
+PairPositions close_positions(std::mt19937& random) {
   std::normal_distribution<double> normal;
   return 0.01 * PairPositions::NullaryExpr([&] { return normal(random); });
 }
@@ -127,7 +127,7 @@ TEST_CASE("derivatives and projections of random pairs") {
   for (const auto kind : {PairKind::point_triangle, PairKind::edge_edge, PairKind::point_plane})
     for (int i = 0; i < 600; ++i) {
       const auto of_cloth = owners(kind)[i % owners(kind).size()];
-      OnePair one(kind, random_positions(random), of_cloth);
+      OnePair one(kind, close_positions(random), of_cloth);
       const Closest nearest = closest(kind, one.at());
       if (one.distance() < 1e-3 || (kind != PairKind::point_plane && inside(nearest) < 0.05)) continue;
       if (i % 2) one.pair.offset = 0.6 * one.distance();
@@ -178,7 +178,7 @@ TEST_CASE("derivatives at gaps of 1e-8 m") {
   std::uniform_real_distribution<double> unit(0.1, 0.4);
   for (int i = 0; i < 100; ++i) {
     const double gap = 1e-8;
-    PairPositions at = random_positions(random);
+    PairPositions at = close_positions(random);
     const PairKind kind = i % 2 ? PairKind::point_triangle : PairKind::edge_edge;
     if (kind == PairKind::point_triangle) {
       const Vector3d n = Vector3d(at.col(2) - at.col(1)).cross(Vector3d(at.col(3) - at.col(1))).normalized();
@@ -232,7 +232,7 @@ TEST_CASE("the mollifier's threshold") {
   std::mt19937 random(5);
   int checked = 0;
   for (int i = 0; i < 100; ++i) {
-    OnePair one(PairKind::edge_edge, random_positions(random));
+    OnePair one(PairKind::edge_edge, close_positions(random));
     if (one.distance() < 1e-3 || inside(closest(one.pair.kind, one.at())) < 0.05) continue;
     one.with_gap_part(0.3);
     const double z = one.parallel();
@@ -257,7 +257,7 @@ TEST_CASE("the force is -κ weight b'(s), along the shortest vector, and sums to
   std::mt19937 random(6);
   std::uniform_real_distribution<double> unit(0.02, 0.98);
   for (int i = 0; i < 200; ++i) {
-    OnePair one(i % 2 ? PairKind::point_triangle : PairKind::edge_edge, random_positions(random));
+    OnePair one(i % 2 ? PairKind::point_triangle : PairKind::edge_edge, close_positions(random));
     if (i % 3 == 0) one.pair.offset = 0.5 * one.distance();
     const double s = unit(random);
     one.with_gap_part(s);
@@ -383,7 +383,7 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
   int checked = 0;
   for (int i = 0; i < 90; ++i) {
     const PairKind kind = static_cast<PairKind>(i % 3);
-    OnePair one(kind, random_positions(random), owners(kind)[(i / 3) % owners(kind).size()]);
+    OnePair one(kind, close_positions(random), owners(kind)[(i / 3) % owners(kind).size()]);
     one.pair.friction = 0.3;
     one.pair.mollifier = i % 2 ? 0 : 2 * one.parallel();
     one.with_gap_part(0.4);

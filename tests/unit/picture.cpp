@@ -12,21 +12,11 @@
 #include "core/app/picture/surface.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "tests/support/flat_sheet.h"
 
 using namespace drape;
 
 namespace {
-
-TriangleMesh flat_sheet(int n) {
-  TriangleMesh mesh{Positions(n * n, 3), Triangles(2 * (n - 1) * (n - 1), 3)};
-  for (int i = 0; i < n * n; ++i) mesh.vertices.row(i) << (i % n) / (n - 1.0), (i / n) / (n - 1.0), 0;
-  for (int i = 0, t = 0; i < n * (n - 1); ++i) {
-    if (i % n == n - 1) continue;
-    mesh.triangles.row(t++) << i, i + 1, i + n + 1;
-    mesh.triangles.row(t++) << i, i + n + 1, i + n;
-  }
-  return mesh;
-}
 
 /// A dome over the unit square, 0.3 high.
 TriangleMesh dome(int n) {

@@ -81,7 +81,7 @@ ConfigNode node_of(const std::string& yaml) {
 }
 
 /// The one error of making a refiner from the text.
-std::string fault(const std::string& yaml) {
+std::string refiner_fault(const std::string& yaml) {
   ConfigErrors errors;
   CHECK_FALSE(make_from<Refiner>(filled(), node_of(yaml), errors));
   REQUIRE(errors.size() == 1);
@@ -131,20 +131,22 @@ TEST_CASE("a node makes the object it names, with its parameters") {
 }
 
 TEST_CASE("faults of a node are reported with their location") {
-  CHECK(fault("lopo") == "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
-  CHECK(fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
-  CHECK(fault("{corner_angle: 3}") ==
+  CHECK(refiner_fault("lopo") ==
+        "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
+  CHECK(refiner_fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
+  CHECK(refiner_fault("{corner_angle: 3}") ==
         "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
-  CHECK(fault("[loop]") ==
+  CHECK(refiner_fault("[loop]") ==
         "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
-  CHECK(fault("{type: loop, corner: 3}") ==
+  CHECK(refiner_fault("{type: loop, corner: 3}") ==
         "a.yaml:1:17: unknown key \"corner\" in loop; known keys are type, corner_angle");
-  CHECK(fault("{type: loop, corner_angel: 3}") ==
+  CHECK(refiner_fault("{type: loop, corner_angel: 3}") ==
         "a.yaml:1:17: unknown key \"corner_angel\" in loop; did you mean \"corner_angle\"?");
-  CHECK(fault("{type: loop, corner_angle: 0}") == "a.yaml:1:31: \"corner_angle\" must be above 0 deg, not 0");
-  CHECK(fault("{type: loop, type: loop}") ==
+  CHECK(refiner_fault("{type: loop, corner_angle: 0}") ==
+        "a.yaml:1:31: \"corner_angle\" must be above 0 deg, not 0");
+  CHECK(refiner_fault("{type: loop, type: loop}") ==
         "a.yaml:1:17: repeated key \"type\" in loop; it is first set at a.yaml:1:5");
-  CHECK(fault("{type: loop, corner_angle: 90}") == "a.yaml:1:4: loop: right angles do not work");
+  CHECK(refiner_fault("{type: loop, corner_angle: 90}") == "a.yaml:1:4: loop: right angles do not work");
   CHECK(alive == 0);
 
   ConfigErrors errors;

@@ -20,23 +20,13 @@
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/topology.h"
 #include "tests/support/declared_metrics.h"
+#include "tests/support/flat_sheet.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-TriangleMesh flat_sheet(int n) {
-  TriangleMesh mesh{Positions(n * n, 3), Triangles(2 * (n - 1) * (n - 1), 3)};
-  for (int i = 0; i < n * n; ++i) mesh.vertices.row(i) << (i % n) / (n - 1.0), (i / n) / (n - 1.0), 0;
-  for (int i = 0, t = 0; i < n * (n - 1); ++i) {
-    if (i % n == n - 1) continue;
-    mesh.triangles.row(t++) << i, i + 1, i + n + 1;
-    mesh.triangles.row(t++) << i, i + n + 1, i + n;
-  }
-  return mesh;
-}
 
 /// The 1→4 split at midpoints, numbered as Refinement is.
 TriangleMesh split(const TriangleMesh& coarse) {
@@ -68,6 +58,8 @@ Positions rippled(const Positions& rest, double waves) {
 Eigen::VectorXd ripple_curvature(const Positions& rest, double waves) {
   return -0.08 * waves * waves * (waves * rest.col(0).array()).sin();
 }
+
+constexpr int picture_width = 300;  // a ninth of the default's time
 
 /// A run of two methods on two levels, in a folder of its own that goes with it.
 struct SampleRun {
@@ -143,7 +135,8 @@ struct SampleRun {
   /// The page without Chart.js and the script, after writing the report.
   std::string page(bool with_pictures = false) const {
     write_file(folder / "results.json", results.dump());
-    write_report(folder, [&] { return !with_pictures; });
+    write_report(
+        folder, [&] { return !with_pictures; }, picture_width);
     const std::string text = read_file(folder / "report.html");
     const std::size_t scripts = text.find("<script>");
     REQUIRE(scripts != std::string::npos);
@@ -156,7 +149,7 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 /// The page without its pictures' bytes, in which any short word may turn up.
-std::string words_of(std::string page) {
+std::string visible_words(std::string page) {
   for (std::size_t at = page.find("base64,"); at != std::string::npos; at = page.find("base64,", at)) {
     at += 7;
     page.erase(at, page.find('"', at) - at);
@@ -204,7 +197,7 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(contains(page, "d<sub>H</sub> is of mean curvature."));
   CHECK(contains(page, "cloth: {size: 1 m}"));
   CHECK(contains(page, "169 vertices"));
-  const std::string words = words_of(page);
+  const std::string words = visible_words(page);
   CHECK(words.size() < page.size() / 2);
   for (const char* bad : {"NaN", ">nan", ">inf", "-inf", "{{", "}}\n", "http:", "https:"}) {
     INFO(bad);
@@ -232,7 +225,7 @@ TEST_CASE("a report that is told to stop skips the remaining pictures, with a no
 TEST_CASE("the pictures of a report are drawn, stored and inlined") {
   const SampleRun run;
   const std::string page = run.page(true);
-  const PictureSet set = draw_pictures(read_run(run.folder));
+  const PictureSet set = draw_pictures(read_run(run.folder), {}, picture_width);
   CHECK(set.notes.empty());
   REQUIRE(set.fields.size() == 2);
   CHECK(set.fields[0].on_rest);
@@ -242,6 +235,8 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
                  "rest shape."));
   CHECK(contains(page, "<b>pcs</b>, level 0 to 1: d<sub>H</sub><sup>fit</sup> = 13.6"));
   REQUIRE(set.pictures.size() == 2 * (2 + 1 + 1 + 2));
+  CHECK(set.find("pcs_l0.png")->image.width == 300);
+  CHECK(set.find("pcs_l0.png")->image.height == 233);
   for (const auto& [name, picture] : set.pictures) {
     INFO(name);
     const std::string file = read_file(run.folder / "pictures" / name);
@@ -286,7 +281,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     newton["seconds"] = std::nan("");
     const std::string page = run.page();
     CHECK(contains(page, "<td>13.6</td><td>–</td>"));  // nothing to compare with: not bold
-    CHECK_FALSE(contains(words_of(page), "NaN"));
+    CHECK_FALSE(contains(visible_words(page), "NaN"));
   }
   SECTION("no fields, steps, configuration and rest shapes") {
     for (const char* name : {"fields", "rest", "levels", "steps.csv", "config.yaml"})
@@ -310,7 +305,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     CHECK(contains(page, "newton_l1.ply"));
     CHECK(contains(page, "pcs_l1.ply: vertex 5 has a coordinate that is not finite"));
     CHECK(contains(page, "Not drawn"));
-    const PictureSet pictures = draw_pictures(read_run(run.folder));
+    const PictureSet pictures = draw_pictures(read_run(run.folder), {}, picture_width);
     CHECK(pictures.find("pcs_l1.png") == nullptr);
     CHECK(pictures.find("pcs_l0_on_l1.png") == nullptr);
     REQUIRE(pictures.find("pcs_l0.png"));

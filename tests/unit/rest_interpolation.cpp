@@ -10,7 +10,7 @@ using namespace drape;
 
 namespace {
 
-Level sheet() { return Level::of(0, random_triangulation({1, 0.7}, 60, 3)); }
+Level scattered_sheet() { return Level::of(0, random_triangulation({1, 0.7}, 60, 3)); }
 
 /// The split mesh's rest positions, each moved in the sheet's plane by up to 1 cm either way.
 Positions moved_rest(const Level& coarse) {
@@ -24,7 +24,7 @@ Positions moved_rest(const Level& coarse) {
 }  // namespace
 
 TEST_CASE("linear interpolation equals midpoint weights for vertices that rest at edge midpoints") {
-  const Level coarse = sheet();
+  const Level coarse = scattered_sheet();
   const ProlongationMatrix midpoints = midpoint_refinement(coarse).weights;
   const Positions rest = midpoints * coarse.rest.vertices;
   const Positions rounded = rest.array() * (1 + 1e-14);
@@ -34,7 +34,7 @@ TEST_CASE("linear interpolation equals midpoint weights for vertices that rest a
 }
 
 TEST_CASE("linear interpolation reproduces rest positions, also outside the border") {
-  const Level coarse = sheet();
+  const Level coarse = scattered_sheet();
   const Positions rest = moved_rest(coarse);
   const ProlongationMatrix linear = rest_interpolation(coarse, rest);
   CHECK((linear * coarse.rest.vertices - rest).cwiseAbs().maxCoeff() <= 1e-14);

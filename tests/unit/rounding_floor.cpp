@@ -18,11 +18,11 @@ struct Fault {
   double all = 1, load = 1;
 };
 
-/// Springs ½ k (|x_a − x_b| − L)² along all edges and a constant force on every vertex: a stiff, narrow,
+/// EdgeSprings ½ k (|x_a − x_b| − L)² along all edges and a constant force on every vertex: a stiff, narrow,
 /// hanging strip.
-class Springs : public Energy, public BoundEnergy {
+class EdgeSprings : public Energy, public BoundEnergy {
  public:
-  Springs(const TriangleMesh& rest, double k, Vector3 load) : rest_(rest.vertices), k_(k), load_(load) {
+  EdgeSprings(const TriangleMesh& rest, double k, Vector3 load) : rest_(rest.vertices), k_(k), load_(load) {
     const Topology topology = Topology::of(rest.triangles, static_cast<int>(rest.vertices.rows()));
     for (int i = 0; i < rest_.rows(); ++i)
       for (const int* j = topology.vertex_vertices.begin(i); j != topology.vertex_vertices.end(i); ++j)
@@ -32,7 +32,7 @@ class Springs : public Energy, public BoundEnergy {
 
   EnergyRole role() const override { return EnergyRole::membrane; }
   std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override {
-    return std::make_unique<Springs>(*this);
+    return std::make_unique<EdgeSprings>(*this);
   }
   double value(const Positions& x) const override {
     double sum = -(x * load_).sum();
@@ -92,12 +92,12 @@ class Springs : public Energy, public BoundEnergy {
 /// A strip of 1 m by 5 mm that hangs along x from its first column.
 struct HangingStrip {
   Level level = Level::of(0, grid({1, 0.005}, 41, 2, Diagonals::one_way));
-  std::shared_ptr<Springs> springs;
+  std::shared_ptr<EdgeSprings> springs;
   LevelModel model;
   PlainObjective objective;
 
   explicit HangingStrip(double k, Fault fault = {})
-      : springs(std::make_shared<Springs>(level.rest, k, Vector3(1e-3, 0, 0))),
+      : springs(std::make_shared<EdgeSprings>(level.rest, k, Vector3(1e-3, 0, 0))),
         model(level, Material(), {{"springs", (springs->fault = fault, springs)}}, dirichlet(level)),
         objective(model) {}
 

@@ -75,7 +75,7 @@ double largest_distance(const Positions& x, const Positions& y) {
 /// Of coordinates of a metre [m]: the tests' sums may round otherwise than the library's.
 constexpr double rounding = 1e-15;
 
-const std::string ball = "{type: shapes, obstacles: [{name: ball, shape: sphere, radius: 0.3}]}";
+const std::string ball_contact = "{type: shapes, obstacles: [{name: ball, shape: sphere, radius: 0.3}]}";
 
 /// A square that lies on a dome around the ball, as low as its triangles can without touching it.
 Positions over_the_ball(const TwoLevels& cloth) {
@@ -133,7 +133,7 @@ TEST_CASE("Without contact and limits the refined state is the prolonged one, wi
 }
 
 TEST_CASE("If contact and limits allow, the refined state is the prolonged one") {
-  const TwoLevels cloth(grid({0.6, 0.6}, 5, 5, Diagonals::one_way), {ball, "ipc"},
+  const TwoLevels cloth(grid({0.6, 0.6}, 5, 5, Diagonals::one_way), {ball_contact, "ipc"},
                         {"{type: strain_limit, limit: 1.5}"});
   Positions x = cloth.starts[0];
   for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) = 0.5 + 0.02 * std::sin(3.0 * i);  // over the ball
@@ -146,7 +146,7 @@ TEST_CASE("If contact and limits allow, the refined state is the prolonged one")
 }
 
 TEST_CASE("A sheet around a ball is refined without touching it") {
-  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {ball});
+  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {ball_contact});
   const Positions x = over_the_ball(cloth), target = cloth.target(x);
   REQUIRE(cloth.intersections(0, x) == 0);
   REQUIRE(cloth.intersections(1, target) > 20);
@@ -209,8 +209,8 @@ TEST_CASE("A stretched disc is refined within its strain limit, although refinem
 }
 
 TEST_CASE("Strain limit, obstacle and self-contact at once") {
-  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way), {"{type: ipc, friction: 0.2}", ball},
-                        {"{type: strain_limit, limit: 1.2}"});
+  const TwoLevels cloth(grid({0.6, 0.6}, 9, 9, Diagonals::one_way),
+                        {"{type: ipc, friction: 0.2}", ball_contact}, {"{type: strain_limit, limit: 1.2}"});
   const Positions x = over_the_ball(cloth);
   REQUIRE(cloth.violations(0, x) == 0);
   REQUIRE(cloth.intersections(1, cloth.target(x)) > 0);
@@ -286,7 +286,7 @@ TEST_CASE("The cloth follows a vertex that is pinned on the finer level alone, w
 }
 
 TEST_CASE("A pin that cannot reach its target moves there as far as contact allows") {
-  TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {ball}, {}, {12});
+  TwoLevels cloth(grid({0.4, 0.4}, 5, 5, Diagonals::one_way), {ball_contact}, {}, {12});
   for (Positions& start : cloth.starts) start.rowwise() += Eigen::RowVector3d(-0.2, -0.2, 0.31);
   const Positions x = cloth.starts[0];
   Eigen::Vector3d target = cloth.starts[1].row(12);

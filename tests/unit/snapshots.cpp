@@ -9,16 +9,17 @@ using namespace drape;
 
 namespace {
 
-Positions state(int iteration) { return Positions::Constant(4, 3, iteration / 3.0); }
+Positions positions_at(int iteration) { return Positions::Constant(4, 3, iteration / 3.0); }
 
 /// The iterations that are kept of so many.
 std::vector<int> kept(int most, int iterations) {
   SnapshotRecorder snapshots(most);
   snapshots.begin_level();
-  for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, state(k));
+  for (int k = 1; k <= iterations; ++k) snapshots.iteration({0.1 * k, k, 5.0 * k}, positions_at(k));
   std::vector<int> of;
-  for (const Snapshot& snapshot : snapshots.end_level({0.1 * iterations, iterations, 0}, state(iterations))) {
-    CHECK((snapshot.x - state(snapshot.cost.iterations)).norm() == 0);
+  for (const Snapshot& snapshot :
+       snapshots.end_level({0.1 * iterations, iterations, 0}, positions_at(iterations))) {
+    CHECK((snapshot.x - positions_at(snapshot.cost.iterations)).norm() == 0);
     of.push_back(snapshot.cost.iterations);
   }
   return of;
@@ -46,12 +47,12 @@ TEST_CASE("snapshots are spread evenly, never more than asked for, the last stat
 TEST_CASE("a snapshots file reads back in single precision; one cut short or damaged is refused") {
   const Scratch folder;
   const std::filesystem::path file = folder / "f.bin";
-  const std::uint32_t checksum = write_snapshots(file, {{{}, state(1)}, {{}, state(2)}});
+  const std::uint32_t checksum = write_snapshots(file, {{{}, positions_at(1)}, {{}, positions_at(2)}});
   CHECK(std::filesystem::file_size(file) == 2 * 4 * 3 * 4);
   const SnapshotFile read(file, 2, 4, checksum);
   REQUIRE(read.count() == 2);
-  CHECK((read.positions(0) - state(1)).norm() < 1e-6);
-  CHECK((read.positions(1) - state(2)).norm() < 1e-6);
+  CHECK((read.positions(0) - positions_at(1)).norm() < 1e-6);
+  CHECK((read.positions(1) - positions_at(2)).norm() < 1e-6);
   CHECK(SnapshotFile(file, 2, 4, std::nullopt).count() == 2);
   CHECK_THROWS_WITH(SnapshotFile(file, 2, 5, checksum),
                     Catch::Matchers::EndsWith("f.bin: holds 96 bytes, not 2 snapshots of 5 vertices"));

@@ -17,7 +17,7 @@ ConfigNode parsed(const std::string& yaml) {
   return node;
 }
 
-std::string fault(const std::string& yaml) {
+std::string parse_fault(const std::string& yaml) {
   ConfigErrors errors;
   CHECK(parse_yaml(yaml, "f", errors).kind == ConfigNode::Kind::null);
   REQUIRE(errors.size() == 1);
@@ -69,30 +69,31 @@ TEST_CASE("null, quoted and tagged scalars are told apart") {
 }
 
 TEST_CASE("invalid configs are reported with the location") {
-  CHECK(fault("a: 1\nb: [1, 2\nc: 3\n") == "f:3:2: not valid YAML: end of sequence flow not found");
-  CHECK(fault("a: 1\n  b: 2\n") == "f:2:4: not valid YAML: illegal map value");
-  CHECK(fault("a: *none\n") == "f:1:4: not valid YAML: the referenced anchor is not defined");
-  CHECK(fault("") == "f: is empty; a config is a map of keys and values");
-  CHECK(fault("# only a comment\n") == "f: is empty; a config is a map of keys and values");
-  CHECK(fault("- a\n- b\n") == "f:1:1: a config must begin with a map of keys and values");
-  CHECK(fault("word") == "f:1:1: a config must begin with a map of keys and values");
-  CHECK(fault("a: 1\n---\nb: 2\n") == "f:3:1: a second document begins here; a config is one");
+  CHECK(parse_fault("a: 1\nb: [1, 2\nc: 3\n") == "f:3:2: not valid YAML: end of sequence flow not found");
+  CHECK(parse_fault("a: 1\n  b: 2\n") == "f:2:4: not valid YAML: illegal map value");
+  CHECK(parse_fault("a: *none\n") == "f:1:4: not valid YAML: the referenced anchor is not defined");
+  CHECK(parse_fault("") == "f: is empty; a config is a map of keys and values");
+  CHECK(parse_fault("# only a comment\n") == "f: is empty; a config is a map of keys and values");
+  CHECK(parse_fault("- a\n- b\n") == "f:1:1: a config must begin with a map of keys and values");
+  CHECK(parse_fault("word") == "f:1:1: a config must begin with a map of keys and values");
+  CHECK(parse_fault("a: 1\n---\nb: 2\n") == "f:3:1: a second document begins here; a config is one");
   // YAML::LoadAll makes documents of these for ever.
-  CHECK(fault("!:,") == "f:1:3: a second document begins here; a config is one");
-  CHECK(fault(",") == "f:1:1: a second document begins here; a config is one");
-  CHECK(fault(",0],[a") == "f:1:1: a second document begins here; a config is one");
-  CHECK(fault("[1, 2]: 3\n") == "f:1:1: a key must be a word");
-  CHECK(fault("a: !color 5\n") == "f:1:4: tag \"!color\" is not supported; take it out");
+  CHECK(parse_fault("!:,") == "f:1:3: a second document begins here; a config is one");
+  CHECK(parse_fault(",") == "f:1:1: a second document begins here; a config is one");
+  CHECK(parse_fault(",0],[a") == "f:1:1: a second document begins here; a config is one");
+  CHECK(parse_fault("[1, 2]: 3\n") == "f:1:1: a key must be a word");
+  CHECK(parse_fault("a: !color 5\n") == "f:1:4: tag \"!color\" is not supported; take it out");
 }
 
 TEST_CASE("infinite and huge aliases are refused") {
-  CHECK(fault("a: &a [*a, *a]\n") == "f:1:4: too many nested or repeated nodes; check the aliases");
+  CHECK(parse_fault("a: &a [*a, *a]\n") == "f:1:4: too many nested or repeated nodes; check the aliases");
   std::string laughs = "a0: &a0 [x]\n";
   for (int i = 1; i < 12; ++i) {
     const std::string n = std::to_string(i), m = "*a" + std::to_string(i - 1);
     laughs += "a" + n + ": &a" + n + " [" + m + ", " + m + ", " + m + ", " + m + "]\n";
   }
-  CHECK(fault(laughs).find("too many nested or repeated nodes; check the aliases") != std::string::npos);
+  CHECK(parse_fault(laughs).find("too many nested or repeated nodes; check the aliases") !=
+        std::string::npos);
 }
 
 TEST_CASE("files are read with their name, and unreadable ones reported") {

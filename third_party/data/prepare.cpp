@@ -8,18 +8,15 @@
 // staying in front; ALPHA, OFFSET of CGAL's alpha wrapping as fractions of IN's bounding-box diagonal, 0 0
 // for none. Prints counts as the inside of a JSON object. CGAL's algorithms: Surface_mesh_simplification with
 // probabilistic plane quadrics (Trettner and Kobbelt 2020), alpha_wrap_3 (Portaneri et al. 2022).
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh/IO/PLY.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_filter.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_probabilistic_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
-#include <CGAL/alpha_wrap_3.h>
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
 
 #include <array>
@@ -32,12 +29,14 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/mesh/alpha_wrap.h"
+
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Kernel = drape::ExactPredicates;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
-using Mesh = CGAL::Surface_mesh<Point>;
+using Mesh = drape::SurfaceMesh;
 namespace pmp = CGAL::Polygon_mesh_processing;
 namespace sms = CGAL::Surface_mesh_simplification;
 
@@ -50,6 +49,17 @@ std::size_t self_intersections(const Mesh& mesh) {
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
   pmp::self_intersections(mesh, std::back_inserter(pairs));
   return pairs.size();
+}
+
+Mesh wrap(const Mesh& mesh, double alpha, double offset) {
+  std::vector<Point> points;
+  for (const Mesh::Vertex_index v : mesh.vertices()) points.push_back(mesh.point(v));
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const Mesh::Face_index f : mesh.faces()) {
+    const Mesh::Halfedge_index h = mesh.halfedge(f);
+    triangles.push_back({mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))});
+  }
+  return drape::alpha_wrap(points, triangles, alpha, offset);
 }
 
 void decimate(Mesh& mesh, int faces) {
@@ -103,9 +113,7 @@ void prepare(char** words) {
             << ", \"input_faces\": " << mesh.number_of_faces();
   if (const double alpha = number(8); alpha > 0) {
     const double size = diagonal(mesh);
-    Mesh wrapped;
-    CGAL::alpha_wrap_3(mesh, alpha * size, number(9) * size, wrapped);
-    mesh = wrapped;
+    mesh = wrap(mesh, alpha * size, number(9) * size);
     std::cout << ", \"wrapped_faces\": " << mesh.number_of_faces();
   }
   require(CGAL::is_closed(mesh), "has a border: give ALPHA and OFFSET, so that it is wrapped");

@@ -7,6 +7,7 @@
 
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/report/picture_scene.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -36,13 +37,17 @@ std::string fault_of_direction(const std::string& text) {
 
 std::string fault_of_width(const std::string& text) {
   const std::optional<int> number = parse_integer(text);
-  return number && *number >= least_export_width && *number <= greatest_export_width
+  return number && *number >= least_picture_width && *number <= greatest_picture_width
              ? ""
-             : "must be " + std::to_string(least_export_width) + " to " +
-                   std::to_string(greatest_export_width) + " pixels, not " + excerpt(text);
+             : "must be " + std::to_string(least_picture_width) + " to " +
+                   std::to_string(greatest_picture_width) + " pixels, not " + excerpt(text);
 }
 
 }  // namespace
+
+void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help) {
+  command.add_option("--width", width, help)->check(fault_of_width)->type_name("PIXELS");
+}
 
 ExportCommand::ExportCommand(CLI::App& app)
     : command_(app.add_subcommand("export", "write states of a run as glTF, OBJ, PLY, VTP or PNG")) {
@@ -58,9 +63,7 @@ ExportCommand::ExportCommand(CLI::App& app)
   command_->add_flag("--frames", options_.frames,
                      "with .glb: the recorded snapshots of one level (default: the finest) as an animation; "
                      "with .png: those of every level, coarse to fine, as numbered pictures");
-  command_->add_option("--width", options_.picture.width, "with .png: width in pixels (default: 1800)")
-      ->check(fault_of_width)
-      ->type_name("PIXELS");
+  add_picture_width(*command_, options_.picture.width, "with .png: width in pixels (default: 1800)");
   command_
       ->add_option_function<std::string>(
           "--view", [this](const std::string& text) { options_.picture.direction = direction_of(text); },

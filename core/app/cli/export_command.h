@@ -1,11 +1,15 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "core/app/report/run_export.h"
 
 namespace drape {
+
+/// Adds --width, of pictures [pixels].
+void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help);
 
 /// `drape export`: writes states of a run for other programs.
 class ExportCommand {

@@ -126,18 +126,21 @@ int reference(const Registry& registry) {
   return exit_done;
 }
 
-int report(const std::vector<std::filesystem::path>& folders, std::filesystem::path page) {
+int report(const std::vector<std::filesystem::path>& folders, std::filesystem::path page,
+           std::optional<int> picture_width) {
   const bool several = folders.size() > 1 || is_sweep(folders.front());
   if (!several && !page.empty())
     throw std::runtime_error(
         "--out is for the page of several runs; a run's own is report.html in its folder");
+  if (several && picture_width)
+    throw std::runtime_error("--width is for the pictures of one run; a page of several runs has none");
   if (page.empty()) page = folders.front() / "report.html";
   if (folders.size() > 1 && page == folders.front() / "report.html")
     throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
   if (several)
     write_runs_report(folders, page);
   else
-    write_report(folders.front());
+    write_report(folders.front(), {}, picture_width);
   std::cout << "report: " << page.string() << "\n";
   return exit_done;
 }
@@ -176,6 +179,8 @@ int main_checked(int argc, char** argv) {
   report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
   report_command->add_option("-o,--out", out,
                              "page of several runs (default: report.html in a sweep's folder)");
+  std::optional<int> picture_width;
+  add_picture_width(*report_command, picture_width, "width of a run's pictures in pixels (default: 900)");
   CLI::App* compare_command = app.add_subcommand(
       "compare", "compare two runs or sweeps: what became faster, slower, better or worse");
   show_example(*compare_command, "drape compare results/before results/after --bound seconds=1.1");
@@ -236,7 +241,7 @@ int main_checked(int argc, char** argv) {
   if (view.chosen()) return view.run();
   if (export_command.chosen()) return export_command.run();
   if (*report_command) {
-    return report({report_folders.begin(), report_folders.end()}, out);
+    return report({report_folders.begin(), report_folders.end()}, out, picture_width);
   }
   if (*compare_command) {
     const RunCollection before = read_runs({compared[0]}), after = read_runs({compared[1]});

@@ -7,19 +7,29 @@ namespace drape {
 
 namespace {
 
-constexpr int map_size = 700;  // [pixels]
+PictureFrame frame_of(int width, int height) {
+  PictureFrame frame;
+  frame.aspect = double(width) / height;
+  return frame;
+}
 
 }  // namespace
 
-PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, PictureSet& set)
-    : run_(run), cancelled_(cancelled), set_(set), scene_(run, set.notes) {}
+PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, int width,
+                             PictureSet& set)
+    : run_(run),
+      cancelled_(cancelled),
+      width_(width),
+      height_(picture_height(width)),
+      set_(set),
+      scene_(run, set.notes, frame_of(width_, height_)) {}
 
 std::optional<TriangleMesh> PictureCanvas::try_mesh(const std::string& name) {
   return try_run_mesh(run_, name, set_.notes);
 }
 
 void PictureCanvas::draw(const std::string& name, const Drawing& drawing) {
-  if (!renderer_) renderer_ = std::make_unique<Renderer>(picture_width, picture_height, cancelled_);
+  if (!renderer_) renderer_ = std::make_unique<Renderer>(width_, height_, cancelled_);
   keep(name, scene_.draw(*renderer_, drawing));
 }
 
@@ -30,7 +40,7 @@ void PictureCanvas::draw_outlined(const std::string& name, Image picture, const 
 }
 
 void PictureCanvas::draw_map(const std::string& name, const TriangleMesh& flat, const Colours& colours) {
-  if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(map_size, map_size, cancelled_);
+  if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(height_, height_, cancelled_);
   keep(name, map_renderer_->draw({flat, nullptr, &colours, false, false}, Camera::facing(flat, 1)));
 }
 

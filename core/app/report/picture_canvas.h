@@ -14,8 +14,9 @@ namespace drape {
 /// Draws a report's pictures into the set that takes them, and into files.
 class PictureCanvas {
  public:
-  /// `run`, `cancelled` and `set` must outlive the canvas. What cannot be read becomes a note of the set.
-  PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, PictureSet& set);
+  /// Pictures are `width` pixels wide. `run`, `cancelled` and `set` must outlive the canvas. What cannot be
+  /// read becomes a note of the set.
+  PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, int width, PictureSet& set);
 
   const PictureScene& scene() const { return scene_; }
   /// A mesh of the run's folder; empty if there is none, with a note if it cannot be read.
@@ -34,6 +35,7 @@ class PictureCanvas {
 
   const RunData& run_;
   const std::function<bool()>& cancelled_;
+  const int width_, height_;
   PictureSet& set_;
   const PictureScene scene_;
   std::unique_ptr<Renderer> renderer_, map_renderer_;

@@ -1,6 +1,5 @@
 #include "core/app/report/picture_export.h"
 
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -16,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int default_width = 2 * picture_width;
+constexpr int default_width = 2 * default_picture_width;
 
 /// The final state of a level, or all its snapshots, the last of which is that state.
 std::vector<TriangleMesh> states_of(const RunData& run, const MethodRecord& method, const LevelRecord& level,
@@ -57,7 +56,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
     for (const fs::path& each : files) refuse_existing(each);
 
   const int width = options.width.value_or(default_width);
-  const int height = static_cast<int>(std::lround(double(width) * picture_height / picture_width));
+  const int height = picture_height(width);
   PictureFrame frame;
   if (options.direction) frame.direction = *options.direction;
   frame.aspect = double(width) / height;

@@ -9,12 +9,9 @@
 
 namespace drape {
 
-/// Least and greatest width of an exported picture [pixels].
-inline constexpr int least_export_width = 16, greatest_export_width = 8000;
-
 /// How exported pictures look; the defaults are a report's, at twice the size.
 struct PictureOptions {
-  std::optional<int> width;                  ///< [pixels]; the height is 7/9 of it
+  std::optional<int> width;                  ///< [pixels]
   std::optional<Eigen::Vector3d> direction;  ///< towards the camera; of any length but 0
   bool outline = false;                      ///< draw the outline of the method's coarsest state
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "core/app/picture/surface.h"
@@ -9,6 +10,8 @@
 #include "core/kernel/mesh/io.h"
 
 namespace drape {
+
+int picture_height(int width) { return static_cast<int>(std::lround(width * 7.0 / 9)); }
 
 namespace {
 

@@ -12,8 +12,10 @@
 
 namespace drape {
 
-/// Size of a report's pictures [pixels].
-inline constexpr int picture_width = 900, picture_height = 700;
+/// Width of a run's pictures [pixels]: a report's unless another is asked for, and what may be asked for.
+inline constexpr int default_picture_width = 900, least_picture_width = 16, greatest_picture_width = 8000;
+/// Height of a picture of that width [pixels].
+int picture_height(int width);
 
 /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read, or if a triangle names a
 /// vertex that is not there.
@@ -32,8 +34,8 @@ Eigen::Vector3f outline_colour();
 struct PictureFrame {
   /// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
   Eigen::Vector3d direction{0.55, -1.0, 0.68};
-  double aspect = double(picture_width) / picture_height;  ///< width over height
-  std::vector<const Positions*> further = {};              ///< in view, beside the run's final states
+  double aspect = 9.0 / 7;                     ///< width over height
+  std::vector<const Positions*> further = {};  ///< in view, beside the run's final states
 };
 
 /// What a run's pictures have in common: its final states and obstacles, the floor, and one camera around

@@ -81,12 +81,13 @@ std::optional<LevelPair> widest_levels(const MethodRecord& method) {
   return widest && widest->fine > widest->coarse ? widest : std::nullopt;
 }
 
-PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled) {
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled,
+                         std::optional<int> width) {
   PictureSet set;
   make_folder(run.folder / "pictures");
   for (const DeclaredMetric& metric : run.metrics)
     for (const MetricPicture& picture : metric.declaration.pictures) set.fields.push_back({picture});
-  PictureCanvas canvas(run, cancelled, set);
+  PictureCanvas canvas(run, cancelled, width.value_or(default_picture_width), set);
   try {
     draw_states(run, canvas);
     draw_outlines(run, canvas, set);

@@ -56,9 +56,10 @@ const ConsistencyRecord* widest_pair(const MethodRecord& method);
 /// The coarsest and the finest level with a final state; none for fewer than two.
 std::optional<LevelPair> widest_levels(const MethodRecord& method);
 
-/// Draws all pictures of a run and writes them to DIR/pictures. A missing or unreadable mesh becomes a note.
-/// Once `cancelled` (may be empty) returns true, it skips the remaining pictures, with a note. Throws
-/// std::runtime_error if the folder is not writable.
-PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled = {});
+/// Draws all pictures of a run, `width` (default: 900) pixels wide, and writes them to DIR/pictures. A
+/// missing or unreadable mesh becomes a note. Once `cancelled` (may be empty) returns true, it skips the
+/// remaining pictures, with a note. Throws std::runtime_error if the folder is not writable.
+PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled = {},
+                         std::optional<int> width = {});
 
 }  // namespace drape

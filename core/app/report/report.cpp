@@ -1,5 +1,8 @@
 #include "core/app/report/report.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/app/report/chart_data.h"
 #include "core/app/report/metric_columns.h"
 #include "core/app/report/pictures.h"
@@ -20,31 +23,31 @@ using html::number_text;
 constexpr std::size_t most_picture_bytes =
     11'000'000;  // as PNG; a third more in the page, beside the 3D data
 
-/// Pictures as data URLs, at half size when all of them would make the page too large.
+/// Pictures as data URLs, shrunk when all of them would make the page too large.
 class Gallery {
  public:
   explicit Gallery(const PictureSet& set) : set_(set) {
     std::size_t bytes = 0;
     for (const auto& [name, picture] : set.pictures) bytes += picture.png.size();
-    halve_ = bytes > most_picture_bytes;
+    shrink_by_ = std::max(1, static_cast<int>(std::ceil(std::sqrt(double(bytes) / most_picture_bytes))));
   }
 
   std::string shown(const std::string& name, const std::string& alt, const std::string& caption) const {
     const Picture* picture = set_.find(name);
     if (!picture)
       return "<figure class=\"absent\"><p>no picture</p><figcaption>" + caption + "</figcaption></figure>\n";
-    const Image& full = picture->image;
-    const Image half = halve_ ? shrink(full, 2) : Image();
-    const std::string data = base64(halve_ ? encode_png(half) : picture->png);
-    return "<figure><img width=\"" + std::to_string(halve_ ? half.width : full.width) + "\" height=\"" +
-           std::to_string(halve_ ? half.height : full.height) + "\" alt=\"" + escape(alt) +
-           "\" src=\"data:image/png;base64," + data + "\"><figcaption>" + caption +
-           "</figcaption></figure>\n";
+    const bool whole = shrink_by_ == 1;
+    const Image smaller = whole ? Image() : shrink(picture->image, shrink_by_);
+    const Image& image = whole ? picture->image : smaller;
+    const std::string data = base64(whole ? picture->png : encode_png(image));
+    return "<figure><img width=\"" + std::to_string(image.width) + "\" height=\"" +
+           std::to_string(image.height) + "\" alt=\"" + escape(alt) + "\" src=\"data:image/png;base64," +
+           data + "\"><figcaption>" + caption + "</figcaption></figure>\n";
   }
 
  private:
   const PictureSet& set_;
-  bool halve_ = false;
+  int shrink_by_ = 1;
 };
 
 std::string grid_open(std::size_t columns) {
@@ -202,9 +205,10 @@ std::string notes(const PictureSet& set) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& run_directory, const std::function<bool()>& cancelled) {
+void write_report(const std::filesystem::path& run_directory, const std::function<bool()>& cancelled,
+                  std::optional<int> picture_width) {
   const RunData run = read_run(run_directory);
-  PictureSet set = draw_pictures(run, cancelled);
+  PictureSet set = draw_pictures(run, cancelled, picture_width);
   const Gallery gallery(set);
   const ReportView view = report_view(run);
   set.notes.insert(set.notes.end(), view.notes.begin(), view.notes.end());

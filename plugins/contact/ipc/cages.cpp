@@ -1,9 +1,6 @@
 #include "plugins/contact/ipc/cages.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Side_of_triangle_mesh.h>
-#include <CGAL/Surface_mesh.h>
-#include <CGAL/alpha_wrap_3.h>
 
 #include <Eigen/Geometry>
 #include <array>
@@ -11,14 +8,13 @@
 #include <vector>
 
 #include "core/kernel/contact/intersections.h"
+#include "core/kernel/mesh/alpha_wrap.h"
 #include "core/kernel/mesh/check.h"
 
 namespace drape::ipc {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_3;
-using SurfaceMesh = CGAL::Surface_mesh<Point>;
+using Point = ExactPredicates::Point_3;
 
 Point point(const TriangleMesh& mesh, int v) {
   return {mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
@@ -46,8 +42,7 @@ std::shared_ptr<const ValidatedMesh> wrap(const TriangleMesh& mesh, double alpha
   for (const auto& t : mesh.triangles.rowwise())
     faces.push_back(
         {static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
-  SurfaceMesh wrapped;
-  CGAL::alpha_wrap_3(points, faces, alpha, offset, wrapped);
+  SurfaceMesh wrapped = alpha_wrap(points, faces, alpha, offset);
   wrapped.collect_garbage();
   TriangleMesh cage;
   cage.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
@@ -112,7 +107,7 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
   for (const auto& t : outer.mesh.triangles.rowwise())
     surface.add_face(SurfaceMesh::Vertex_index(t[0]), SurfaceMesh::Vertex_index(t[1]),
                      SurfaceMesh::Vertex_index(t[2]));
-  const CGAL::Side_of_triangle_mesh<SurfaceMesh, Kernel> side(surface);
+  const CGAL::Side_of_triangle_mesh<SurfaceMesh, ExactPredicates> side(surface);
   for (const int v : inner.topology.components())
     if (side(point(inner.mesh, v)) != CGAL::ON_BOUNDED_SIDE)
       return "that one's vertex " + std::to_string(v) + " is outside";

@@ -1,6 +1,5 @@
 // The barrier between vertices and a surface of triangles.
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
@@ -11,6 +10,7 @@
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/obstacle.h"
+#include "tests/support/eigenvalues.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;
@@ -182,13 +182,12 @@ TEST_CASE("surface: derivatives and projections") {
       CHECK((differences(value, p.transpose(), size).transpose() - g).norm() <= 1e-5 * (g.norm() + 1 / dhat));
       if (steady) CHECK((differences(by_x, p.transpose(), size) - h).norm() <= 1e-4 * h.norm());
       for (const NearestFeature& f : scene.contacts(p).features) negative += f.coefficient < 0;
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(h);
-      indefinite += eigen.eigenvalues()[0] < -1e-9 * h.norm();
+      const Eigenpairs eigen = eigenpairs_of(h);
+      indefinite += eigen.values[0] < -1e-9 * h.norm();
       for (const auto projection : {Projection::clamp, Projection::absolute}) {
-        const Vector values = projection == Projection::clamp ? Vector(eigen.eigenvalues().cwiseMax(0))
-                                                              : Vector(eigen.eigenvalues().cwiseAbs());
-        const Eigen::Matrix3d expected =
-            eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+        const Vector values = projection == Projection::clamp ? Vector(eigen.values.cwiseMax(0))
+                                                              : Vector(eigen.values.cwiseAbs());
+        const Eigen::Matrix3d expected = eigen.vectors * values.asDiagonal() * eigen.vectors.transpose();
         CHECK((scene.hessian(p, projection) - expected).norm() <= 1e-12 * h.norm());
       }
     }
