@@ -1,18 +1,12 @@
 # What `make lint` reads: one file for all plugins of a kind, since most of its time goes to their common headers. There each
-# plugin has a name of its own for the two functions that DRAPE_PLUGIN defines. Files that include CGAL stay alone, as in
-# the build.
+# plugin has a name of its own for the two functions that DRAPE_PLUGIN defines.
 foreach(folder IN LISTS folders)
   file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/test_[^/]*$")
   string(REPLACE / _ plugin ${folder})
   get_filename_component(kind ${folder} DIRECTORY)
+  list(APPEND kinds ${kind})
   foreach(source IN LISTS sources)
-    file(STRINGS ${source} cgal REGEX "^#include <CGAL/")
-    if(cgal)
-      list(APPEND alone ${source})
-      continue()
-    endif()
-    list(APPEND kinds ${kind})
     string(APPEND text_of_${kind} "#define drape_plugin ${plugin}_plugin\n#define drape_register_entries ${plugin}_entries\n"
            "#include \"${source}\"\n#undef drape_plugin\n#undef drape_register_entries\n")
   endforeach()
@@ -20,9 +14,8 @@ endforeach()
 list(REMOVE_DUPLICATES kinds)
 foreach(kind IN LISTS kinds)
   file(CONFIGURE OUTPUT lint_${kind}.cpp CONTENT "${text_of_${kind}}" @ONLY)
-  list(APPEND alone ${CMAKE_CURRENT_BINARY_DIR}/lint_${kind}.cpp)
+  list(APPEND files ${CMAKE_CURRENT_BINARY_DIR}/lint_${kind}.cpp)
 endforeach()
 set(CMAKE_UNITY_BUILD OFF)
-add_library(drape_lint OBJECT ${alone})
+add_library(drape_lint OBJECT ${files})
 target_link_libraries(drape_lint PRIVATE drape drape_flags)
-drape_link_what_it_includes(drape_lint ${alone})

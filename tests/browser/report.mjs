@@ -9,14 +9,13 @@ import {browser, contactConfig, drawnShare, openPage, run, scratch, until} from 
 const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
 let chrome;
 
-/// Small pictures, since large ones take a test's time.
+/// With small pictures, which are drawn sooner.
 function writeReport(of) {
   run(folder, 'report', of, '--width', '225');
 }
 
 before(async () => {
-  run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0');
-  writeReport('out');
+  run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet', '--threads', '1', '--set', 'snapshots=0');
   chrome = await browser();
 });
 after(() => chrome.close());

@@ -27,11 +27,9 @@ std::map<std::string, std::string> files_in(const fs::path& folder) {
 std::string refused(const Scratch& folder, const std::string& arguments,
                     const std::string& environment = "") {
   const auto before = files_in(folder.path);
-  const Ended ended = drape_with(arguments, folder.path, environment);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
+  const std::string said = refused_by(arguments, folder.path, environment);
   CHECK((files_in(folder.path) == before));
-  return ended.err;
+  return said;
 }
 
 /// The same of `drape run e.yaml`, where e.yaml is this text.

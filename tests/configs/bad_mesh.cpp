@@ -25,14 +25,10 @@ std::string said_of_mesh(const std::string& mesh, const std::string& mesh_name =
   std::filesystem::create_directory(folder / "in");
   folder.write("in/e.yaml", experiment_with(mesh_name));
   folder.write("in/" + mesh_name, mesh);
-  const Ended run = drape_with("run in/e.yaml --out out " + arguments, folder.path);
-  const Ended check = drape_with("check in/e.yaml " + arguments, folder.path);
-  CHECK(run.exit_code == 2);
-  CHECK(run.out == "");
+  const std::string said = refused_by("run in/e.yaml --out out " + arguments, folder.path);
   CHECK(!std::filesystem::exists(folder / "out"));
-  CHECK(check.exit_code == 2);
-  CHECK(check.err == run.err);
-  return run.err;
+  CHECK(refused_by("check in/e.yaml " + arguments, folder.path) == said);
+  return said;
 }
 
 }  // namespace

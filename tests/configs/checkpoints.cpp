@@ -322,14 +322,6 @@ void interrupt_sheets(const Scratch& folder) {
   REQUIRE_FALSE(is_complete(folder / "out"));
 }
 
-/// Standard error of what must be refused without a word on standard output.
-std::string refused_by(const std::string& arguments, const Scratch& folder) {
-  const Ended ended = drape_with(arguments, folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
-  return ended.err;
-}
-
 }  // namespace
 
 TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
@@ -376,23 +368,23 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   interrupt_sheets(folder);
   const std::string before = text_of(folder / "out/results.json");
 
-  CHECK(refused_by("run --resume nowhere", folder) ==
+  CHECK(refused_by("run --resume nowhere", folder.path) ==
         "error: nowhere: holds no run; give the results folder of one\n");
-  CHECK_THAT(refused_by("run e.yaml --resume out", folder),
+  CHECK_THAT(refused_by("run e.yaml --resume out", folder.path),
              Contains("takes the experiment from the run's own config.yaml; leave out e.yaml"));
-  CHECK_THAT(refused_by("run --resume out --overwrite", folder), Contains("leave out --overwrite"));
-  CHECK_THAT(refused_by("run --resume out --out other", folder), Contains("leave out --out"));
-  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1", folder),
+  CHECK_THAT(refused_by("run --resume out --overwrite", folder.path), Contains("leave out --overwrite"));
+  CHECK_THAT(refused_by("run --resume out --out other", folder.path), Contains("leave out --out"));
+  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1", folder.path),
              Contains("is another run; name its folder with --out"));
-  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1 --out ./out", folder),
+  CHECK_THAT(refused_by("run --resume out --set newton.step_size=1 --out ./out", folder.path),
              Contains("leaves the run that it begins from as it is"));
-  CHECK_THAT(refused_by("run e.yaml --level 1", folder), Contains("name its run with --resume"));
-  CHECK_THAT(refused_by("run", folder), Contains("config is required"));
+  CHECK_THAT(refused_by("run e.yaml --level 1", folder.path), Contains("name its run with --resume"));
+  CHECK_THAT(refused_by("run", folder.path), Contains("config is required"));
 
   const auto damaged = [&](const std::string& name, const std::string& text, const std::string& expected) {
     const std::string whole = text_of(folder / name);
     folder.write(name, text);
-    CHECK_THAT(refused_by("run --resume out", folder), Contains(expected));
+    CHECK_THAT(refused_by("run --resume out", folder.path), Contains(expected));
     folder.write(name, whole);
   };
   damaged("out/config.yaml", text_of(folder / "out/config.yaml") + "# \n",
@@ -405,7 +397,7 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   FileLock other(folder / "out/checkpoint/lock");
   REQUIRE(other.acquire(0));
   const std::string in_use = "uses this folder; wait for it, or stop it";
-  CHECK_THAT(refused_by("run --resume out", folder), Contains(in_use));
+  CHECK_THAT(refused_by("run --resume out", folder.path), Contains(in_use));
   // Before the checkpoint is read, which the other process goes on to replace.
   damaged("out/config.yaml", "name: other\n", in_use);
   damaged("out/results.json", "{\"complete\": true}", in_use);
@@ -517,7 +509,7 @@ TEST_CASE("Resuming a complete run returns its exit code and checks its files") 
   mesh[mesh.size() / 2] ^= 1;
   folder.write("good/levels/pcs_l0.ply", mesh);
   fs::remove(folder / "good/levels/pcs_l1.ply");
-  CHECK(refused_by("run --resume good", folder) ==
+  CHECK(refused_by("run --resume good", folder.path) ==
         "error: good: the run is complete, but files are damaged or missing: levels/pcs_l0.ply, "
         "levels/pcs_l1.ply; "
         "run the experiment again, as in drape run good/config.yaml --out ANOTHER\n");
@@ -592,10 +584,10 @@ TEST_CASE("An obstacle's mesh that changed since is named") {
   command.send(SIGKILL);
   command.wait();
   write_mesh(folder / "box.obj", grid({0.5, 0.4}, 2, 2, Diagonals::one_way));
-  CHECK_THAT(refused_by("run --resume out", folder),
+  CHECK_THAT(refused_by("run --resume out", folder.path),
              Contains("box.obj: is not what it was when the run began"));
   fs::remove(folder / "box.obj");
-  CHECK_THAT(refused_by("run --resume out", folder), Contains("box.obj"));
+  CHECK_THAT(refused_by("run --resume out", folder.path), Contains("box.obj"));
 }
 
 TEST_CASE("A run warm-starts from a saved state under changed parameters, in another folder") {
@@ -632,16 +624,16 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   drape_with(replaced(go_on, "--resume out", "--resume part"), folder.path);
   check_equal(folder / "part", folder / "last");
 
-  CHECK_THAT(refused_by(flow + "--out x --set refiner=midpoint", folder),
+  CHECK_THAT(refused_by(flow + "--out x --set refiner=midpoint", folder.path),
              Contains("--set refiner: \"refiner\" cannot be changed"));
-  CHECK_THAT(refused_by(flow + "--out x --set cloth.vertices=99", folder),
+  CHECK_THAT(refused_by(flow + "--out x --set cloth.vertices=99", folder.path),
              Contains("\"cloth\" cannot be changed"));
-  CHECK_THAT(refused_by(flow + "--out x --levels 1", folder), Contains("\"levels\" must be at least 2"));
-  CHECK_THAT(refused_by(flow + "--out x --level 2", folder),
+  CHECK_THAT(refused_by(flow + "--out x --levels 1", folder.path), Contains("\"levels\" must be at least 2"));
+  CHECK_THAT(refused_by(flow + "--out x --level 2", folder.path),
              Contains("holds no state of method pcs on level 2; the last level that it has is 1"));
-  CHECK_THAT(refused_by(flow + "--out x --method cascadic", folder),
+  CHECK_THAT(refused_by(flow + "--out x --method cascadic", folder.path),
              Contains("holds no state of method cascadic; name another with --method"));
-  CHECK_THAT(refused_by(flow + "--out x --set obstacles.ball.radius=0.15", folder),
+  CHECK_THAT(refused_by(flow + "--out x --set obstacles.ball.radius=0.15", folder.path),
              Contains("the start of level 1 touches: "));
   CHECK_FALSE(fs::exists(folder / "x"));
 }

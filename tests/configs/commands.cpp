@@ -28,26 +28,21 @@ std::string shown_by(const std::string& arguments) {
 }
 
 /// Standard error of what must be refused without a word on standard output.
-std::string refused_by(const std::string& arguments) {
-  const Ended ended = drape_of(arguments);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
-  return ended.err;
-}
+std::string refusal_of(const std::string& arguments) { return refused_by(arguments, folders::source()); }
 
 }  // namespace
 
 TEST_CASE("the bare command shows its usage; a misspelt command names the nearest one") {
-  CHECK(refused_by("") == shown_by("--help"));
+  CHECK(refusal_of("") == shown_by("--help"));
   CHECK_THAT(shown_by("--help"),
              StartsWith("drape: progressive cloth quasistatics\nUsage: drape [OPTIONS] SUBCOMMAND\n"));
   CHECK_THAT(shown_by("run --help"), Contains("--overwrite"));
-  CHECK(refused_by("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
-  CHECK(refused_by("simulate") ==
+  CHECK(refusal_of("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
+  CHECK(refusal_of("simulate") ==
         "error: there is no command \"simulate\"; the commands are new, check, run, view, export, "
         "report, compare, table, sweep, list, describe, schema, help, reference\n");
-  CHECK(refused_by("run") == "error: config is required; see `drape run --help`\n");
-  CHECK(refused_by("--fast") == "error: A subcommand is required; see `drape --help`\n");
+  CHECK(refusal_of("run") == "error: config is required; see `drape run --help`\n");
+  CHECK(refusal_of("--fast") == "error: A subcommand is required; see `drape --help`\n");
   CHECK_THAT(shown_by("--version"), Matches("drape [0-9]+\\.[0-9]+\\.[0-9]+ \\(.+\\)\n"));
 }
 
@@ -64,10 +59,10 @@ TEST_CASE("help shows a command's options and an example; developers' commands a
     CHECK(page == shown_by(command + " --help"));
     CHECK_THAT(page, Contains("\nExample:\n  drape " + command + " ") && Contains("\nExit codes:\n"));
   }
-  CHECK(refused_by("help rnu") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
-  CHECK(refused_by("run e.yaml --methods pcs") ==
+  CHECK(refusal_of("help rnu") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
+  CHECK(refusal_of("run e.yaml --methods pcs") ==
         "error: there is no option --methods; did you mean --method? See `drape run --help`\n");
-  CHECK(refused_by("export out --to a.glb --frame") ==
+  CHECK(refusal_of("export out --to a.glb --frame") ==
         "error: there is no option --frame; did you mean --frames? See `drape export --help`\n");
 }
 
@@ -123,7 +118,7 @@ TEST_CASE("list shows every plugin, or one kind's") {
   CHECK_THAT(energies, StartsWith("energy\n  constant_load  "));
   CHECK_THAT(all, StartsWith(energies));
   CHECK(energies.find("cascadic") == std::string::npos);
-  CHECK(refused_by("list nonsense") ==
+  CHECK(refusal_of("list nonsense") ==
         "error: there is no kind \"nonsense\"; the kinds are energy, refiner, contact, solver, metric\n");
 }
 
@@ -136,8 +131,8 @@ TEST_CASE("describe shows a plugin's parameters, an experiment's, or the nearest
   for (const char* word : {"cloth", "levels", "membrane_modulus", "force_tolerance", "methods"})
     CHECK_THAT(experiment, Contains(word));
   CHECK_THAT(shown_by("describe newton"), StartsWith("solver newton: "));
-  CHECK(refused_by("describe hinje") == "error: no plugin is called \"hinje\"; did you mean \"hinge\"?\n");
-  CHECK(refused_by("describe butterfly") ==
+  CHECK(refusal_of("describe hinje") == "error: no plugin is called \"hinje\"; did you mean \"hinge\"?\n");
+  CHECK(refusal_of("describe butterfly") ==
         "error: no plugin is called \"butterfly\"; `drape list` names them all\n");
 }
 
@@ -197,7 +192,7 @@ TEST_CASE("schema sweep and describe sweep cover sweep files, variations and gri
   CHECK(ablation[0]["items"]["properties"]["levels"]["anyOf"][0]["maximum"] == 10);
   CHECK(ablation[1]["properties"]["grid"]["additionalProperties"]["minItems"] == 1);
   CHECK_THAT(shown_by("describe sweep"), Contains("seeds") && Contains("a variation in ablation:"));
-  CHECK(refused_by("schema nonsense") ==
+  CHECK(refusal_of("schema nonsense") ==
         "error: kind: nonsense not in {experiment,sweep}; see `drape schema --help`\n");
 }
 
@@ -236,7 +231,7 @@ TEST_CASE("every plugin has a page of its own, with its parameters up to date") 
     INFO(name.string());
     if (entry->name != "gravity") CHECK((text_of(plugins / name) == text_of(folder / "pages" / name)));
   }
-  CHECK(refused_by("reference --readmes nowhere") ==
+  CHECK(refusal_of("reference --readmes nowhere") ==
         "error: --readmes nowhere: no KIND/NAME/README.md of a plugin there; give the folder `plugins`\n");
 }
 
@@ -250,9 +245,9 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
   CHECK(ended.exit_code == 0);
   CHECK(ended.out == "report: out/report.html\n");
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
-  CHECK(refused_by("report nowhere") == "error: nowhere: no results.json here; give the folder of a run\n");
-  CHECK_THAT(refused_by("report out --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
-  CHECK(refused_by("report out out --out both.html --width 90") ==
+  CHECK(refusal_of("report nowhere") == "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK_THAT(refusal_of("report out --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
+  CHECK(refusal_of("report out out --out both.html --width 90") ==
         "error: --width is for the pictures of one run; a page of several runs has none\n");
   folder.write("out/results.json", "{\"experiment\": ");
   const Ended broken = drape_with("report out", folder.path);

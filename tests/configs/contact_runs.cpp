@@ -22,24 +22,16 @@ std::string contact_experiment() {
 std::string said_of_contact(const std::string& experiment, const std::string& arguments = "") {
   const Scratch folder;
   folder.write("e.yaml", experiment);
-  const Ended run = drape_with("run e.yaml --out out " + arguments, folder.path);
-  const Ended check = drape_with("check e.yaml " + arguments, folder.path);
-  CHECK(run.exit_code == 2);
-  CHECK(run.out == "");
+  const std::string said = refused_by("run e.yaml --out out " + arguments, folder.path);
   CHECK(!fs::exists(folder / "out"));
-  CHECK(check.exit_code == 2);
-  CHECK(check.err == run.err);
-  return run.err;
+  CHECK(refused_by("check e.yaml " + arguments, folder.path) == said);
+  return said;
 }
 
 std::vector<std::vector<std::string>> csv_rows_of(const fs::path& csv) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(text_of(csv));
-  for (std::string line; std::getline(lines, line);) {
-    auto& cells = rows.emplace_back();
-    std::istringstream rest(line + ",");
-    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-  }
+  for (std::string line; std::getline(lines, line);) rows.push_back(cells_of(line));
   rows.erase(rows.begin());
   return rows;
 }

@@ -23,9 +23,7 @@ std::vector<Row> rows_of(const fs::path& csv) {
   std::vector<std::string> names;
   std::vector<Row> rows;
   for (std::string line; std::getline(lines, line);) {
-    std::vector<std::string> cells;
-    std::istringstream rest(line + ",");
-    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    const std::vector<std::string> cells = cells_of(line);
     if (names.empty()) {
       names = cells;
       continue;

@@ -46,11 +46,9 @@ std::string exported(const std::string& name, const std::string& options = "") {
 
 std::string export_refusal(const std::string& arguments) {
   const Scratch folder;
-  const Ended ended = drape_with("export " + arguments, folder.path);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
+  const std::string said = refused_by("export " + arguments, folder.path);
   CHECK(fs::is_empty(folder.path));
-  return ended.err;
+  return said;
 }
 
 /// Width and height [pixels], from the header.
@@ -254,7 +252,7 @@ TEST_CASE("an export that cannot be is refused, with what there is") {
 TEST_CASE("view writes the page if it is missing or old, and opens it, or prints its address") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "a run", fs::copy_options::recursive);
-  fs::remove_all(folder / "a run/levels");  // of which pictures would be drawn
+  fs::remove_all(folder / "a run/levels");  // so that no time goes to pictures
   const fs::path page = folder / "a run/report.html";
   const auto view = [&](const std::string& environment) {
     const Ended ended = drape_with("view 'a run'", folder.path, environment);

@@ -51,13 +51,6 @@ bool has(const Json& object, const std::set<std::string>& names) {
   return true;
 }
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream rest(line + ",");
-  for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 }  // namespace
 
 TEST_CASE("results.json has every key, finite figures and every pair of levels") {

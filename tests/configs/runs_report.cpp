@@ -53,12 +53,7 @@ OrderedJson data_of(const std::string& page) {
   return OrderedJson::parse(page.substr(begin, page.find("</script>", begin) - begin));
 }
 
-std::string sweep_refusal(const std::string& arguments) {
-  const Ended ended = drape_with(arguments, sweep());
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
-  return ended.err;
-}
+std::string sweep_refusal(const std::string& arguments) { return refused_by(arguments, sweep()); }
 
 /// A copy of a run whose results are edited.
 struct Edited {

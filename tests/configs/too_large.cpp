@@ -13,11 +13,7 @@ namespace {
 
 /// What `drape check` says to an experiment with these settings, which it must refuse.
 std::string check_refusal(const Scratch& folder, const std::string& sets) {
-  const Ended ended = drape_with("check e.yaml " + sets, folder.path);
-  INFO(ended.err);
-  CHECK(ended.exit_code == 2);
-  CHECK(ended.out == "");
-  return ended.err;
+  return refused_by("check e.yaml " + sets, folder.path);
 }
 
 std::string check_refusal(const std::string& sets) {

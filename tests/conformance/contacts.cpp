@@ -10,7 +10,7 @@
 #include "core/kernel/model/contact_model.h"
 #include "core/kernel/model/friction.h"
 #include "tests/support/conformance.h"
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/time_limit.h"
 

@@ -10,7 +10,7 @@
 #include "core/kernel/model/midpoint.h"
 #include "core/kernel/model/refiner.h"
 #include "tests/support/conformance.h"
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;

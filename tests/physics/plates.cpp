@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/kernel/mesh/generate.h"
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/support/folders.h"
 #include "tests/support/time_limit.h"
@@ -142,6 +143,24 @@ inline Ended drape_with(const std::string& arguments, const std::filesystem::pat
                         const std::string& environment = "") {
   INFO("drape " << arguments);
   return Command("exec env " + environment + " " + drape_command + " " + arguments, folder).wait();
+}
+
+/// Standard error of what must be refused without a word on standard output.
+inline std::string refused_by(const std::string& arguments, const std::filesystem::path& folder,
+                              const std::string& environment = "") {
+  const Ended ended = drape_with(arguments, folder, environment);
+  INFO(ended.err);
+  CHECK(ended.exit_code == 2);
+  CHECK(ended.out == "");
+  return ended.err;
+}
+
+/// The cells of a line of a CSV file.
+inline std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream rest(line + ",");
+  for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+  return cells;
 }
 
 /// The text with its one occurrence of `from` replaced.

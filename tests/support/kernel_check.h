@@ -7,7 +7,7 @@
 
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 
 // What every element kernel owes (see core/kernel/elements/element_energy.h), for one state of one element. A
@@ -71,10 +71,9 @@ struct KernelCheck {
     CHECK((differences(gradient, x, h) - r.hessian).norm() <= tolerance * r.hessian.norm());
   }
 
-  /// Every lane of the widest Pack that this machine has registers for (tests/unit/pack.cpp tests all widths)
-  /// against double. `value_scale` is what the value's error is measured by.
+  /// Every lane of a Pack<W> against double. `value_scale` is what the value's error is measured by.
+  template <int W>
   static void lanes(const State& x, const Rest& rest, double value_scale) {
-    constexpr int W = drape::native_pack_width;
     using T = drape::Pack<W>;
     Eigen::Matrix<T, n, 1> xs;
     T rests[Rest::SizeAtCompileTime];
@@ -93,6 +92,13 @@ struct KernelCheck {
       CHECK((g - one.gradient).norm() <= 1e-13 * std::max(one.gradient.norm(), value_scale / own.norm()));
       CHECK((h - one.hessian).norm() <= 1e-13 * one.hessian.norm());
     }
+  }
+
+  /// Every width that this machine has registers for; Eigen's arrays are not aligned for wider ones.
+  static void all_lanes(const State& x, const Rest& rest, double value_scale) {
+    lanes<2>(x, rest, value_scale);
+    if constexpr (drape::native_pack_width >= 4) lanes<4>(x, rest, value_scale);
+    if constexpr (drape::native_pack_width >= 8) lanes<8>(x, rest, value_scale);
   }
 
   /// The full matrix by the k vertices.

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "core/kernel/linear_algebra/parallel.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/dense_matrix.h"
-#include "tests/support/eigenvalues.h"
 #include "tests/support/random_block_matrix.h"
 
 using namespace drape;

@@ -12,7 +12,7 @@
 #include "core/app/picture/surface.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "tests/support/flat_sheet.h"
+#include "core/kernel/mesh/generate.h"
 
 using namespace drape;
 
@@ -20,7 +20,7 @@ namespace {
 
 /// A dome over the unit square, 0.3 high.
 TriangleMesh dome(int n) {
-  TriangleMesh mesh = flat_sheet(n);
+  TriangleMesh mesh = grid({1, 1}, n, n, Diagonals::one_way);
   for (int i = 0; i < n * n; ++i)
     mesh.vertices(i, 2) = 4.8 * mesh.vertices(i, 0) * (1 - mesh.vertices(i, 0)) * mesh.vertices(i, 1) *
                           (1 - mesh.vertices(i, 1));
@@ -77,7 +77,7 @@ Eigen::Vector2i pixel_of(const Eigen::Vector3d& point, const Camera& camera, con
 }  // namespace
 
 TEST_CASE("the camera sees all of every state and wastes no picture") {
-  const TriangleMesh sheet = flat_sheet(9);
+  const TriangleMesh sheet = grid({1, 1}, 9, 9, Diagonals::one_way);
   Positions other = sheet.vertices.array() * 1.7 + 0.4;
   other(3, 0) = std::numeric_limits<double>::infinity();
   const Camera camera = Camera::around({&sheet.vertices, &other}, {0.55, -1, 0.68}, 9.0 / 7);
@@ -103,7 +103,7 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
 }
 
 TEST_CASE("a drawing shows its colours and both sides of the cloth") {
-  TriangleMesh sheet = flat_sheet(5);
+  TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
   const Renderer renderer(60, 60);
   const auto middle = [&](const Drawing& drawing, const Camera& camera) {
     const Image image = renderer.draw(drawing, camera);
@@ -161,7 +161,7 @@ TEST_CASE("a floor shows shadows and nothing else") {
   CHECK(darker > 300);
   CHECK(brighter == 0);
 
-  const TriangleMesh flat = flat_sheet(5);
+  const TriangleMesh flat = grid({1, 1}, 5, 5, Diagonals::one_way);
   Drawing lying{flat};
   const Image hanging = renderer.draw(lying, camera);
   lying.floor = 0;
@@ -212,7 +212,7 @@ TEST_CASE("an obstacle shows through plain cloth, not through colours that stand
 }
 
 TEST_CASE("edges are drawn where asked for") {
-  const TriangleMesh sheet = flat_sheet(5);
+  const TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
   const Camera camera = Camera::around({&sheet.vertices}, {0.2, -0.3, 1}, 1);
   const Renderer renderer(200, 200);
   Drawing drawing{sheet};
@@ -226,7 +226,7 @@ TEST_CASE("edges are drawn where asked for") {
 }
 
 TEST_CASE("a picture is left when asked, and triangles that are not finite are left out") {
-  TriangleMesh sheet = flat_sheet(5);
+  TriangleMesh sheet = grid({1, 1}, 5, 5, Diagonals::one_way);
   const Camera camera = Camera::facing(sheet, 1);
   int polls = 0;
   set_thread_count(1);  // the thread that draws polls; with helpers it may get few tiles

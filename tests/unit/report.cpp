@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/app/report/chart_data.h"
 #include "core/app/report/pictures.h"
@@ -17,10 +18,10 @@
 #include "core/kernel/files/base64.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/topology.h"
 #include "tests/support/declared_metrics.h"
-#include "tests/support/flat_sheet.h"
 
 using namespace drape;
 namespace fs = std::filesystem;
@@ -59,7 +60,7 @@ Eigen::VectorXd ripple_curvature(const Positions& rest, double waves) {
   return -0.08 * waves * waves * (waves * rest.col(0).array()).sin();
 }
 
-constexpr int picture_width = 300;  // a ninth of the default's time
+constexpr int small_pictures = 300;  // pixels wide, in a ninth of the default's time
 
 /// A run of two methods on two levels, in a folder of its own that goes with it.
 struct SampleRun {
@@ -70,7 +71,8 @@ struct SampleRun {
   SampleRun() {
     fs::remove_all(folder);
     for (const char* name : {"levels", "fields", "rest"}) fs::create_directories(folder / name);
-    const TriangleMesh rest[2] = {flat_sheet(13), split(flat_sheet(13))};
+    const TriangleMesh rest[2] = {grid({1, 1}, 13, 13, Diagonals::one_way),
+                                  split(grid({1, 1}, 13, 13, Diagonals::one_way))};
     for (int l = 0; l < 2; ++l) write_ply(folder / "rest" / ("l" + std::to_string(l) + ".ply"), rest[l]);
     results = {{"experiment", "sample"},
                {"description", "A rippled sheet."},
@@ -133,10 +135,10 @@ struct SampleRun {
   ~SampleRun() { fs::remove_all(folder); }
 
   /// The page without Chart.js and the script, after writing the report.
-  std::string page(bool with_pictures = false) const {
+  std::string page(bool with_pictures = false, std::optional<int> width = small_pictures) const {
     write_file(folder / "results.json", results.dump());
     write_report(
-        folder, [&] { return !with_pictures; }, picture_width);
+        folder, [&] { return !with_pictures; }, width);
     const std::string text = read_file(folder / "report.html");
     const std::size_t scripts = text.find("<script>");
     REQUIRE(scripts != std::string::npos);
@@ -180,7 +182,7 @@ double contrast(const Image& image) {
 
 TEST_CASE("a report holds the figures of its run") {
   const SampleRun run;
-  const std::string page = run.page(true);
+  const std::string page = run.page(true, {});
 
   CHECK(contains(page, "2 of 2 methods converged"));
   CHECK(contains(page, "<b>pcs</b> ends with the lowest energy (-1.77 J, newton 0.222 J above)"));
@@ -225,7 +227,7 @@ TEST_CASE("a report that is told to stop skips the remaining pictures, with a no
 TEST_CASE("the pictures of a report are drawn, stored and inlined") {
   const SampleRun run;
   const std::string page = run.page(true);
-  const PictureSet set = draw_pictures(read_run(run.folder), {}, picture_width);
+  const PictureSet set = draw_pictures(read_run(run.folder), {}, small_pictures);
   CHECK(set.notes.empty());
   REQUIRE(set.fields.size() == 2);
   CHECK(set.fields[0].on_rest);
@@ -305,7 +307,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     CHECK(contains(page, "newton_l1.ply"));
     CHECK(contains(page, "pcs_l1.ply: vertex 5 has a coordinate that is not finite"));
     CHECK(contains(page, "Not drawn"));
-    const PictureSet pictures = draw_pictures(read_run(run.folder), {}, picture_width);
+    const PictureSet pictures = draw_pictures(read_run(run.folder), {}, small_pictures);
     CHECK(pictures.find("pcs_l1.png") == nullptr);
     CHECK(pictures.find("pcs_l0_on_l1.png") == nullptr);
     REQUIRE(pictures.find("pcs_l0.png"));

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 
 using namespace drape;
 

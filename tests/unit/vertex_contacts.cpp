@@ -12,11 +12,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double radius = 0.1, weight = 2e-4, friction_mu = 0.3;
+constexpr double radius = 0.1, weight = 2e-4, friction_coefficient = 0.3;
 constexpr BarrierParameters parameters = {1e-2, 50, 1e-5};
 
 /// Vertices near a sphere about the origin.
-std::unique_ptr<Collisions> near_sphere(const Positions& x, double friction = friction_mu) {
+std::unique_ptr<Collisions> near_sphere(const Positions& x, double friction = friction_coefficient) {
   std::vector<VertexContact> contacts;
   for (int i = 0; i < x.rows(); ++i) {
     const Vector3d p = x.row(i);
@@ -80,7 +80,7 @@ TEST_CASE("vertex contacts: friction is μ times the normal force, against the m
   const Positions f = gradient_of(*friction, to);
   for (int i = 0; i < 3; ++i) {
     const Vector3d n = x.row(i).normalized(), along = Vector3d::UnitX() - n.x() * n;
-    const double force = friction_mu * normal_forces.row(i).norm();
+    const double force = friction_coefficient * normal_forces.row(i).norm();
     REQUIRE(force > 0);
     CHECK((Vector3d(f.row(i)) - force * along.normalized()).norm() <= 1e-9 * force);
   }

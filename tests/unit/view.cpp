@@ -9,6 +9,7 @@
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/elements/vertex_fields.h"
+#include "core/kernel/mesh/generate.h"
 
 using namespace drape;
 
@@ -17,18 +18,7 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A unit square of (n + 1)² vertices in the plane z = 0, facing up.
-Level sheet(int n) {
-  TriangleMesh mesh{Positions((n + 1) * (n + 1), 3), Triangles(2 * n * n, 3)};
-  for (int j = 0, t = 0; j <= n; ++j)
-    for (int i = 0; i <= n; ++i) {
-      const int v = j * (n + 1) + i;
-      mesh.vertices.row(v) << double(i) / n, double(j) / n, 0;
-      if (i == n || j == n) continue;
-      mesh.triangles.row(t++) << v, v + 1, v + n + 2;
-      mesh.triangles.row(t++) << v, v + n + 2, v + n + 1;
-    }
-  return Level::of(0, mesh);
-}
+Level sheet(int n) { return Level::of(0, grid({1, 1}, n + 1, n + 1, Diagonals::one_way)); }
 
 template <class T>
 T at(const std::string& bytes, std::size_t place) {

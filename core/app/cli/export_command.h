@@ -8,7 +8,7 @@
 
 namespace drape {
 
-/// Adds --width, of pictures [pixels].
+/// Adds the option --width, the width of pictures [pixels], to a command.
 void add_picture_width(CLI::App& command, std::optional<int>& width, const std::string& help);
 
 /// `drape export`: writes states of a run for other programs.

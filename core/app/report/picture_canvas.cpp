@@ -5,16 +5,6 @@
 
 namespace drape {
 
-namespace {
-
-PictureFrame frame_of(int width, int height) {
-  PictureFrame frame;
-  frame.aspect = double(width) / height;
-  return frame;
-}
-
-}  // namespace
-
 PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, int width,
                              PictureSet& set)
     : run_(run),
@@ -22,7 +12,7 @@ PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& ca
       width_(width),
       height_(picture_height(width)),
       set_(set),
-      scene_(run, set.notes, frame_of(width_, height_)) {}
+      scene_(run, set.notes, {.width = width}) {}
 
 std::optional<TriangleMesh> PictureCanvas::try_mesh(const std::string& name) {
   return try_run_mesh(run_, name, set_.notes);

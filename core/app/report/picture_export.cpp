@@ -55,11 +55,9 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   if (!overwrite)
     for (const fs::path& each : files) refuse_existing(each);
 
-  const int width = options.width.value_or(default_width);
-  const int height = picture_height(width);
   PictureFrame frame;
+  frame.width = options.width.value_or(default_width);
   if (options.direction) frame.direction = *options.direction;
-  frame.aspect = double(width) / height;
   for (const TriangleMesh& state : states) frame.further.push_back(&state.vertices);
   std::vector<std::string> notes;  // the report has them: meshes of states that are not drawn here
   const PictureScene scene(run, notes, frame);
@@ -67,7 +65,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::optional<TriangleMesh> coarsest;
   for (const LevelRecord& level : method.levels)
     if (options.outline && !coarsest && !level.mesh.empty()) coarsest = run_mesh(run, level.mesh);
-  const Renderer renderer(width, height);
+  const Renderer renderer(frame.width, picture_height(frame.width));
   for (std::size_t k = 0; k < states.size(); ++k) {
     Image image = scene.draw(renderer, plain_cloth(states[k]));
     if (coarsest) draw_outline(image, *coarsest, scene.camera(), outline_colour());

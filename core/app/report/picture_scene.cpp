@@ -87,7 +87,8 @@ PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, 
   const Positions near = near_cloth(obstacle_.vertices, all);
   if (near.rows() > 0) all.push_back(&near);
   floor_ = lowest(all);
-  camera_ = Camera::around(all, frame.direction, frame.aspect);
+  const double aspect = double(frame.width) / picture_height(frame.width);
+  camera_ = Camera::around(all, frame.direction, aspect);
 }
 
 const TriangleMesh* PictureScene::state(const std::string& method, int level) const {

@@ -34,7 +34,7 @@ Eigen::Vector3f outline_colour();
 struct PictureFrame {
   /// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
   Eigen::Vector3d direction{0.55, -1.0, 0.68};
-  double aspect = 9.0 / 7;                     ///< width over height
+  int width = default_picture_width;           ///< [pixels]
   std::vector<const Positions*> further = {};  ///< in view, beside the run's final states
 };
 

@@ -10,7 +10,7 @@
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/obstacle.h"
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 
 using namespace drape;

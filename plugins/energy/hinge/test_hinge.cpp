@@ -66,7 +66,7 @@ TEST_CASE("hinge: derivatives are those of the value") {
 
 TEST_CASE("hinge: lanes compute what double does") {
   for (const auto& rest : {flat_rest, bent_rest})
-    for (const auto& x : states()) Check::lanes(x, rest, rest[0]);
+    for (const auto& x : states()) Check::all_lanes(x, rest, rest[0]);
 }
 
 TEST_CASE("hinge: projection is that of the matrix by the axis and the points' distances from it") {

@@ -35,7 +35,7 @@ TEST_CASE("quadratic_bending: derivatives are those of the value") {
 
 TEST_CASE("quadratic_bending: lanes compute what double does") {
   for (unsigned seed = 1; seed <= 5; ++seed)
-    Check::lanes(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, rest[0]);
+    Check::all_lanes(folded(0.3) + 0.5 * normal_numbers(9, seed), rest, rest[0]);
 }
 
 TEST_CASE("quadratic_bending: the matrix needs no projection") {

@@ -1,4 +1,4 @@
-#include "tests/support/eigenvalues.h"
+#include "tests/support/decompositions.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SVD>

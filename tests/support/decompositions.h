@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-// Eigen's decompositions of matrices of any size, compiled once for all tests (tests/eigenvalues.cpp): each
-// file that instantiates one takes seconds longer.
+// Eigen's decompositions of matrices of any size, compiled once for all tests (tests/decompositions.cpp):
+// each file that instantiates one takes seconds longer.
 
 /// Eigenvalues of a symmetric matrix, in ascending order.
 Eigen::VectorXd eigenvalues_of(const Eigen::MatrixXd& symmetric);
