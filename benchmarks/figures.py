@@ -32,6 +32,11 @@ def iterations(records):
     return [median(level) for level in zip(*(r["iterations"] for r in records))]
 
 
+def plain_name(variation):
+    """A variation's name as pages have it; records made before `psd_blend: adaptive` had its name call it "least"."""
+    return variation.replace("_", " ").replace("as it is", "defaults").replace("least", "adaptive")
+
+
 def preview(records, measure):
     return figure(median([r["preview"][measure] for r in records]))
 
@@ -64,7 +69,7 @@ def scenes(study, columns):
         if len(cells) != len(head) or cells[0] == "method":
             break
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
-    right = "l" + "".join("r" if c in ("preview's time, relative to cascadic", "final energy minus cascadic's [J]") else "l" for c in columns)
+    right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", "final energy minus cascadic's [J]") else "l" for c in columns)
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
 
 
@@ -106,7 +111,7 @@ def remedies():
         else:
             large[remedy] = large.get(remedy, 0) + r["iterations"]
     scenes_of = list(next(iter(small.values())))
-    rows = [[remedy] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
+    rows = [[plain_name(remedy)] + [figure(of_scene.get(s)) for s in scenes_of] + [f"{large[remedy]:.0f}" if remedy in large else "–"]
             for remedy, of_scene in small.items()]
     # No comment for docs_figures: the sums stand in no record.
     return table(["Newton iterations", *scenes_of, "sphere, cube and tablecloth, PCS and direct"], rows, [], "lrrrr")[1:]
@@ -127,7 +132,7 @@ def interpolation():
 
 
 def ablations():
-    """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve as it is."""
+    """A row a method of each variation of the sphere's experiment; its flops are compared with the direct solve by the defaults."""
     direct = of(runs("ablations", "newton", variant="as_it_is"), "tflop")
     named = {}
     for r in read("ablations.json"):
@@ -136,10 +141,10 @@ def ablations():
     for variant in dict.fromkeys(v for v, _ in named):
         for method in [m for m in ("pcs", "pcs_loop", "cascadic", "newton") if (variant, m) in named]:
             r = named[variant, method]
-            rows.append([variant.replace("_", " "), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
+            rows.append([plain_name(variant), method, ", ".join(figure(n) for n in iterations(r)), figure(of(r, "tflop") / direct, 2),
                          preview(r, "distance_rms"), preview(r, "silhouette_overlap"), figure(of(r, "energy"), 6)])
     # No comment for docs_figures: the flops are compared across variations.
-    return table(["variation", "method", "iterations by level", "total flops, relative to direct as it is", "preview: RMS", "overlap",
+    return table(["variation", "method", "iterations by level", "total flops, relative to direct by the defaults", "preview: RMS", "overlap",
                   "final energy [J]"], rows, [], "lllrrrr")[1:]
 
 
@@ -178,7 +183,7 @@ def linear_solvers():
                      "yes" if cholmod["same_bits_as_with_one_thread"] else "no"])
     # No comment for docs_figures: cells join two values of the record.
     return table(["scene", "vertices", "threads", "supernodal [s] (GFlop/s)", "cholmod [s] (GFlop/s)", "cholmod / supernodal",
-                  "of a solve", "cholmod: bits of one thread"], rows, [], "lrrrrrrl")[1:]
+                  "the same for a solve", "cholmod: same bits as with one thread"], rows, [], "lrrrrrrl")[1:]
 
 
 def changes():
@@ -245,10 +250,8 @@ STUDIES = [
 
 
 def studies():
-    rows = []
-    for title, record in STUDIES:
-        known = (RESULTS / record).exists()
-        rows.append([title, f"[{record.rsplit('/')[-1]}](../../benchmarks/results/{record})" if known else "–", conditions(record)])
+    rows = [[title, f"[{record}](../../benchmarks/results/{record})", conditions(record)]
+            for title, record in STUDIES if (RESULTS / record).exists()]
     rows.append(["[known answers](validation.md)", "`tests/physics`, which print and bound them", "each build"])
     return table(["study", "record", "how it was measured"], rows, [])[1:]
 
@@ -281,7 +284,7 @@ BLOCKS = {
     "sphere in full": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",
                                       "preview: RMS distance from the final state [diagonals]", "silhouette overlap",
                                       "preview: energy above the final state [J]", "level 1: RMS distance"]),
-    "six scenes": lambda: scenes("previews", [TOP[0], "preview's time, relative to cascadic", *TOP[2:]]),
+    "six scenes": lambda: scenes("previews", [TOP[0], "preview's flops, relative to cascadic", *TOP[2:]]),
     "six scenes in full": lambda: scenes("previews", TOP),
     "four levels": lambda: scenes("four_levels", [
         "starts", TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),

@@ -51,6 +51,17 @@ bool has(const Json& object, const std::set<std::string>& names) {
   return true;
 }
 
+/// Those of the names that docs/reference/outputs.md does not have in the first column of a table.
+std::vector<std::string> undocumented(std::vector<std::string> names) {
+  std::istringstream page(text_of(fs::path(folders::source()) / "docs/reference/outputs.md"));
+  for (std::string line; std::getline(page, line);)
+    if (line.rfind("| ", 0) == 0)
+      std::erase_if(names, [&](const std::string& name) {
+        return line.substr(0, line.find('|', 1)).find('`' + name + '`') != std::string::npos;
+      });
+  return names;
+}
+
 }  // namespace
 
 TEST_CASE("results.json has every key, finite figures and every pair of levels") {
@@ -72,6 +83,13 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
       REQUIRE(has(level, {"level", "vertices", "triangles", "status", "steps", "newton_iterations", "seconds",
                           "seconds_by_phase", "energy", "energy_on_finest", "decrement", "force_residual",
                           "largest_stretch", "intersections", "smallest_gap", "mesh"}));
+      std::set<std::string> declared;
+      for (const auto& [metric, declaration] : all["metrics"].items())
+        for (const Json& column : declaration["columns"]) declared.insert(column["name"].get<std::string>());
+      std::vector<std::string> own;
+      for (const std::string& key : keys(level))
+        if (!declared.count(key)) own.push_back(key);
+      CHECK(undocumented(own).empty());
       const int side = 5 * (1 << l);
       CHECK(level["level"] == l);
       CHECK(level["vertices"] == (side + 1) * (side + 1));
@@ -152,6 +170,7 @@ TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where i
   CHECK(line ==
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
         "step_size,contacts,smallest_gap,intersections,flops");
+  CHECK(undocumented(cells_of(line)).empty());
   std::map<std::pair<std::string, int>, int> rows;
   while (std::getline(lines, line)) {
     INFO(line);

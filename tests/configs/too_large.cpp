@@ -97,7 +97,7 @@ TEST_CASE("a cloth whose vertices cannot be about as many as asked for is refuse
         "error: e.yaml:2:8: rectangle: about 1024 vertices are asked for, but its grid of even cells "
         "has 3.2e+07 × 2 = 6.4e+07; set columns and rows, or ask for another number of vertices\n");
   CHECK_THAT(said("shape: polygon, loops: [{points: [0, 0, 1, 0, 0, 1e-9]}], vertices: 10"),
-             Contains("polygon: about 10 vertices cannot be had; nearest is above "));
+             Contains("polygon: about 10 vertices are not possible; the nearest number is above "));
 }
 
 TEST_CASE(

@@ -252,9 +252,9 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
   comb.insert(comb.end(), {{1, 0}, {1, 1}, {0, 1}});
   // A needle asks for ever smaller triangles: given up, not meshed to the end of memory.
   CHECK_THROWS_WITH(delaunay_polygon({{{0, 0}, {1, 0}, {0, 1e-9}}}, 10, 0),
-                    Catch::StartsWith("polygon: about 10 vertices cannot be had; nearest is above "));
+                    Catch::StartsWith("polygon: about 10 vertices are not possible; the nearest number is above "));
   CHECK_THROWS_WITH(delaunay_polygon({comb}, 20, 0),
-                    Catch::StartsWith("polygon: about 20 vertices cannot be had; nearest is "));
+                    Catch::StartsWith("polygon: about 20 vertices are not possible; the nearest number is "));
 }
 
 TEST_CASE("A random triangulation is valid for sides that no division hits exactly") {

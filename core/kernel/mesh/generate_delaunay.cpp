@@ -191,7 +191,7 @@ TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_ab
 
   const auto refuse = [&](const std::string& nearest) {
     throw std::runtime_error("polygon: about " + std::to_string(vertices_about) +
-                             " vertices cannot be had; nearest is " + nearest +
+                             " vertices are not possible; the nearest number is " + nearest +
                              " (corners and angles ask for that many)");
   };
   const double most = 1e4 + 20.0 * vertices_about;  // well above the overshoot of a first attempt
