@@ -251,8 +251,9 @@ TEST_CASE("patterns refuse what cannot be meshed, naming the loop", "[generate]"
   for (int i = 0; i < 20; ++i) comb.insert(comb.end(), {{i / 20., 0}, {(i + 0.5) / 20, 0.1}});
   comb.insert(comb.end(), {{1, 0}, {1, 1}, {0, 1}});
   // A needle asks for ever smaller triangles: given up, not meshed to the end of memory.
-  CHECK_THROWS_WITH(delaunay_polygon({{{0, 0}, {1, 0}, {0, 1e-9}}}, 10, 0),
-                    Catch::StartsWith("polygon: about 10 vertices are not possible; the nearest number is above "));
+  CHECK_THROWS_WITH(
+      delaunay_polygon({{{0, 0}, {1, 0}, {0, 1e-9}}}, 10, 0),
+      Catch::StartsWith("polygon: about 10 vertices are not possible; the nearest number is above "));
   CHECK_THROWS_WITH(delaunay_polygon({comb}, 20, 0),
                     Catch::StartsWith("polygon: about 20 vertices are not possible; the nearest number is "));
 }

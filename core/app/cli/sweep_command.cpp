@@ -62,7 +62,9 @@ SweepCommand::SweepCommand(CLI::App& app)
   sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
       ->check(CLI::IsMember({"local", "slurm"}));
-  sweep_->add_option("-j,--workers", workers_, "concurrent runs (default: as many as the cores allow with --threads)")
+  sweep_
+      ->add_option("-j,--workers", workers_,
+                   "concurrent runs (default: as many as the cores allow with --threads)")
       ->check(positive_integer);
   sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
       ->check(positive_integer);

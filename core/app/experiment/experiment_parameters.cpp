@@ -157,7 +157,8 @@ void HandleParameters::declare(Declaration<HandleParameters>& d) {
       .at_least(0)
       .at_most(bounds::largest_modulus)
       .description(
-          "κ_B of the penalty κ_B/2 m ‖x − x̃‖², m the mass on the coarsest level (a departure); by default the numerical value of the membrane modulus")
+          "κ_B of the penalty κ_B/2 m ‖x − x̃‖², m the mass on the coarsest level (a departure); by default "
+          "the numerical value of the membrane modulus")
       .source("supplement, section 4");
 }
 
