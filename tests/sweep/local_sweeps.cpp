@@ -10,6 +10,7 @@
 #include "core/kernel/linear_algebra/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
+#include "tests/support/sweep_runs.h"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -18,36 +19,6 @@ using Json = nlohmann::json;
 namespace {
 
 const std::string small_sweep = "sweep " + folders::source() + "/tests/sweep/small_sweep.yaml ";
-
-Json runs_of(const fs::path& sweep) { return Json::parse(text_of(sweep / "sweep.json"))["runs"]; }
-
-/// What a sweep computed: every level's mesh and every energy, by file and method.
-std::map<std::string, std::string> outcome_of(const fs::path& sweep) {
-  std::map<std::string, std::string> all;
-  for (const Json& run : runs_of(sweep)) {
-    const std::string folder = run["folder"];
-    for (const auto& entry : fs::directory_iterator(sweep / folder / "levels"))
-      if (entry.path().extension() == ".ply")
-        all[folder + "/" + entry.path().filename().string()] = text_of(entry.path());
-    const Json results = Json::parse(text_of(sweep / folder / "results.json"));
-    for (const auto& [name, method] : results["methods"].items())
-      for (const Json& level : method["levels"])
-        all[folder + ":" + name] += level["energy"].dump() + " " + level["newton_iterations"].dump() + " ";
-  }
-  return all;
-}
-
-int count_of(const Json& runs, const std::string& status) {
-  return int(
-      std::count_if(runs.begin(), runs.end(), [&](const Json& run) { return run.at("status") == status; }));
-}
-
-/// Waits until so many runs of a sweep that is at work have that status.
-void wait_for(Command& command, const fs::path& sweep, const std::string& status, int runs) {
-  command.wait_until(sweep.string() + " has " + std::to_string(runs) + " runs that are " + status, [&] {
-    return fs::exists(sweep / "sweep.json") && count_of(runs_of(sweep), status) >= runs;
-  });
-}
 
 /// Waits until the run that never ends makes steps.
 void wait_for_endless(Command& command, const Scratch& folder) {
@@ -187,26 +158,6 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   CHECK(after[1]["starts"] == 2);
   CHECK(after[2]["starts"] == 1);
   CHECK(Json::parse(text_of(folder / "out/sweep.json"))["complete"] == true);
-}
-
-TEST_CASE("A run that was stopped resumes from its checkpoint, to the bits of an uninterrupted one") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  folder.write(
-      "s.yaml",
-      "name: s\nbase: e.yaml\nset: {levels: 1, newton: {step_size: 1e-3, step_growth: 1, force_tolerance: "
-      "1e-9, max_steps: 400}}\nmethods: [newton]\nablation:\n  - {name: slow}\n");
-  drape_with("sweep s.yaml --out whole", folder.path);
-  Command command("exec " + drape_command + " sweep s.yaml --out out", folder.path);
-  const std::filesystem::path run = folder / "out/runs/slow/seed_1";
-  while (!std::filesystem::exists(run / "checkpoint/state.bin")) std::this_thread::yield();
-  command.send(SIGINT);
-  REQUIRE(command.wait().exit_code == 130);
-  REQUIRE(runs_of(folder / "out")[0]["status"] == "cancelled");
-  drape_with("sweep s.yaml --out out", folder.path);
-  CHECK(runs_of(folder / "out")[0]["starts"] == 2);
-  CHECK_THAT(text_of(run / "log.jsonl"), Contains("\"run_resumed\""));
-  CHECK(outcome_of(folder / "out") == outcome_of(folder / "whole"));
 }
 
 TEST_CASE("a failed run is listed with its error, does not stop the others, and is retried only on request") {

@@ -22,12 +22,16 @@ std::string text_member(const Json& object, const std::string& key) {
   return text.is_string() ? text.get<std::string>() : std::string();
 }
 
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 void JsonFile::refuse(const std::string& fault) const {
   throw std::runtime_error(path_.string() + ": " + fault + "; " + remedy_);
 }
 
 void JsonFile::refuse(const std::string& key, const std::string& kind, const Json& value) const {
-  const std::string found = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string found = json_text(value);
   refuse("\"" + key + "\" must be " + kind + ", not " + excerpt(found));
 }
 

@@ -39,6 +39,10 @@ const nlohmann::ordered_json& member_of(const nlohmann::ordered_json& object, co
 /// A member's text; empty if it is none.
 std::string text_member(const nlohmann::ordered_json& object, const std::string& key);
 
+/// The JSON's text, on one line without `indent`. Bytes that are not UTF-8, as in a file's name, are
+/// replaced.
+std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
+
 /// A whole, non-negative number as an int; empty otherwise.
 std::optional<int> whole_number(double value);
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/files/json_file.h"
 #include "core/app/report/run_table.h"
 #include "core/app/view/html.h"
 #include "core/kernel/files/message_text.h"
@@ -75,7 +76,7 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
       Json& one = chosen.emplace_back(Json::object());
       for (const std::string& column : columns) one[column] = row.value(column, Json());
     }
-    return chosen.dump(1) + "\n";
+    return json_text(chosen, 1) + "\n";
   }
   const bool csv = format == TableFormat::csv;
   const auto line = [&](const auto& cell_of) {

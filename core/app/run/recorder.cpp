@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/app/experiment/declared_metrics.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"

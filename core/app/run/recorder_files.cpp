@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io_formats.h"
 
@@ -27,10 +28,6 @@ void cut(const std::filesystem::path& file, std::uint64_t bytes) {
 }
 
 }  // namespace
-
-std::string json_text(const nlohmann::ordered_json& json, int indent) {
-  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 nlohmann::ordered_json finite_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();

@@ -12,9 +12,6 @@ namespace drape {
 
 // Operations on a run's files. All throw WriteError if a file cannot be written.
 
-/// The JSON text; bytes that are not UTF-8, as in file names, are replaced.
-std::string json_text(const nlohmann::ordered_json& json, int indent = -1);
-
 /// The value, or null if it is not finite: JSON has no such number.
 nlohmann::ordered_json finite_or_null(double value);
 

@@ -2,6 +2,7 @@
 
 #include <glob.h>
 
+#include <cstring>
 #include <map>
 
 #include "core/app/files/yaml_file.h"
@@ -12,12 +13,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files that match a pattern, sorted. A name without wildcard is returned whether it exists or not.
-std::vector<fs::path> files_of(const fs::path& pattern) {
+/// The files in a folder that match a pattern, sorted. A name without wildcard is returned whether it exists
+/// or not.
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& pattern) {
+  const char* const wildcards = "*?[";
+  if (pattern.find_first_of(wildcards) == std::string::npos) return {folder / pattern};
+  std::string literal;  // wildcards in the folder's own name are none
+  for (const char c : folder.string()) {
+    if (c == '\\' || std::strchr(wildcards, c)) literal += '\\';
+    literal += c;
+  }
   glob_t found{};
-  const int flags = pattern.string().find_first_of("*?[") == std::string::npos ? GLOB_NOCHECK : 0;
   std::vector<fs::path> files;
-  if (glob(pattern.c_str(), flags, nullptr, &found) == 0)
+  if (glob((fs::path(literal) / pattern).c_str(), 0, nullptr, &found) == 0)
     for (std::size_t k = 0; k < found.gl_pathc; ++k) files.emplace_back(found.gl_pathv[k]);
   globfree(&found);
   return files;
@@ -62,7 +70,7 @@ std::vector<ExperimentSource> experiment_sources(const SweepParameters& p, const
   if (!several) return all;
   for (std::size_t k = 0; k < p.experiments.size(); ++k) {
     const Location& where = several->items[k].where;
-    const auto files = files_of(fs::path(where.file).parent_path() / p.experiments[k]);
+    const auto files = files_of(fs::path(where.file).parent_path(), p.experiments[k]);
     if (files.empty())
       errors.push_back({where, "no file is called like " + p.experiments[k] + ", seen from this file"});
     for (const fs::path& file : files) read_one(file, "experiments", where, all, errors);

@@ -5,10 +5,12 @@
 #include <cstdio>
 #include <deque>
 #include <list>
+#include <stdexcept>
 #include <thread>
 
 #include "core/app/files/machine.h"
 #include "core/app/sweep/memory.h"
+#include "core/app/sweep/process.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
 
 namespace drape {
@@ -27,10 +29,16 @@ class LocalEngine {
     to_run_ = missing.size();
     while (!waiting_.empty() || !running_.empty()) {
       if (options_.stop && options_.stop()) stop();
+      // Another program would give the sweep's later runs other results than the earlier ones.
+      if (!waiting_.empty() && own_program_replaced()) replaced_ = true, waiting_.clear();
       start_what_fits();
       collect();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
+    if (replaced_)
+      throw std::runtime_error(
+          own_program().string() +
+          " was replaced or removed while the sweep ran, so the other runs were not started");
   }
 
  private:
@@ -118,7 +126,7 @@ class LocalEngine {
   std::deque<std::size_t> waiting_;
   std::list<Running> running_;
   std::size_t had_ = 0, to_run_ = 0, ended_ = 0, failed_ = 0;
-  bool stopping_ = false;
+  bool stopping_ = false, replaced_ = false;
 };
 
 }  // namespace

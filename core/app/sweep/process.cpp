@@ -84,7 +84,15 @@ ProgramOutput run_program(const std::vector<std::string>& words) {
   return said;
 }
 
-std::filesystem::path own_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+std::filesystem::path own_program() {
+  static const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe");
+  return path;  // of the first call: the link's text changes when the file is replaced
+}
+
+bool own_program_replaced() {
+  std::error_code error;
+  return !std::filesystem::equivalent("/proc/self/exe", own_program(), error);
+}
 
 std::string text_of_file(const std::filesystem::path& file) {
   return std::filesystem::exists(file) ? read_file(file) : std::string();

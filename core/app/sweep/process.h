@@ -46,6 +46,8 @@ ProgramOutput run_program(const std::vector<std::string>& words);
 
 /// The executable file of this process.
 std::filesystem::path own_program();
+/// Whether that file was removed since, or replaced by another one.
+bool own_program_replaced();
 
 /// A file's text; empty without the file.
 std::string text_of_file(const std::filesystem::path& file);

@@ -45,8 +45,9 @@ bool is_resumable(const RunFiles& files, const RunStatus& status, int threads) {
 RunStatus begin(const RunFiles& files, int threads, bool resumes) {
   const RunStatus before = read_status(files);
   RunStatus status{RunState::running, "", 0, resumes ? before.seconds : 0, before.starts + 1, threads};
-  write_status(files, status);
+  // First: cut between the two, a run that is marked as running would resume from what should be gone.
   if (before.starts > 0 && !resumes) std::filesystem::remove_all(files.folder);
+  write_status(files, status);
   std::filesystem::remove(files.log());
   return status;
 }
@@ -97,11 +98,11 @@ RunStatus read_status(const RunFiles& files) {
 
 void write_status(const RunFiles& files, const RunStatus& status) {
   make_folder(files.folder.parent_path());
-  write_file(files.status(), status.json().dump(1) + "\n");
+  write_file(files.status(), json_text(status.json(), 1) + "\n");
 }
 
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
-  if (status.state != RunState::running) return status;
+  if (status.state != RunState::running && status.state != RunState::cancelled) return status;
   status.state = RunState::cancelled;
   const std::filesystem::path path = files.folder / "results.json";
   const JsonFile file(path, "remove the run's folder, and the sweep runs it again");

@@ -43,8 +43,8 @@ struct RunFiles {
 RunStatus read_status(const RunFiles& files);
 void write_status(const RunFiles& files, const RunStatus& status);
 
-/// The status of a run that is marked as running but is not: from its results if they are complete, otherwise
-/// cancelled.
+/// The status of a run that is marked as running but is not, or as cancelled: from its results if they are
+/// complete, as after `drape run --resume`; otherwise cancelled.
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
 
 struct RunProcessOptions {

@@ -101,7 +101,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
       json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
-    RunStatus status = read_status(files);
+    RunStatus status = resolve_interrupted(files, read_status(files));
     if (text_of_file(files.config()) != run.config) {
       if (status.state == RunState::failed ||
           status.state == RunState::cancelled) {  // with a different config
@@ -112,7 +112,7 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
     }
     json["runs"].back().update(status.json());  // readers see sweep.json as soon as it is written
   }
-  write_file(path_ / "sweep.json", json.dump(1) + "\n");
+  write_file(path_ / "sweep.json", json_text(json, 1) + "\n");
   finalize();
 }
 
@@ -136,7 +136,7 @@ Json SweepFolder::refresh() const {
         complete && (status.has_results() || (status.refused() && expect.value("outcome", "") == "refused"));
   }
   json["complete"] = complete;
-  write_file(path_ / "sweep.json", json.dump(1) + "\n");
+  write_file(path_ / "sweep.json", json_text(json, 1) + "\n");
   return json;
 }
 
@@ -144,8 +144,8 @@ Json SweepFolder::finalize() const {
   const Json json = read();
   for (const Json& run : json["runs"]) {
     const RunFiles files = this->files(run["folder"]);
-    const RunStatus status = read_status(files);
-    if (status.state == RunState::running) write_status(files, resolve_interrupted(files, status));
+    const RunStatus before = read_status(files), status = resolve_interrupted(files, before);
+    if (status.state != before.state) write_status(files, status);
   }
   return refresh();
 }

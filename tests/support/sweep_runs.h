@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/command.h"
+
+/// The runs of a sweep's folder, as its sweep.json lists them.
+inline nlohmann::json runs_of(const std::filesystem::path& sweep) {
+  return nlohmann::json::parse(text_of(sweep / "sweep.json"))["runs"];
+}
+
+/// What a sweep computed: every level's mesh and every energy, by file and method.
+inline std::map<std::string, std::string> outcome_of(const std::filesystem::path& sweep) {
+  std::map<std::string, std::string> all;
+  for (const nlohmann::json& run : runs_of(sweep)) {
+    const std::string folder = run["folder"];
+    for (const auto& entry : std::filesystem::directory_iterator(sweep / folder / "levels"))
+      if (entry.path().extension() == ".ply")
+        all[folder + "/" + entry.path().filename().string()] = text_of(entry.path());
+    const nlohmann::json results = nlohmann::json::parse(text_of(sweep / folder / "results.json"));
+    for (const auto& [name, method] : results["methods"].items())
+      for (const nlohmann::json& level : method["levels"])
+        all[folder + ":" + name] += level["energy"].dump() + " " + level["newton_iterations"].dump() + " ";
+  }
+  return all;
+}
+
+inline int count_of(const nlohmann::json& runs, const std::string& status) {
+  return int(std::count_if(runs.begin(), runs.end(),
+                           [&](const nlohmann::json& run) { return run.at("status") == status; }));
+}
+
+/// Waits until so many runs of a sweep that is at work have that status.
+inline void wait_for(Command& command, const std::filesystem::path& sweep, const std::string& status,
+                     int runs) {
+  command.wait_until(sweep.string() + " has " + std::to_string(runs) + " runs that are " + status, [&] {
+    return std::filesystem::exists(sweep / "sweep.json") && count_of(runs_of(sweep), status) >= runs;
+  });
+}
