@@ -295,6 +295,27 @@ TEST_CASE("Tangential displacements are advected by obstacle motion") {
   CHECK(contacts.friction(x1) == Approx(force * potential(0.7 * epsilon)));
 }
 
+TEST_CASE("An obstacle's motion advects the contacts of its own model alone") {
+  const Level level = sheet();
+  const double height = 0.4 * dhat, force = normal_force(height);
+  const Positions x0 = at(level, 0, height), x1 = at(level, 0.3 * epsilon, height);
+  // The sheet lies on both plates at once. One moves, or both do by different lengths.
+  for (const double first : {0.0, 0.1 * epsilon}) {
+    const BoundContacts before = bound(level, {a_plate(0), a_plate(0)});
+    ActiveContacts contacts(before);
+    contacts.begin_step(x0);
+    contacts.max_step(x0, x1);
+    contacts.begin_step(x1);
+    BoundContacts after = bound(level, {a_plate(first), a_plate(-0.4 * epsilon)});
+    if (first == 0) after[0] = before[0];
+    contacts.update_obstacles(after, x1, x1);
+    const double expected = force * (potential(0.3 * epsilon - first) + potential(0.7 * epsilon));
+    CHECK(contacts.friction(x1) == Approx(expected));
+    contacts.begin_step(x1);
+    CHECK(contacts.friction(x1) == Approx(expected));
+  }
+}
+
 TEST_CASE("A moving cloth's tangential displacements are relative to the obstacle") {
   const Level level = sheet();
   const double height = 0.4 * dhat, force = normal_force(height);

@@ -40,14 +40,15 @@ void ActiveContacts::reset() {
   advected_ = false;
 }
 
-void ActiveContacts::store_tangential_displacements(const Positions& x, const Positions* obstacle_motion) {
+void ActiveContacts::store_tangential_displacements(const Positions& x,
+                                                    const std::vector<Positions>* obstacle_motions) {
   tangential_displacements_.resize(models_.size());
   for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
-    tangential_displacements_[k] = obstacle_motion
-                                       ? friction_[k]->advected_tangential_displacements(x, *obstacle_motion)
-                                       : friction_[k]->tangential_displacements(x);
+    tangential_displacements_[k] =
+        obstacle_motions ? friction_[k]->advected_tangential_displacements(x, (*obstacle_motions)[k])
+                         : friction_[k]->tangential_displacements(x);
   }
   reference_ = x;
 }
@@ -66,12 +67,13 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
   }
   // advect() needs the old models, and candidates and collisions may refer to them until they are cleared.
   const BoundContacts before = std::exchange(models_, models);
-  Positions obstacle_motion = Positions::Zero(x.rows(), 3);
+  // One for each model: a table stays where it is while the plate of another model moves.
+  std::vector<Positions> obstacle_motions(models_.size(), Positions::Zero(x.rows(), 3));
   for (std::size_t k = 0; k < models_.size(); ++k)
     if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[k].get());
         kinematic && models_[k] != before[k])
-      kinematic->advect(*before[k], from, obstacle_motion);
-  store_tangential_displacements(x, &obstacle_motion);
+      kinematic->advect(*before[k], from, obstacle_motions[k]);
+  store_tangential_displacements(x, &obstacle_motions);
   reset();
   advected_ = true;
   build_collisions(x);
