@@ -305,6 +305,13 @@ TEST_CASE("pins that select no vertex, or one that does not exist") {
         "35\n");
   CHECK(said_of_edit(corner, "{region: vertices, vertices: [0, -1]}") ==
         "error: e.yaml:7:38: item 2 of \"vertices\" must be at least 0, not -1\n");
+  // Loop moves the rest positions of a round border, on finer levels away from a small region.
+  CHECK(said_of("name: disc\ncloth: {shape: disc, radius: 0.2, vertices: 40}\nlevels: 3\npins:\n"
+                "  - {region: ball, point: [-0.2, 0, 0], radius: 0.002}\n"
+                "energies: [neo_hookean, hinge, gravity]\nmethods: {newton: {}}\n") ==
+        "error: e.yaml:5:5: pin 0 (ball) selects vertices of the coarsest level, but none of level 1, whose "
+        "rest "
+        "positions the refiner moves; widen its region, or select by \"nearest\" or \"vertices\"\n");
 }
 
 TEST_CASE("all errors of a config are listed in file order, those of --set last") {

@@ -8,12 +8,23 @@ namespace drape {
 namespace {
 
 void check_selection(const std::string& word, std::size_t number, const VertexSelection& p,
-                     const Location& where, const Level& coarsest, ConfigErrors& errors) {
+                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
+  const Level& coarsest = levels[0];
   const std::string name = word + " " + std::to_string(number) + " (" + p.region + ")";
   const bool by_index = p.region == "vertices";
   if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
     errors.push_back({where, name + " selects no vertex of the coarsest level; " +
                                  (by_index ? "list some under \"vertices\"" : "widen its region")});
+  else
+    for (const Level& level : levels)
+      if (selected_vertices(p, level, coarsest).empty()) {
+        errors.push_back(
+            {where, name + " selects vertices of the coarsest level, but none of level " +
+                        std::to_string(level.index) +
+                        ", whose rest positions the refiner moves; widen its region, or select by "
+                        "\"nearest\" or \"vertices\""});
+        break;
+      }
   for (int v : p.vertices)
     if (by_index && (v < 0 || v >= coarsest.vertex_count()))
       errors.push_back({where, name + " names vertex " + std::to_string(v) +
@@ -100,13 +111,13 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
   return selected;
 }
 
-void check_boundary_conditions(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+void check_boundary_conditions(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
   const ExperimentParameters& p = e.parameters;
   const auto location = [&](const char* key, std::size_t k) { return e.source.find(key)->items[k].where; };
   for (std::size_t k = 0; k < p.pins.size(); ++k)
-    check_selection("pin", k, p.pins[k], location("pins", k), coarsest, errors);
+    check_selection("pin", k, p.pins[k], location("pins", k), levels, errors);
   for (std::size_t k = 0; k < p.handles.size(); ++k)
-    check_selection("handle", k, p.handles[k], location("handles", k), coarsest, errors);
+    check_selection("handle", k, p.handles[k], location("handles", k), levels, errors);
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,

@@ -9,9 +9,9 @@ namespace drape {
 std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest);
 
-/// Appends an error for every pin and handle that selects no vertex of the coarsest level, or one that does
-/// not exist.
-void check_boundary_conditions(const Experiment& experiment, const Level& coarsest, ConfigErrors& errors);
+/// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist.
+void check_boundary_conditions(const Experiment& experiment, const std::vector<Level>& levels,
+                               ConfigErrors& errors);
 
 /// The Dirichlet vertices of a level with their targets [m]. The last pin that selects a vertex decides; a
 /// pin without a transform keeps it at its position in `start` (n×3).

@@ -180,7 +180,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     return nullptr;
   }
   const Level& coarsest = scene->hierarchy.levels[0];
-  check_boundary_conditions(e, coarsest, errors);
+  check_boundary_conditions(e, scene->hierarchy.levels, errors);
   const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;

@@ -87,10 +87,10 @@ void KeyParameters::declare(Declaration<KeyParameters>& d) {
           "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration");
   d.add("times", &KeyParameters::times)
       .formerly("at")
-      .at_least(-1e9)
+      .at_least(0)
       .at_most(1e9)
       .required()
-      .description("pseudo-times, ascending");
+      .description("pseudo-times, ascending; the scene begins at 0");
   d.add_node("values", &KeyParameters::values)
       .formerly("to")
       .required()

@@ -14,10 +14,13 @@ void EquilibriumCheck::restore(const State& s) {
   idle_.restore(s.idle);
 }
 
+bool EquilibriumCheck::is_within(double times) const {
+  if (!(iterate_.force_residual() <= times * p_.force_tolerance)) return false;  // also false for NaN
+  return p_.decrement_tolerance == 0 || *std::ranges::max_element(decrements_) <= p_.decrement_tolerance;
+}
+
 bool EquilibriumCheck::in_tolerance() {
-  if (!(iterate_.force_residual() <= p_.force_tolerance)) return false;  // also false for NaN
-  if (p_.decrement_tolerance > 0 && *std::ranges::max_element(decrements_) > p_.decrement_tolerance)
-    return false;
+  if (!is_within(1)) return false;
   iterate_.update_friction();
   return iterate_.force_residual() <= p_.force_tolerance;
 }

@@ -26,6 +26,8 @@ class EquilibriumCheck {
   EquilibriumCheck(Iterate& iterate, const NewtonParameters& parameters)
       : iterate_(iterate), p_(parameters) {}
 
+  /// Whether the force residual is at most this many times its tolerance, and the decrement within its own.
+  bool is_within(double times) const;
   /// Whether the tolerances are met. If they seem to be, lags friction at the iterate and checks them again.
   bool in_tolerance();
   /// Whether progress has stopped: many idle steps.

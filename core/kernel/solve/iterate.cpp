@@ -44,8 +44,10 @@ void Iterate::update_residual() {
 }
 
 void Iterate::update_friction() {
-  if (!f_.contacts().has_friction()) return;
-  f_.contacts().update_lagging(result_.x);
+  if (!f_.contacts().any()) return;
+  const bool had_friction = f_.contacts().has_friction();
+  f_.contacts().update_lagging(result_.x);  // may find the first contacts
+  if (!had_friction && !f_.contacts().has_friction()) return;
   evaluate();
   update_residual();
 }

@@ -80,8 +80,8 @@ class Newton {
     iterate_.evaluate();
     if (std::isfinite(iterate_.energy())) iterate_.update_residual();
     if (!std::isfinite(iterate_.energy()) || !std::isfinite(iterate_.force_residual())) return false;
-    check_.restart_drift();
     predictor_.enforce();
+    check_.restart_drift();  // what pins carry along has not drifted
     return true;
   }
 
@@ -124,8 +124,7 @@ class Newton {
         increase_penalty();
         at_floor = false;
       }
-      while (step_.factor().fault().empty() && dirichlet_.active() &&
-             iterate_.force_residual() <= near_equilibrium * p_.force_tolerance)
+      while (step_.factor().fault().empty() && dirichlet_.active() && check_.is_within(near_equilibrium))
         increase_penalty();
       if (!step_.factor().fault().empty()) return End{Outcome::stalled, step_.factor().fault()};
       const bool in_tolerance = !dirichlet_.active() && check_.in_tolerance();
@@ -202,10 +201,10 @@ class Newton {
   void advance_increment(bool at_equilibrium) {
     note_unreached_targets();
     load_.advance(at_equilibrium);
-    check_.restart_drift();
     check_.restart();
     step_.factor().invalidate();
     predictor_.enforce();
+    check_.restart_drift();
   }
 
   /// The next increment has other targets, so what this one did not reach would be forgotten: the first such

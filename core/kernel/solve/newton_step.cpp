@@ -76,10 +76,11 @@ bool NewtonStep::solve() {
   return true;
 }
 
-/// Whether the step's gradient is below this fraction of the force tolerance.
+/// Whether the step's gradient is below this fraction of the force tolerance. A tolerance above the load
+/// itself leaves convergence to the decrement, and says nothing of a step.
 bool NewtonStep::is_solved_to(double fraction) const {
   return free_norm(step_.gradient(), iterate_.fixed()) <=
-         fraction * p_.force_tolerance * iterate_.residual_scale();
+         fraction * std::min(p_.force_tolerance, 1.0) * iterate_.residual_scale();
 }
 
 bool NewtonStep::fail(const std::string& why) {

@@ -1,0 +1,110 @@
+// When a level ends: scenes in which a rule for it once ended one too early, or never.
+
+#include <catch2/catch.hpp>
+
+#include "core/kernel/model/objective.h"
+#include "core/kernel/solve/newton.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Counts the iterations that left the cloth where it was.
+struct Standstills : Observer {
+  Positions last;
+  int count = 0;
+  void iteration(const IterationRow&, const Positions& x) override {
+    count += last.rows() == x.rows() && last == x;
+    last = x;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A level that lands within one long step is converged with the friction of where it lands") {
+  const Solved s = scene_from(R"(
+name: strip
+cloth: {shape: rectangle, size: [0.3, 0.1], triangulation: one_way, vertices: 60}
+levels: 1
+material: {thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}
+start: {translate: [0, 0, 0.002]}
+pins: [{region: box, lower: [-0.001, -1, -1], upper: [0.001, 1, 1]}]
+energies: [neo_hookean, hinge, {type: gravity, acceleration: [3, 0, -9.81]}]
+contact: {type: shapes, dhat: 0.001}
+obstacles: [{name: floor, shape: half_space}]
+friction: 0.5
+newton: {step_size: 1, iterations_per_step: 30}
+methods: {newton: {}}
+)");
+  PlainObjective objective(s.model());
+  Observer silent;
+  const LevelResult r =
+      minimise(objective, s.scene->starts[0], s.experiment.parameters.newton, {Stopwatch(), silent});
+  REQUIRE(r.outcome == Outcome::converged);
+  Positions g;
+  objective.contacts().update_lagging(r.x);
+  objective.gradient(r.x, g);
+  CHECK(free_norm(g, s.model().fixed()) / s.model().residual_scale(r.x, g) <= 1e-3);
+}
+
+TEST_CASE("A tolerance that leaves convergence to the decrement lets no failed search pass for a step") {
+  Solved s = scene_from(R"(
+name: sphere
+cloth: {shape: rectangle, size: [0.2, 0.2], triangulation: one_way, vertices: 121}
+levels: 1
+start: {translate: [-0.1, -0.1, 0.0515], perturbation: 1e-4}
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.0608}, gravity]
+contact: ipc
+obstacles: [{name: post, meshed_shape: sphere, subdivisions: 3, radius: 0.05}]
+friction: 0.1
+newton: {form: static, force_tolerance: 1e6, decrement_tolerance: 1e-2, max_steps: 100}
+methods: {newton: {}}
+)");
+  Standstills observer;
+  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
+  CHECK(observer.count <= 3);
+}
+
+TEST_CASE("A pin that the penalty pulls is not given up before the cloth has followed") {
+  const Solved s = solve_yaml(R"(
+name: wrapped
+cloth: {shape: rectangle, size: [0.2, 0.1], triangulation: one_way, vertices: 66}
+levels: 1
+start: {translate: [-0.1, -0.05, 0.0015]}
+pins:
+  - {region: box, lower: [-1, -1, -1], upper: [0.0001, 1, 1], translate: [-0.1, -0.05, 0.0015]}
+  - {region: box, lower: [0.1999, -1, -1], upper: [1, 1, 1], translate: [-0.1, -0.05, 0.0015]}
+energies: [neo_hookean, hinge, gravity]
+contact: shapes
+obstacles: [{name: post, shape: sphere, radius: 0.03, translate: [0, 0, -0.03]}]
+newton: {psd_blend: full, step_growth: 1, force_tolerance: 1e6, decrement_tolerance: 1e-2}
+schedule:
+  steps: 1
+  equilibrate: true
+  keys:
+    - {parameter: pins.0.translate, times: [0, 1], values: [[-0.1, -0.05, 0.0015], [-0.05, -0.05, -0.05]]}
+    - {parameter: pins.1.translate, times: [0, 1], values: [[-0.1, -0.05, 0.0015], [-0.15, -0.05, -0.05]]}
+methods: {newton: {}}
+)");
+  INFO(s.levels[0].message);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+}
+
+TEST_CASE("A cloth that its pins carry far in one increment does not drift") {
+  const Solved s = solve_yaml(R"(
+name: far
+cloth: {shape: rectangle, size: [0.01, 0.01], triangulation: one_way, vertices: 25}
+levels: 1
+pins: [{region: ball, point: [0, 0, 0], radius: 0.003, translate: [0, 0, 0]}]
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-4}
+schedule:
+  steps: 1
+  keys:
+    - {parameter: pins.0.translate, times: [0, 1], values: [[0, 0, 0], [2, 0, 0]]}
+methods: {newton: {}}
+)");
+  INFO(s.levels[0].message);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+}
