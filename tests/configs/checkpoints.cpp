@@ -73,7 +73,7 @@ std::string without_column(const std::string& text, const std::string& name) {
 /// All that two equal runs have in common, by file.
 std::map<std::string, std::string> outcome_of(const fs::path& folder) {
   std::map<std::string, std::string> all;
-  for (const char* part : {"levels", "snapshots", "fields"})
+  for (const char* part : {"levels", "snapshots", "fields", "obstacles"})
     if (fs::exists(folder / part))
       for (const auto& entry : fs::directory_iterator(folder / part))
         all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
@@ -252,6 +252,48 @@ methods: {pcs: {}}
   const int parts = check_in_parts(folder, {});
   CHECK(parts > 40);
   CHECK(parts < 300);  // by a tenth of a millimetre at a time there would be a thousand
+}
+
+TEST_CASE("The obstacles of a stopped run are where its schedule has come to, and resuming moves them on") {
+  const Scratch folder;
+  folder.write("e.yaml", R"(name: raised
+cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
+levels: 1
+pins: [{region: ball, point: [0, 0, 0], radius: 0.01}]
+energies: [neo_hookean, hinge, gravity]
+contact: shapes
+obstacles: [{shape: sphere, radius: 0.1}]
+newton: {force_tolerance: 1e-2, max_steps: 20}
+schedule: {steps: 8, keys: [
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[2, 0, 0], [2, 0, 0.8]]}]}
+methods: {pcs: {}, newton: {}}
+)");
+  const fs::path out = folder / "out", ball = out / "obstacles/0.ply";
+  const auto height = [&] { return read_mesh(ball).vertices.col(2).mean(); };
+  const Experiment experiment = experiment_in(folder / "e.yaml");
+  RunOptions options = silent(out);
+  int asked = 0;
+  options.stop = [&] { return ++asked > 4; };
+  run_experiment(experiment, *scene_of(experiment), options);
+  CHECK(height() > 0.09);
+  CHECK(height() < 0.75);
+  const auto resume = [&] {
+    std::string warning;
+    resume_experiment(experiment, *scene_of(experiment), options,
+                      interrupted_run(RunFolder::of_run(out), warning));
+  };
+  const auto restored = [&] { return text_of(out / "log.jsonl").find("file_restored") != std::string::npos; };
+  asked = 0;
+  options.stop = [&] {
+    return Json::parse(text_of(out / "results.json"))["methods"].contains("newton") && ++asked > 3;
+  };
+  resume();  // pcs to its end, then newton's first steps
+  CHECK(height() == Approx(0.8));
+  CHECK_FALSE(restored());
+  fs::remove(ball);
+  resume();
+  CHECK(height() == Approx(0.8));
+  CHECK(restored());
 }
 
 TEST_CASE("So does one under load stepping with a level that starts from the initial state") {

@@ -159,3 +159,26 @@ schedule: {steps: 10, keys: [
   CHECK(x.col(2).maxCoeff() > 5e-4);  // on the ball's top, at 0, and not its cage's, at 5 mm
   CHECK(x.col(2).maxCoeff() < 3e-3);
 }
+
+TEST_CASE("a run's folder has its obstacles where the schedule ends") {
+  const std::string raised = R"(name: raised
+cloth: {shape: square, side: 0.4, columns: 3, rows: 3}
+levels: 2
+pins: [{region: ball, point: [0, 0, 0], radius: 0.01}]
+energies: [neo_hookean, hinge, gravity]
+newton: {force_tolerance: 1e-2, max_steps: 3}
+schedule: {steps: 2, keys: [
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[2, 0, -0.05], [2, 0, 0.05]]}]}
+methods: {pcs: {}, newton: {}}
+)";
+  for (const std::string plate : {"contact: ipc\nobstacles: [{meshed_shape: box, size: [0.4, 0.4, 0.01]}]\n",
+                                  "contact: shapes\nobstacles: [{shape: box, size: [0.4, 0.4, 0.01]}]\n"}) {
+    INFO(plate);
+    const Scratch folder;
+    folder.write("e.yaml", raised + plate);
+    drape_with("run e.yaml --out out --method all --quiet --no-report", folder.path);
+    const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    CHECK(all["obstacles"] == nlohmann::json{"obstacles/0.ply"});
+    CHECK(drape::read_mesh(folder / "out/obstacles/0.ply").vertices.col(2).mean() == Approx(0.05));
+  }
+}

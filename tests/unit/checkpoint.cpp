@@ -65,6 +65,7 @@ Checkpoint full() {
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
   c.recorder.steps_bytes = 12345;
+  c.recorder.obstacle_load = {2, {0.5, 0.75}};
   return c;
 }
 
@@ -171,7 +172,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 12; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 13; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

@@ -145,7 +145,7 @@ void fields(A& a, RecordedState& s) {
 template <class A>
 void fields(A& a, RecorderState& s) {
   a(s.results, s.method, s.intersection_free, s.method_intersection_free, s.states, s.snapshots, s.measured,
-    s.spent, s.last, s.overhead, s.steps_bytes, s.log_bytes);
+    s.spent, s.last, s.overhead, s.steps_bytes, s.log_bytes, s.obstacle_load);
 }
 
 template <class A>
@@ -162,7 +162,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 12;
+constexpr std::uint32_t format = 13;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -61,6 +61,9 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   spent_ = state.spent;
   last_ = state.last;
   overhead_ = state.overhead;
+  obstacle_load_ = state.obstacle_load;
+  if (scene_.schedule && !obstacle_load_.values.empty())
+    scene_.schedule->restore(static_cast<int>(scene_.models.size()) - 1, obstacle_load_);
   reset_peak_memory();
   restored_ = write_again();
   save();
@@ -81,7 +84,8 @@ RecorderState Recorder::state() const {
                   last_,
                   overhead_,
                   steps_bytes,
-                  log_bytes};
+                  log_bytes,
+                  obstacle_load_};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
@@ -224,6 +228,7 @@ void Recorder::level_finished(const LevelResult& r) {
                                                       r.from_initial_state ? Cost() : spent_, spent_);
   states_.push_back(state);
   spent_ = spent_ + cost;
+  follow_schedule();
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();

@@ -31,6 +31,7 @@ struct RecorderState {
   Cost spent, last;     ///< of the method's levels before this one; of this level so far
   double overhead = 0;  ///< time that recording took between the levels of the method [s]
   std::uint64_t steps_bytes = 0, log_bytes = 0;
+  LoadSteppingState obstacle_load;  ///< of the obstacles' files; without values at the start
 };
 
 /// Why a method that threw has failed.
@@ -83,12 +84,16 @@ class Recorder : public Observer {
   using Names = std::vector<std::string>;  // of files
   // These return the names of files that were missing or different.
   Names write_scene();
+  /// The obstacles under the load that the finest level has reached.
+  Names write_obstacles();
   Names write_state(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   Names write_collection(const std::string& method) const;
   /// Measures the fields of finished methods again whose file is not as recorded.
   Names restore_fields();
   Names write_again();
+  /// Writes the obstacles again if load stepping has moved them on.
+  void follow_schedule();
   /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][method_]; }
@@ -124,6 +129,7 @@ class Recorder : public Observer {
   Cost spent_;           // of the method's levels before this one
   Cost last_;            // of this level up to its last iteration
   double overhead_ = 0;  // time that recording took between the levels of a method [s]
+  LoadSteppingState obstacle_load_;
   std::optional<LevelResult> solved_reference_;
 };
 

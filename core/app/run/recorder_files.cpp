@@ -89,19 +89,36 @@ void record_abort(const RunFolder& folder, const std::string& cause) {
 
 Recorder::Names Recorder::write_scene() {
   Names written = write_rest(folder_, scene_);
-  const auto write = [&](const std::string& name, const TriangleMesh& mesh) {
-    if (write_where_other(folder_.file(name), ply_bytes(mesh))) written.push_back(name);
-  };
-  if (scene_.reference)
-    write("reference.ply", {*scene_.reference, scene_.hierarchy.levels.back().rest.triangles});
+  const char* reference = "reference.ply";
+  if (scene_.reference &&
+      write_where_other(folder_.file(reference),
+                        ply_bytes({*scene_.reference, scene_.hierarchy.levels.back().rest.triangles})))
+    written.push_back(reference);
+  const Names obstacles = write_obstacles();
+  written.insert(written.end(), obstacles.begin(), obstacles.end());
+  return written;
+}
+
+Recorder::Names Recorder::write_obstacles() {
+  Names written;
   results_["obstacles"] = Json::array();
   for (const auto& contact : scene_.finest_model().contacts())
     for (const TriangleMesh& obstacle : contact->obstacles()) {
       const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
-      write(name, obstacle);
       results_["obstacles"].push_back(name);
+      // A run that was killed after its last checkpoint may have moved them since: that is no damage.
+      const bool may_differ = scene_.schedule && std::filesystem::exists(folder_.file(name));
+      if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
     }
   return written;
+}
+
+void Recorder::follow_schedule() {
+  // A method that is stopped on the way leaves them where another's final states have them.
+  const LoadStepping* schedule = scene_.schedule.get();
+  if (!schedule || (!schedule->finished() && schedule->increment() <= obstacle_load_.increment)) return;
+  obstacle_load_ = schedule->state();
+  write_obstacles();
 }
 
 Recorder::Names Recorder::write_state(const RecordedState& state) const {
