@@ -336,8 +336,27 @@ TEST_CASE("names in a report cannot break the page or leave its folder") {
   CHECK_FALSE(contains(page, evil));
   CHECK_FALSE(contains(page, "<b>\""));
   CHECK(contains(page, "<h1>../&lt;b&gt;&quot;x&#39;&lt;/script&gt;&amp;</h1>"));
-  CHECK(fs::exists(run.folder / "pictures" / "____b__x___script___l0.png"));
+  CHECK(fs::exists(run.folder / "pictures" / "..__b__x___script___l0.png"));
   CHECK_FALSE(contains(chart_data(read_run(run.folder)), "<"));
+}
+
+TEST_CASE("methods of different names have different pictures") {
+  const auto pictures = [](const std::string& name) {
+    MethodRecord method;
+    method.name = name;
+    MetricPicture metric;
+    metric.name = "folds";
+    ConsistencyRecord pair;
+    pair.fine = 1;
+    return std::vector<std::string>{state_picture(method, 0), outline_picture(method, {0, 1}),
+                                    threshold_picture(metric, method, 0),
+                                    difference_picture(metric, method, pair)};
+  };
+  CHECK(pictures("a.b")[0] == "a.b_l0.png");
+  const std::vector<std::string> names = {"a.b", "a_b", "a-b", "方法一", "方法二"};
+  for (const std::string& a : names)
+    for (const std::string& b : names)
+      for (std::size_t k = 0; k < 4; ++k) CHECK((pictures(a)[k] == pictures(b)[k]) == (a == b));
 }
 
 TEST_CASE("a report needs results.json") {

@@ -10,9 +10,12 @@ namespace drape {
 
 namespace {
 
+/// Keeps a method's name as it is: a run accepts only names of files, and distinct methods need distinct
+/// pictures. Only an edited results.json or a metric's declaration can have anything else.
 std::string file_part(std::string name) {
   for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && !std::isalnum(byte) && c != '-' && c != '.') c = '_';
   }
   return name;
 }
