@@ -202,6 +202,50 @@ TEST_CASE("report of several folders takes a page's name, and groups runs by all
   CHECK(collection.runs[2].seed.value() == 3);
 }
 
+TEST_CASE("variations of one name are kept apart if they are of different sweeps") {
+  const Scratch folder;
+  const auto write = [&](const std::string& where, const std::string& name,
+                         const std::vector<std::string>& variations) {
+    OrderedJson runs = OrderedJson::array();
+    for (const std::string& variation : variations)
+      for (int seed = 1; seed <= 2; ++seed)
+        runs.push_back({{"name", variation}, {"seed", seed}, {"folder", "r"}, {"status", "pending"}});
+    fs::create_directory(folder / where);
+    folder.write(where + "/sweep.json",
+                 OrderedJson{{"sweep", name}, {"complete", true}, {"runs", runs}}.dump());
+  };
+  write("a", "balls", {"base", "soft"});
+  write("b", "cubes", {"base", "stiff"});
+  write("c", "cubes", {"base"});
+  const auto variations = [&](const std::vector<std::string>& sweeps) {
+    std::vector<fs::path> folders;
+    for (const std::string& name : sweeps) folders.push_back(folder / name);
+    return read_runs(folders).variations();
+  };
+  using Names = std::vector<std::string>;
+  CHECK(variations({"a"}) == Names{"base", "soft"});
+  CHECK(variations({"a", "b"}) == Names{"balls: base", "soft", "cubes: base", "stiff"});
+  CHECK(variations({"b", "c"}) ==
+        Names{(folder / "b").string() + ": base", "stiff", (folder / "c").string() + ": base"});
+  const RunTable table = table_of(read_runs({folder / "a", folder / "b"}));  // has the sweeps in a column
+  REQUIRE(table.rows.size() == 8);
+  CHECK(table.rows[0]["run"] == "base, seed 1");
+}
+
+TEST_CASE("an experiment and the folder of another one may have the same name") {
+  const Scratch folder;
+  for (const auto& [from, to] : {std::pair("galerkin", "soft"), {"coarse", "stiff"}, {"coarse", "other"}})
+    fs::copy(sweep() / ("runs/matrix=" + std::string(from) + "/seed_1"), folder / to,
+             fs::copy_options::recursive);
+  OrderedJson results = OrderedJson::parse(text_of(folder / "other/results.json"));
+  results["experiment"] = "soft";
+  folder.write("other/results.json", results.dump());
+  folder.write("other/config.yaml",
+               replaced(text_of(folder / "other/config.yaml"), "name: small", "name: soft"));
+  const RunCollection collection = read_runs({folder / "soft", folder / "stiff", folder / "other"});
+  CHECK((collection.variations() == std::vector<std::string>{"soft", "stiff", (folder / "other").string()}));
+}
+
 TEST_CASE("report replaces drape's own pages and no other file") {
   const Scratch folder;
   const auto written = [&](const std::string& runs, const std::string& page) {

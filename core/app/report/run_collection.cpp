@@ -33,7 +33,7 @@ void read_sweep(const fs::path& folder, RunCollection& collection) {
     if (!entry.is_object()) continue;
     RunRecord run;
     run.sweep = text_member(json, "sweep");
-    run.variation = text_member(entry, "name");
+    run.name = run.variation = text_member(entry, "name");
     run.status = text_member(entry, "status");
     if (run.status == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
     if (run.status == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
@@ -91,6 +91,7 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
     collection.runs.push_back(std::move(run));
   }
   std::map<std::string, std::string> name_of;  // a configuration's
+  std::set<std::string> names;                 // those that are taken
   for (std::size_t k = 0; k < folders.size(); ++k) {
     RunRecord& run = collection.runs[first + k];
     const std::string& experiment = run.data->experiment;
@@ -98,8 +99,33 @@ void read_single_runs(const std::vector<fs::path>& folders, RunCollection& colle
     const std::string own = configs_of[experiment].size() == 1 ? experiment
                             : folders_of[folder] > 1           ? folders[k].string()
                                                                : folder;
-    run.variation = name_of.emplace(configs[k], own).first->second;
+    const auto [found, added] = name_of.emplace(configs[k], own);
+    if (added && !names.insert(own).second) found->second = folders[k].string();
+    run.name = run.variation = found->second;
   }
+}
+
+/// The runs that were read from one sweep's folder, or last those that are by themselves.
+struct Source {
+  fs::path folder;  ///< empty for runs by themselves
+  std::size_t begin, end;
+};
+
+/// Runs of two sweeps are no repeats of each other, even if their variations have one name.
+void keep_apart(const std::vector<Source>& sources, std::vector<RunRecord>& runs) {
+  std::map<std::string, std::set<std::size_t>> sources_of;  // by the name of a variation
+  std::map<std::string, int> sweeps_of;                     // by their name
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (std::size_t k = sources[s].begin; k < sources[s].end; ++k) sources_of[runs[k].name].insert(s);
+    if (sources[s].begin < sources[s].end) ++sweeps_of[runs[sources[s].begin].sweep];
+  }
+  for (const Source& source : sources)
+    for (std::size_t k = source.begin; k < source.end; ++k) {
+      RunRecord& run = runs[k];
+      if (sources_of[run.name].size() < 2 || source.folder.empty()) continue;
+      const bool named = !run.sweep.empty() && sweeps_of[run.sweep] == 1;
+      run.variation = (named ? run.sweep : source.folder.string()) + ": " + run.name;
+    }
 }
 
 }  // namespace
@@ -154,9 +180,12 @@ bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "swe
 RunCollection read_runs(const std::vector<fs::path>& folders) {
   RunCollection collection;
   std::vector<fs::path> single;
+  std::vector<Source> sources;
   for (const fs::path& folder : folders) {
     if (is_sweep(folder)) {
+      const std::size_t begin = collection.runs.size();
       read_sweep(folder, collection);
+      sources.push_back({folder, begin, collection.runs.size()});
     } else if (fs::is_regular_file(folder / "results.json")) {
       single.push_back(folder);
     } else {
@@ -165,7 +194,10 @@ RunCollection read_runs(const std::vector<fs::path>& folders) {
           ": neither results.json nor sweep.json here; give the folder of a run or a sweep");
     }
   }
+  const std::size_t begin = collection.runs.size();
   read_single_runs(single, collection);
+  sources.push_back({{}, begin, collection.runs.size()});
+  keep_apart(sources, collection.runs);
   if (collection.name.empty()) {
     std::vector<std::string> names;
     for (const RunRecord& run : collection.runs)

@@ -11,8 +11,9 @@ namespace drape {
 
 /// One of several runs: a variation with a seed.
 struct RunRecord {
-  std::string sweep;  ///< its name; empty for a run by itself
-  std::string variation;
+  std::string sweep;      ///< its name; empty for a run by itself
+  std::string name;       ///< of its variation
+  std::string variation;  ///< the same, preceded by the sweep where sweeps share the name
   OptionalNumber seed;
   std::string status;  ///< as sweep.json has it: "converged", "not_converged", "failed", …
   std::string error;   ///< message of a failed run

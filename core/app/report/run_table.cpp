@@ -116,7 +116,7 @@ RunTable table_of(const RunCollection& collection) {
   for (const RunRecord& run : collection.runs) {
     const bool repeated = collection.of(run.variation).size() > 1 && run.seed;
     const Json name = {{"sweep", run.sweep},
-                       {"run", run.variation + (repeated ? ", seed " + html::fixed(run.seed, 0) : "")}};
+                       {"run", run.name + (repeated ? ", seed " + html::fixed(run.seed, 0) : "")}};
     const auto add = [&](const std::string& outcome, const Json& cells) {
       TableRow row = name;
       row.update(cells);
