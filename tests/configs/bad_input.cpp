@@ -473,15 +473,46 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
   folder.write("e.yaml", small_experiment());
   const std::string run = "run e.yaml --out out --quiet --no-report --levels 1 --method ";
   REQUIRE(drape_with(run + "pcs", folder.path).exit_code == 0);
-  folder.write("out/notes.txt", "mine");
+  fs::create_directories(folder / "out/pictures/mine");
+  const std::vector<std::string> own = {"notes.txt",         "pictures/mine.png", "pictures/mine/pcs_l0.png",
+                                        "levels/pcs_l0.obj", "fields/pcs_l0.ply", "rest/level0.ply",
+                                        "obstacles/my0.ply", "checkpoint/mine"};
+  for (const std::string& name : own) folder.write("out/" + name, "mine");
+  for (const char* of_the_run : {"pictures/pcs_l0_on_l1.png", "fields/pcs_l0_l1.ply", "errors.csv.part"})
+    folder.write(std::string("out/") + of_the_run, "");
   CHECK(refused(folder, run + "newton") ==
         "error: out: holds the results of another run; name another folder with --out, or replace them with "
         "--overwrite\n");
   REQUIRE(fs::exists(folder / "out/levels/pcs_l0.ply"));
   REQUIRE(drape_with(run + "newton --overwrite", folder.path).exit_code == 0);
-  CHECK(!fs::exists(folder / "out/levels/pcs_l0.ply"));
+  for (const char* removed :
+       {"levels/pcs_l0.ply", "levels/pcs_l0.vtp", "levels/pcs.pvd", "snapshots/pcs_l0.bin",
+        "pictures/pcs_l0_on_l1.png", "fields/pcs_l0_l1.ply", "errors.csv.part"}) {
+    INFO(removed);
+    CHECK(!fs::exists(folder / "out" / removed));
+  }
   CHECK(fs::exists(folder / "out/levels/newton_l0.ply"));
-  CHECK(text_of(folder / "out/notes.txt") == "mine");
+  for (const std::string& name : own) {
+    INFO(name);
+    CHECK(text_of(folder / ("out/" + name)) == "mine");
+  }
+}
+
+TEST_CASE("a file where a run has a folder, or a folder where it has a file, is refused and not removed") {
+  for (const std::string name : {"pictures", "steps.csv/mine"}) {
+    const Scratch folder;
+    folder.write("e.yaml", small_experiment());
+    fs::create_directories(folder / "out/checkpoint");
+    folder.write("out/checkpoint/lock", "");
+    const fs::path mine = folder / ("out/" + name);
+    fs::create_directories(mine.parent_path());
+    folder.write("out/" + name, "mine");
+    INFO(name);
+    CHECK(refused(folder, "run e.yaml --out out --overwrite") ==
+          "error: out/" + name.substr(0, name.find('/')) +
+              ": is not what a run has by this name; move it, or name another results folder with --out\n");
+    CHECK(text_of(mine) == "mine");
+  }
 }
 
 TEST_CASE("a run that was killed before its first write blocks no other run") {

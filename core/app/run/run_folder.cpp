@@ -4,8 +4,10 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <regex>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/model/metric_declaration.h"
@@ -16,11 +18,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names that a run writes, the only ones that --overwrite may remove.
-constexpr const char* own_names[] = {"config.yaml", "results.json", "report.html",  "steps.csv",
-                                     "log.jsonl",   "levels",       "fields",       "rest",
-                                     "pictures",    "obstacles",    "snapshots",    "errors.csv",
-                                     "start.ply",   "checkpoint",   "reference.ply"};
+// Names that a run writes, the only ones that --overwrite may remove: files, and patterns of those in its
+// folders. Its method may have had any name.
+constexpr const char* own_files[] = {"config.yaml", "results.json", "report.html", "steps.csv",
+                                     "log.jsonl",   "errors.csv",   "start.ply",   "reference.ply"};
+constexpr std::pair<const char*, const char*> own_folders[] = {
+    {"levels", R"(.+_l\d+\.(ply|vtp)|.+\.pvd)"},
+    {"fields", R"(.+_l\d+_l\d+\.ply)"},
+    {"rest", R"(l\d+\.ply)"},
+    {"pictures", R"(.+_l\d+(_.+)?\.png)"},
+    {"obstacles", R"(\d+\.ply)"},
+    {"snapshots", R"(.+_l\d+\.bin)"},
+    {"checkpoint", R"((state|previous|next)\.bin)"}};
+constexpr const char* unfinished = ".part";  // ends the name of a file that is being written
 constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
 constexpr std::size_t longest_ending = std::string_view("_l10_l11_.png.part").size() + longest_picture_name;
@@ -32,7 +42,9 @@ bool is_of_a_run(const RunFolder& folder) {
 
 /// A file or non-empty folder with one of a run's names; "" without one.
 fs::path left_there(const RunFolder& folder) {
-  for (const char* own : own_names) {
+  for (const char* own : own_files)
+    if (fs::path path = folder.file(own); fs::exists(path)) return path;
+  for (const auto& [own, pattern] : own_folders) {
     fs::path path = folder.file(own);
     if (!fs::is_directory(path)) {
       if (fs::exists(path)) return path;
@@ -42,6 +54,19 @@ fs::path left_there(const RunFolder& folder) {
       if (entry.path() != folder.file(lock_name)) return path;
   }
   return {};
+}
+
+/// What is no file of a run's cannot be removed, and would stop the run at its first write there.
+void refuse_other_kinds(const RunFolder& folder) {
+  const auto refuse = [](const fs::path& path) {
+    throw std::runtime_error(path.string() +
+                             ": is not what a run has by this name; move it, or name another results folder "
+                             "with --out");
+  };
+  for (const char* own : own_files)
+    if (fs::is_directory(folder.file(own))) refuse(folder.file(own));
+  for (const auto& [own, pattern] : own_folders)
+    if (const fs::path path = folder.file(own); fs::exists(path) && !fs::is_directory(path)) refuse(path);
 }
 
 /// Files may be replaced only if they are a run's and `overwrite` is set.
@@ -56,6 +81,7 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
     throw std::runtime_error(folder.path().string() +
                              ": holds the results of another run; name another folder with --out, or "
                              "replace them with --overwrite");
+  refuse_other_kinds(folder);
 }
 
 /// The missing folders of the path, innermost first.
@@ -85,12 +111,22 @@ void make_writable(const RunFolder& folder) {
     throw std::runtime_error(name + ": cannot write to the results folder; name another with --out");
 }
 
+/// Removes the files of an earlier run; those that others have put into its folders stay.
 void clear(const RunFolder& folder) {
   std::error_code error;
-  for (const char* own : own_names)
-    if (own != std::string_view("checkpoint")) fs::remove_all(folder.file(own), error);
-  for (const auto& entry : fs::directory_iterator(folder.file("checkpoint")))
-    if (entry.path() != folder.file(lock_name)) fs::remove_all(entry.path(), error);
+  for (const char* own : own_files)
+    for (const char* ending : {"", unfinished}) fs::remove(folder.file(std::string(own) + ending), error);
+  for (const auto& [own, pattern] : own_folders) {
+    const fs::path path = folder.file(own);
+    if (!fs::exists(path)) continue;
+    const std::regex own_name("(?:" + std::string(pattern) + ")(?:\\" + unfinished + ")?");
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(path))
+      if (!entry.is_directory() && std::regex_match(entry.path().filename().string(), own_name))
+        files.push_back(entry.path());
+    for (const fs::path& file : files) fs::remove(file, error);
+    fs::remove(path, error);  // if it is empty
+  }
 }
 
 }  // namespace
