@@ -1,9 +1,11 @@
 """Experiments and their results: the same as the command's."""
 
 import gc
+import locale
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 
 import numpy
@@ -146,6 +148,39 @@ def test_tables(experiment):
     assert any(c.startswith("reference.") for c in result.errors)
     assert "<table>" in result.levels._repr_html_()
     assert isinstance(result.levels.to_pandas(), pandas.DataFrame)
+
+
+@pytest.fixture
+def set_decimal_comma(tmp_path, monkeypatch):
+    """Gives the process a locale whose numbers have a decimal comma, made by the localedef of libc-bin."""
+    source, charmap, made = tmp_path / "source", tmp_path / "charmap", tmp_path / "decimal_comma"
+    source.write_text('LC_NUMERIC\ndecimal_point ","\nthousands_sep ""\ngrouping -1\nEND LC_NUMERIC\n')
+    charmap.write_text("CHARMAP\nEND CHARMAP\n")
+    if shutil.which("localedef") is None:
+        pytest.skip("needs localedef")
+    # It misses the other categories, says so by its exit code, and writes the locale.
+    subprocess.run(["localedef", "-c", "-i", source, "-f", charmap, made], capture_output=True)
+    monkeypatch.setenv("LOCPATH", str(tmp_path))
+    before = locale.setlocale(locale.LC_NUMERIC)
+    yield lambda: locale.setlocale(locale.LC_NUMERIC, made.name)
+    locale.setlocale(locale.LC_NUMERIC, before)
+
+
+def test_files_are_the_same_in_every_locale(experiment, tmp_path, set_decimal_comma):
+    experiment.run(out=tmp_path / "point", report=False, progress=False)
+    expected = drape.read_run(tmp_path / "point")
+    set_decimal_comma()
+    assert locale.format_string("%.1f", 0.5) == "0,5"
+    again = drape.read_run(tmp_path / "point")
+    experiment.run(out=tmp_path / "comma", progress=False)
+    ours = drape.read_run(tmp_path / "comma")
+    for table in (again.iterations, ours.iterations):
+        assert numpy.array_equal(table["force_residual"], expected.iterations["force_residual"])
+    assert numpy.array_equal(again.errors["seconds"], expected.errors["seconds"])
+    for name in ("steps.csv", "errors.csv"):
+        lines = (tmp_path / "comma" / name).read_text().splitlines()
+        assert {line.count(",") for line in lines} == {lines[0].count(",")}
+    assert not re.search(r"<td>[-0-9]+,[0-9]", (tmp_path / "comma/report.html").read_text())
 
 
 def test_a_result_shows_itself(experiment, monkeypatch, tmp_path):

@@ -1,10 +1,10 @@
 #include "core/app/files/csv.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "core/kernel/files/file.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -35,10 +35,8 @@ OptionalNumber Csv::number(std::size_t row, const std::string& column) const {
 }
 
 OptionalNumber number_of(const std::string& cell) {
-  char* end = nullptr;
-  const double value = std::strtod(cell.c_str(), &end);
-  if (end == cell.c_str() || !std::isfinite(value)) return {};
-  return value;
+  const std::optional<double> value = parse_number(cell);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 }  // namespace drape

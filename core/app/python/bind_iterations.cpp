@@ -3,6 +3,7 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/callbacks.h"
 #include "core/app/python/module.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape::python {
 
@@ -37,7 +38,7 @@ void bind_iterations(py::module_& m) {
           "x", [](const Iteration& i) { return view(*i.x, i.x); }, "n×3 positions [m], read-only.")
       .def("__repr__", [](const Iteration& i) {
         return "<drape.Iteration level " + std::to_string(i.row.level) + ", step " +
-               std::to_string(i.row.step) + ", force_residual " + std::to_string(i.row.force_residual) + ">";
+               std::to_string(i.row.step) + ", force_residual " + fixed_text(i.row.force_residual, 6) + ">";
       });
 
   py::class_<LevelResult, std::shared_ptr<LevelResult>>(m, "LevelResult", "How a level of a solve ended.")

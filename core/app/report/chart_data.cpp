@@ -1,10 +1,11 @@
 #include "core/app/report/chart_data.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -143,9 +144,7 @@ Json increments_json(const RunData& run) {
 
 Json rounded(const OptionalNumber& value) {
   if (!value) return nullptr;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", *value);
-  return std::strtod(text, nullptr);
+  return parse_number(general_text(*value, 6)).value();
 }
 
 Json measures_json(const std::vector<ErrorMeasure>& measures) {

@@ -1,21 +1,17 @@
 #include "core/app/run/errors.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "core/app/files/snapshot_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 
 namespace {
 
-std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return std::isfinite(value) ? text : "";
-}
+std::string number(double value) { return std::isfinite(value) ? general_text(value, 9) : ""; }
 
 std::string cells(const StateError& error) {
   std::string text;

@@ -1,13 +1,13 @@
 #include "core/app/run/recorder.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/mesh/io_formats.h"
@@ -148,22 +148,18 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   const double seconds = r.seconds - overhead_;
   last_ = {std::max(seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
   if (snapshots_.any()) snapshots_.iteration(last_, x);
-  char line[400];
-  std::snprintf(line, sizeof line, "%s,%d,%d,%d,%.6f,%.17g,%.9g,%.9g,%.9g,", method_.c_str(), r.level, r.step,
-                r.iteration, seconds, r.energy, r.decrement, r.force_residual, r.step_length);
-  steps_ << line;
-  if (r.proxy_energy) std::snprintf(line, sizeof line, "%.17g", *r.proxy_energy), steps_ << line;
-  std::snprintf(line, sizeof line, ",%.9g,", r.step_size);
-  steps_ << line;
+  steps_ << method_ << ',' << r.level << ',' << r.step << ',' << r.iteration << ',' << fixed_text(seconds, 6)
+         << ',' << general_text(r.energy, 17) << ',' << general_text(r.decrement, 9) << ','
+         << general_text(r.force_residual, 9) << ',' << general_text(r.step_length, 9) << ',';
+  if (r.proxy_energy) steps_ << general_text(*r.proxy_energy, 17);
+  steps_ << ',' << general_text(r.step_size, 9) << ',';
   if (r.contacts) steps_ << *r.contacts;
   steps_ << ',';
-  if (r.smallest_gap && std::isfinite(*r.smallest_gap))
-    std::snprintf(line, sizeof line, "%.6g", *r.smallest_gap), steps_ << line;
+  if (r.smallest_gap && std::isfinite(*r.smallest_gap)) steps_ << general_text(*r.smallest_gap, 6);
   steps_ << ',';
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
     if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
-  std::snprintf(line, sizeof line, ",%.9g", spent_.flops + r.flops), steps_ << line;
-  steps_ << std::endl;
+  steps_ << ',' << general_text(spent_.flops + r.flops, 9) << std::endl;
   require_written(steps_, "steps.csv");
 }
 

@@ -2,8 +2,10 @@
 
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape::html {
 
@@ -79,23 +81,15 @@ std::string formula(std::string_view text) {
 std::string number_text(const OptionalNumber& value) {
   if (!value) return dash;
   if (*value == 0) return "0";
-  char scientific[32];
-  std::snprintf(scientific, sizeof scientific, "%.2e", *value);
-  const std::string text = scientific;
+  const std::string text = scientific_text(*value, 2);
   const std::size_t e = text.find('e');
   const int exponent = std::stoi(text.substr(e + 1));
   if (exponent < -2 || exponent > 3) return text.substr(0, e) + "e" + std::to_string(exponent);
-  const double rounded = std::stod(text);
-  char plain[32];
-  std::snprintf(plain, sizeof plain, "%.*f", std::max(0, 2 - exponent), rounded);
-  return plain;
+  return fixed_text(parse_number(text).value(), std::max(0, 2 - exponent));
 }
 
 std::string fixed(const OptionalNumber& value, int decimals) {
-  if (!value) return dash;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", decimals, *value);
-  return text;
+  return value ? fixed_text(*value, decimals) : dash;
 }
 
 std::string count(const OptionalNumber& value) {

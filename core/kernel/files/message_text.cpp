@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "core/kernel/files/number_text.h"
+
 namespace drape {
 namespace {
 
@@ -96,11 +98,7 @@ std::size_t first_unprintable(std::string_view text) {
 
 std::string excerpt(std::string_view text) { return printable(text, 90); }
 
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string three_digits(double value) { return general_text(value, 3); }
 
 std::string reason_of(const std::exception& error) {
   if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {

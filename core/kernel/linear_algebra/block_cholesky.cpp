@@ -5,6 +5,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/cholmod_context.h"
 #include "core/kernel/linear_algebra/cholmod_factor.h"
 #include "core/kernel/linear_algebra/supernodal_factor.h"
@@ -146,7 +147,7 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
   try {
     factor_->set_structure(*pattern_, ordering_, supernodes_of(*c.factor));
   } catch (const std::bad_alloc&) {
-    throw std::runtime_error("sparse Cholesky: no memory for a factor of " + std::to_string(entries_ * 8e-9) +
+    throw std::runtime_error("sparse Cholesky: no memory for a factor of " + three_digits(entries_ * 8e-9) +
                              " GB; use a coarser mesh");
   }
 }

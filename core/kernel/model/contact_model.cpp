@@ -1,14 +1,13 @@
 #include "core/kernel/model/contact_model.h"
 
-#include <cstdio>
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 
 std::string to_string(const Intersection& intersection) {
-  char point[100];
-  std::snprintf(point, sizeof point, " at (%.4g, %.4g, %.4g)", intersection.where.x(), intersection.where.y(),
-                intersection.where.z());
-  return intersection.first + " and " + intersection.second + point;
+  const Eigen::Vector3d& at = intersection.where;
+  return intersection.first + " and " + intersection.second + " at (" + general_text(at.x(), 4) + ", " +
+         general_text(at.y(), 4) + ", " + general_text(at.z(), 4) + ")";
 }
 
 }  // namespace drape

@@ -1,15 +1,14 @@
 #include "core/kernel/model/stretch_limit.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "core/kernel/files/number_text.h"
 
 namespace drape {
 
 std::string to_string(const StretchedTriangle& stretched, double limit) {
-  char text[128];
-  std::snprintf(text, sizeof text, "triangle %d, stretched to %.6g (limit %.6g)", stretched.triangle,
-                stretched.stretch, limit);
-  return text;
+  return "triangle " + std::to_string(stretched.triangle) + ", stretched to " +
+         general_text(stretched.stretch, 6) + " (limit " + general_text(limit, 6) + ")";
 }
 
 std::string strain_limit_violations(const std::vector<const BoundEnergy*>& energies, const Positions& x,
