@@ -1,6 +1,7 @@
 """The model under an experiment: derivatives, prolongations, metrics; another method in Python."""
 
 import gc
+import json
 
 import numpy
 import pytest
@@ -62,6 +63,22 @@ def test_derivatives(source, small):
     projected = numpy.linalg.eigvalsh(model.hessian(x, "clamp").toarray())
     assert projected[0] > -1e-10 * projected[-1]
     assert sum(model.energy_parts(x).values()) == pytest.approx(model.energy(x), rel=1e-12)
+
+
+def test_energies_of_one_type_keep_their_parts(small, tmp_path):
+    small["energies"] += [{"type": "constant_load", "force_density": force} for force in ([0.1, 0, 0], [0, 0.3, 0])]
+    experiment = drape.Experiment({**small, "metrics": ["energy"]})
+    level = experiment.run(out=tmp_path / "r", report=False, progress=False)["pcs"].levels[-1]
+    names = ["neo_hookean", "hinge", "gravity", "constant_load", "constant_load 2"]
+    model = experiment.scene()[1]
+    assert list(level.energy_parts) == list(model.energy_parts(level.x)) == names
+    assert sum(level.energy_parts.values()) == pytest.approx(level.energy, rel=1e-12)
+    assert sum(model.energy_parts(level.x).values()) == pytest.approx(model.energy(level.x), rel=1e-12)
+    measured = experiment.scene().metric("energy", 1, level.x)
+    for name, joules in level.energy_parts.items():
+        assert measured[f"energy_parts.{name}"] == joules
+    recorded = json.loads((tmp_path / "r/results.json").read_text())
+    assert list(recorded["methods"]["pcs"]["levels"][-1]["energy_parts"]) == names
 
 
 def test_contacts():

@@ -108,6 +108,23 @@ TEST_CASE("linear energies are evaluated together, and limits apart", "[level_mo
   CHECK(model.load_norm(x) == Approx(2.5 / 1.5 * forces.norm()).epsilon(1e-12));
 }
 
+TEST_CASE("the parts of the energy have names of their own and sum to it", "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const auto slope = [](double size) { return std::make_shared<Slope>(size, 0); };
+  const std::vector<NamedEnergy> energies = {
+      {"load", slope(2)}, {"load 2", slope(5)}, {"load", slope(-0.5)}, {"other", slope(1)}};
+  const LevelModel model(level, Material(), energies, {});
+  const LevelModel later(level, Material(), energies, {}, {}, &model);
+  const Positions x = level.rest.vertices.array() + 0.7;
+  for (const LevelModel* own : {&model, &later}) {
+    std::vector<std::string> names;
+    double sum = 0;
+    for (const auto& [name, joules] : own->energy_parts(x)) names.push_back(name), sum += joules;
+    CHECK(names == std::vector<std::string>{"load", "load 2", "load 3", "other"});
+    CHECK(sum == Approx(own->energy(x)).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("A model shares with another what is equal, and binds contacts from those before",
           "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));

@@ -12,6 +12,7 @@ namespace drape {
 namespace {
 
 constexpr int rows_at_once = 8192;  // per task
+constexpr const char* contact_part = "contact";
 
 double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
   double sum = 0;
@@ -41,6 +42,16 @@ LevelModel::LevelModel(const Level& level, const Material& material, const std::
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
 }
 
+std::string LevelModel::unused_name(const std::string& type) const {
+  const auto is_used = [&](const std::string& name) {
+    return name == contact_part ||
+           std::any_of(terms_.begin(), terms_.end(), [&](const Term& term) { return term.name == name; });
+  };
+  std::string name = type;
+  for (int number = 2; is_used(name); ++number) name = type + " " + std::to_string(number);
+  return name;
+}
+
 void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before) {
   std::vector<Stencils> stencils;
   for (std::size_t t = 0; t < energies.size(); ++t) {
@@ -49,10 +60,10 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
     if (old && old->kind == e.energy && before->material_ == material_) {
       terms_.push_back(*old);
     } else {
-      Term term{e.name, e.energy->role(), e.energy, e.energy->bind(*level_, material_), nullptr};
+      Term term{unused_name(e.name), e.energy->role(), e.energy, e.energy->bind(*level_, material_), nullptr};
       Stencils own = term.energy->stencils();
       if (old && own != old->energy->stencils())
-        throw std::runtime_error("energy " + e.name +
+        throw std::runtime_error("energy " + term.name +
                                  " changes its stencils with a parameter that a schedule changes; "
                                  "stencils must stay the same");
       if (old) term.slots = old->slots;
@@ -189,7 +200,7 @@ double LevelModel::energy(const Positions& x) const { return energy_without_cont
 std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
   std::vector<std::pair<std::string, double>> parts;
   for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
-  if (!contacts_.empty()) parts.emplace_back("contact", barrier(x));
+  if (!contacts_.empty()) parts.emplace_back(contact_part, barrier(x));
   return parts;
 }
 

@@ -14,7 +14,7 @@
 
 namespace drape {
 
-/// An energy and the name that the experiment gives it.
+/// An energy and its type, as the experiment names it.
 struct NamedEnergy {
   std::string name;
   std::shared_ptr<const Energy> energy;
@@ -80,7 +80,8 @@ class LevelModel {
   /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
   /// builds it anew: solvers take an Objective.
   BlockMatrix energy_hessian(const Positions& x, Projection projection) const;
-  /// The parts of energy(x): each term in the order given, and the contacts if there are any [J].
+  /// The parts of energy(x): each term in the order given, and the contacts, `contact`, if there are any [J].
+  /// No two have one name: the second energy of a type is `gravity 2`.
   std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
   /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance
   /// each other still set the scale of the residual.
@@ -110,6 +111,7 @@ class LevelModel {
     double at_origin = 0;  // value at x = 0
   };
 
+  std::string unused_name(const std::string& type) const;  // by terms_ and the contacts' part
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
   double external_force_norm(const Positions& x) const;
