@@ -251,6 +251,39 @@ def test_a_solver_reports_finite_states(small):
         ("stalled", ""), ("infeasible", "not tried")]
 
 
+@pytest.mark.parametrize("solve, error", [
+    (lambda problem: None, "has ended no level"),
+    (lambda problem: problem.begin(0), "has not ended level 0"),
+    (lambda problem: [whole(problem, level) for level in (1, 0)], "level 0 cannot begin after level 1"),
+    (lambda problem: [whole(problem, level) for level in (0, 0)], "level 0 cannot begin after level 0"),
+])
+def test_a_solver_reports_every_level_once_from_coarse_to_fine(small, solve, error):
+    drape.register("careless", type("Careless", (drape.Solver,), {"solve": lambda self, problem: solve(problem)}))
+    experiment = drape.Experiment({**small, "methods": {"careless": {}}, "reference": {}})
+    with pytest.raises(ValueError, match=error):
+        experiment.run(progress=False)
+    with pytest.raises(ValueError, match=error):
+        list(experiment.solver("careless"))
+
+
+def whole(problem, level):
+    problem.begin(level)
+    problem.iteration(problem.start(level))
+    problem.end(problem.start(level))
+
+
+def test_a_solver_may_skip_levels_and_recover(small):
+    class Skips(drape.Solver):
+        def solve(self, problem):
+            whole(problem, 1)
+            with pytest.raises(ValueError, match="level 0 cannot begin after level 1"):
+                problem.begin(0)
+
+    drape.register("skips", Skips)
+    result = drape.Experiment({**small, "methods": {"skips": {}}, "reference": {}}).run(progress=False)
+    assert result.complete and [level.level for level in result["skips"].levels] == [1]
+
+
 def test_what_python_handles_is_not_raised(small):
     class Picky(prototypes.Springs):
         def value(self, x, rest):

@@ -129,7 +129,7 @@ void bind_solver_problem(py::module_& m) {
           },
           py::arg("level"), py::arg("x"),
           "A level's state on the next finer one, Dirichlet vertices at their targets.")
-      .def("begin", &SolverProblem::begin, py::arg("level"), "Begin a level.")
+      .def("begin", &SolverProblem::begin, py::arg("level"), "Begin a level, finer than the last.")
       .def(
           "iteration",
           [](SolverProblem& p, const py::object& values, std::optional<double> energy,

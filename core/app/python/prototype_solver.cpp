@@ -50,6 +50,10 @@ int SolverProblem::vertex_count() const {
 void SolverProblem::begin(int level) {
   if (under_way_) throw std::runtime_error("end the level before beginning another");
   checked(level);
+  if (!results_.empty() && level <= results_.back().level)
+    throw py::value_error("level " + std::to_string(level) + " cannot begin after level " +
+                          std::to_string(results_.back().level) +
+                          ": begin levels from coarse to fine, each at most once");
   under_way_.emplace();
   under_way_->level = level;
   under_way_->from_initial_state = results_.empty();
@@ -88,8 +92,16 @@ void SolverProblem::end(const Positions& x, const std::string& status, const std
   observer_->level_finished(results_.back());
 }
 
+void SolverProblem::expire() { *alive_ = false; }
+
 std::vector<LevelResult> SolverProblem::finish() {
-  *alive_ = false;
+  expire();
+  if (under_way_)
+    throw py::value_error("solve has not ended level " + std::to_string(under_way_->level) +
+                          ": call problem.end with its last state before returning");
+  if (results_.empty())
+    throw py::value_error(
+        "solve has ended no level: call problem.begin and problem.end for each level that it solves");
   return std::move(results_);
 }
 
@@ -101,7 +113,7 @@ std::vector<LevelResult> PythonSolver::solve(const Problem& problem, Observer& o
     try {
       prototype_->attr("solve")(given);
     } catch (...) {
-      given->finish();
+      given->expire();
       throw;
     }
     return given->finish();

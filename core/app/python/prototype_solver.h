@@ -19,6 +19,7 @@ class SolverProblem {
   /// A level's state on the next one, by linear interpolation over the rest shape.
   Positions prolong(int level, const Positions& x) const;
 
+  /// Raises ValueError unless the level is finer than those that have ended.
   void begin(int level);
   /// Vertices of the level that has begun. Throws std::runtime_error without one.
   int vertex_count() const;
@@ -28,7 +29,10 @@ class SolverProblem {
                  double step_length);
   void end(const Positions& x, const std::string& status, const std::string& message);
 
-  /// Ends the solve; returns the results of the levels that ended.
+  /// Ends the solve, whatever it has reported.
+  void expire();
+  /// The same, and returns the results of the levels that ended. Raises ValueError if none has, or one has
+  /// begun and not ended.
   std::vector<LevelResult> finish();
 
  private:

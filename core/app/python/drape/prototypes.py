@@ -113,7 +113,8 @@ class Solver(_Prototype):
     """A method: what it does on the levels of a problem, in order."""
 
     def solve(self, problem: _core.Problem) -> None:
-        """For each level: problem.begin(l), problem.iteration(x) as it goes, problem.end(x, status)."""
+        """For each level, from coarse to fine: problem.begin(l), problem.iteration(x) as it goes,
+        problem.end(x, status)."""
         raise NotImplementedError
 
 
