@@ -167,6 +167,30 @@ TEST_CASE("obstacle files are found beside the config, and results run again fro
   CHECK_THAT(gone.err, Contains("\"slab\"") && Contains("meshes/slab.obj"));
 }
 
+TEST_CASE("an obstacle's path may lead up from a folder that is reached by a link") {
+  const Scratch folder;
+  for (const char* made : {"project/configs", "project/data", "links/data"})
+    fs::create_directories(folder / made);
+  fs::create_directory_symlink("../project/configs", folder / "links/configs");
+  drape::write_mesh(folder / "project/data/slab.obj",
+                    drape::grid({1, 1}, 3, 3, drape::Diagonals::criss_cross));
+  folder.write("links/data/slab.obj", "not the mesh that ../data means\n");
+  folder.write("project/configs/e.yaml", replaced(contact_experiment(), "obstacles: [",
+                                                  "obstacles: [{name: slab, mesh: ../data/slab.obj, "
+                                                  "translate: [0, 0, -0.5]}, "));
+  const Ended run = drape_with("run links/configs/e.yaml --levels 1 --out out" + quiet, folder.path);
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const std::string saved = text_of(folder / "out/config.yaml");
+  CHECK_THAT(saved, Contains(fs::canonical(folder / "project/data/slab.obj").string()));
+  const Ended checked = drape_with("check out/config.yaml", folder.path);
+  CHECK(checked.err == "");
+  CHECK(checked.exit_code == 0);
+  fs::remove(folder / "project/data/slab.obj");
+  CHECK_THAT(refused_by("check links/configs/e.yaml", folder.path),
+             Contains("links/configs/../data/slab.obj"));
+}
+
 TEST_CASE("a result with intersections is infeasible, and the run did not succeed") {
   const Scratch folder;
   folder.write("e.yaml",

@@ -139,10 +139,14 @@ ConfigNode relative_path(const ConfigNode& node) {
   return path;
 }
 
-/// The same as an absolute path.
+/// The same as an absolute path. Links are followed: ".." after one leads up from the folder that it names.
 ConfigNode absolute_path(ConfigNode path) {
   for (ConfigNode& item : path.items) item = absolute_path(item);
-  if (!path.scalar.empty()) path.scalar = std::filesystem::absolute(path.scalar).lexically_normal().string();
+  if (path.scalar.empty()) return path;
+  const std::filesystem::path whole = std::filesystem::absolute(path.scalar);
+  std::error_code unknown;  // as where a folder may not be searched
+  const std::filesystem::path followed = std::filesystem::weakly_canonical(whole, unknown);
+  path.scalar = (unknown ? whole.lexically_normal() : followed).string();
   return path;
 }
 
