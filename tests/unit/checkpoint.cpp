@@ -65,7 +65,7 @@ Checkpoint full() {
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
   c.recorder.steps_bytes = 12345;
-  c.recorder.obstacle_load = {2, {0.5, 0.75}};
+  c.recorder.last_load = {2, {0.5, 0.75}};
   return c;
 }
 

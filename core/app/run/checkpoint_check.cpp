@@ -146,7 +146,7 @@ class Check {
     require(s.method.empty() || (entries.contains(s.method) && s.method == c_.methods[c_.method] &&
                                  entries[s.method]["levels"].size() == c_.state.finished.size()),
             "results.json as it was, of the method under way");
-    if (!s.obstacle_load.values.empty()) load_stepping(s.obstacle_load);
+    if (!s.last_load.values.empty()) load_stepping(s.last_load);
     for (const RecordedState& state : s.states) positions(state.x, state.level, "a level's result");
     require(s.snapshots.spacing > 0 && s.snapshots.seen >= 0, "the snapshots");
     if (is_level(c_.state.level))

@@ -61,9 +61,9 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   spent_ = state.spent;
   last_ = state.last;
   overhead_ = state.overhead;
-  obstacle_load_ = state.obstacle_load;
-  if (scene_.schedule && !obstacle_load_.values.empty())
-    scene_.schedule->restore(static_cast<int>(scene_.models.size()) - 1, obstacle_load_);
+  last_load_ = state.last_load;
+  if (scene_.schedule && !last_load_.values.empty())
+    scene_.schedule->restore(static_cast<int>(scene_.models.size()) - 1, last_load_);
   reset_peak_memory();
   restored_ = write_again();
   save();
@@ -85,7 +85,7 @@ RecorderState Recorder::state() const {
                   overhead_,
                   steps_bytes,
                   log_bytes,
-                  obstacle_load_};
+                  last_load_};
   sync_to_disk(folder_.file("steps.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;

@@ -31,7 +31,8 @@ struct RecorderState {
   Cost spent, last;     ///< of the method's levels before this one; of this level so far
   double overhead = 0;  ///< time that recording took between the levels of the method [s]
   std::uint64_t steps_bytes = 0, log_bytes = 0;
-  LoadSteppingState obstacle_load;  ///< of the obstacles' files; without values at the start
+  /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
+  LoadSteppingState last_load;
 };
 
 /// Why a method that threw has failed.
@@ -129,7 +130,7 @@ class Recorder : public Observer {
   Cost spent_;           // of the method's levels before this one
   Cost last_;            // of this level up to its last iteration
   double overhead_ = 0;  // time that recording took between the levels of a method [s]
-  LoadSteppingState obstacle_load_;
+  LoadSteppingState last_load_;
   std::optional<LevelResult> solved_reference_;
 };
 

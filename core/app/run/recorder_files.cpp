@@ -116,8 +116,8 @@ Recorder::Names Recorder::write_obstacles() {
 void Recorder::follow_schedule() {
   // A method that is stopped on the way leaves them where another's final states have them.
   const LoadStepping* schedule = scene_.schedule.get();
-  if (!schedule || (!schedule->finished() && schedule->increment() <= obstacle_load_.increment)) return;
-  obstacle_load_ = schedule->state();
+  if (!schedule || (!schedule->finished() && schedule->increment() <= last_load_.increment)) return;
+  last_load_ = schedule->state();
   write_obstacles();
 }
 
