@@ -8,10 +8,12 @@
 // staying in front; ALPHA, OFFSET of CGAL's alpha wrapping as fractions of IN's bounding-box diagonal, 0 0
 // for none. Prints counts as the inside of a JSON object. CGAL's algorithms: Surface_mesh_simplification with
 // probabilistic plane quadrics (Trettner and Kobbelt 2020), alpha_wrap_3 (Portaneri et al. 2022).
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/bbox.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh/IO/PLY.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_filter.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
@@ -33,10 +35,10 @@
 
 namespace {
 
-using Kernel = drape::ExactPredicates;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
-using Mesh = drape::SurfaceMesh;
+using Mesh = CGAL::Surface_mesh<Point>;
 namespace pmp = CGAL::Polygon_mesh_processing;
 namespace sms = CGAL::Surface_mesh_simplification;
 
@@ -52,14 +54,22 @@ std::size_t self_intersections(const Mesh& mesh) {
 }
 
 Mesh wrap(const Mesh& mesh, double alpha, double offset) {
-  std::vector<Point> points;
-  for (const Mesh::Vertex_index v : mesh.vertices()) points.push_back(mesh.point(v));
-  std::vector<std::array<std::size_t, 3>> triangles;
+  drape::TriangleMesh surface;
+  surface.vertices.resize(static_cast<Eigen::Index>(mesh.number_of_vertices()), 3);
+  for (const Mesh::Vertex_index v : mesh.vertices())
+    surface.vertices.row(v.idx()) << mesh.point(v).x(), mesh.point(v).y(), mesh.point(v).z();
+  surface.triangles.resize(static_cast<Eigen::Index>(mesh.number_of_faces()), 3);
   for (const Mesh::Face_index f : mesh.faces()) {
     const Mesh::Halfedge_index h = mesh.halfedge(f);
-    triangles.push_back({mesh.source(h), mesh.target(h), mesh.target(mesh.next(h))});
+    surface.triangles.row(f.idx()) << static_cast<int>(mesh.source(h)), static_cast<int>(mesh.target(h)),
+        static_cast<int>(mesh.target(mesh.next(h)));
   }
-  return drape::alpha_wrap(points, triangles, alpha, offset);
+  const drape::TriangleMesh wrapped = drape::alpha_wrap(surface, alpha, offset);
+  Mesh result;
+  for (const auto& x : wrapped.vertices.rowwise()) result.add_vertex({x[0], x[1], x[2]});
+  for (const auto& t : wrapped.triangles.rowwise())
+    result.add_face(Mesh::Vertex_index(t[0]), Mesh::Vertex_index(t[1]), Mesh::Vertex_index(t[2]));
+  return result;
 }
 
 void decimate(Mesh& mesh, int faces) {

@@ -17,6 +17,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/size_estimate.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/report/compare.h"
 #include "core/app/report/report.h"
@@ -265,9 +266,9 @@ int main_checked(int argc, char** argv) {
   if (*describe_command) return describe_plugin(plugin, registry);
   if (*schema_command) {
     if (schema_kind == "sweep")
-      std::cout << sweep_json_schema().dump(2) << "\n";
+      std::cout << json_text(sweep_json_schema(), 2) << "\n";
     else
-      std::cout << experiment_json_schema(registry).dump(2) << "\n";
+      std::cout << json_text(experiment_json_schema(registry), 2) << "\n";
     return exit_done;
   }
   if (*reference_command)

@@ -8,6 +8,7 @@
 #include "core/app/cli/help.h"
 #include "core/app/cli/stop_signals.h"
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/report/run_table.h"
 #include "core/app/sweep/local_engine.h"
@@ -33,7 +34,7 @@ void show_plan(const Sweep& sweep, const SweepFolder& folder, int threads) {
   for (const SweepRun& run : sweep.runs)
     std::printf("%-10s %s  levels %d, about %.0f vertices, %.1f GB  %s\n",
                 to_string(read_status(folder.files(run.folder)).state), run.folder.c_str(), run.levels,
-                run.vertices, memory.bytes(run) / 1e9, run.settings.dump().c_str());
+                run.vertices, memory.bytes(run) / 1e9, json_text(run.settings).c_str());
 }
 
 /// Performs an action of a sweep that has begun: errors no longer count as refused input.

@@ -14,9 +14,9 @@ constexpr std::size_t most_bytes = 200;
 
 bool is_utf8(const std::string& text) {
   try {
-    nlohmann::json(text).dump();
+    nlohmann::ordered_json(text).dump();
     return true;
-  } catch (const nlohmann::json::exception&) {
+  } catch (const nlohmann::ordered_json::exception&) {
     return false;
   }
 }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/version.h"
 
 namespace drape {
@@ -76,7 +77,7 @@ class GlbWriter {
 
   std::string bytes() {
     json_["buffers"] = Json::array({{{"byteLength", binary_.size()}}});
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_text(json_);
     text.resize((text.size() + 3) / 4 * 4, ' ');
     const std::uint64_t size = 12 + 8 + text.size() + 8 + binary_.size();
     if (size > std::numeric_limits<std::uint32_t>::max())

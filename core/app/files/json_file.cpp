@@ -22,8 +22,15 @@ std::string text_member(const Json& object, const std::string& key) {
   return text.is_string() ? text.get<std::string>() : std::string();
 }
 
+// Parsing and writing are large templates: they are compiled here alone.
+Json parse_json(const std::string& text) { return Json::parse(text, nullptr, false); }
+
 std::string json_text(const Json& json, int indent) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string ascii_json_text(const Json& json) {
+  return json.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
 void JsonFile::refuse(const std::string& fault) const {

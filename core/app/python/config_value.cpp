@@ -1,6 +1,7 @@
 #include "core/app/python/config_value.h"
 
 #include "core/app/experiment/describe.h"
+#include "core/app/files/json_file.h"
 
 namespace drape::python {
 
@@ -45,7 +46,7 @@ ConfigNode nested_node(const py::handle& value, int depth) {
 ConfigNode node_of(const py::handle& value) { return nested_node(value, 0); }
 
 py::object value_of(const ConfigNode& node) {
-  return py::module_::import("json").attr("loads")(json_value(node).dump());
+  return py::module_::import("json").attr("loads")(json_text(json_value(node)));
 }
 
 void throw_errors(const ConfigErrors& errors) {

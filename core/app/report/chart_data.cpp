@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/app/view/html.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -153,19 +154,6 @@ Json measures_json(const std::vector<ErrorMeasure>& measures) {
   return all;
 }
 
-std::string script_json(const Json& data) {
-  const std::string text = data.dump(-1, ' ', true, Json::error_handler_t::replace);
-  std::string safe;
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 std::string chart_data(const RunData& run) {
   Json methods = Json::array();
   for (const MethodRecord& method : run.methods) methods.push_back(method.name);
@@ -179,7 +167,7 @@ std::string chart_data(const RunData& run) {
                      {"increments", increments_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
                      {"parts", bars_json(run, &LevelRecord::energy_parts)}};
-  return script_json(data);
+  return html::script_json(data);
 }
 
 }  // namespace drape

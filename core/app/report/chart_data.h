@@ -18,7 +18,4 @@ nlohmann::ordered_json measures_json(const std::vector<ErrorMeasure>& measures);
 /// Six digits, enough for drawing; null if absent.
 nlohmann::ordered_json rounded(const OptionalNumber& value);
 
-/// JSON made safe inside a script element.
-std::string script_json(const nlohmann::ordered_json& data);
-
 }  // namespace drape

@@ -194,7 +194,7 @@ RunData read_run(const std::filesystem::path& folder) {
   if (!std::filesystem::is_regular_file(path)) {
     throw std::runtime_error(folder.string() + ": no results.json here; give the folder of a run");
   }
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = parse_json(read_file(path));
   if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
 
   const JsonFile file(path, remedy);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 
 namespace drape {
@@ -22,7 +23,7 @@ Snapshots recorded_snapshots(const std::filesystem::path& folder, const nlohmann
 
 std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
                                           const LevelRecord& level, Eigen::Index n, std::size_t least) {
-  const auto results = nlohmann::ordered_json::parse(read_file(run.folder / "results.json"));
+  const nlohmann::ordered_json results = parse_json(read_file(run.folder / "results.json"));
   const nlohmann::ordered_json& entry =
       results.at("methods").at(method.name).at("levels").at(&level - method.levels.data());
   const Snapshots snapshots = recorded_snapshots(run.folder, entry, n);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "core/app/files/json_file.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/view_document.h"
@@ -53,7 +54,7 @@ class ReportViewMaker {
  public:
   explicit ReportViewMaker(const RunData& run)
       : run_(run),
-        results_(Json::parse(read_file(run.folder / "results.json"))),
+        results_(parse_json(read_file(run.folder / "results.json"))),
         differences_(differences(run)) {}
 
   ReportView make() {

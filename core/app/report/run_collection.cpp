@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 void read_sweep(const fs::path& folder, RunCollection& collection) {
   const fs::path path = folder / "sweep.json";
-  const Json json = Json::parse(read_file(path), nullptr, false);
+  const Json json = parse_json(read_file(path));
   if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array())
     throw std::runtime_error(path.string() + ": not a sweep's list of runs; is it cut short?");
   const JsonFile file(path, "run the sweep again, which writes it");

@@ -218,7 +218,7 @@ std::string rows_chart_data(const RunCollection& collection) {
       const auto s = spread_of(row, quantities, name);
       data["costs"][name].push_back(s ? Json{rounded(s->median), rounded(s->low), rounded(s->high)} : Json());
     }
-  return script_json(data);
+  return html::script_json(data);
 }
 
 }  // namespace drape

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "core/app/files/json_file.h"
 #include "core/app/run/checkpoint.h"
 
 namespace drape {
@@ -133,7 +134,7 @@ class Check {
   }
 
   void recorder(const RecorderState& s) const {
-    const Json results = Json::parse(s.results, nullptr, false);
+    const Json results = parse_json(s.results);
     const bool has_methods =
         results.is_object() && results.contains("methods") && results["methods"].is_object();
     require(has_methods, "results.json as it was");

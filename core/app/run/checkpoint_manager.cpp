@@ -41,7 +41,7 @@ nlohmann::ordered_json results_of(const fs::path& folder) {
   const fs::path file = folder / "results.json";
   if (!fs::exists(file))
     throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
-  nlohmann::ordered_json results = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  nlohmann::ordered_json results = parse_json(read_file(file));
   const bool valid = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
                      (!results.contains("complete") || results["complete"].is_boolean());
   if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");

@@ -51,7 +51,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
                    const RecorderState& state)
     : Recorder(folder, experiment, scene, std::ios::app) {
   cut_files(folder, state);
-  results_ = Json::parse(state.results);
+  results_ = parse_json(state.results);
   method_ = state.method;
   intersection_free_ = state.intersection_free;
   method_intersection_free_ = state.method_intersection_free;
@@ -158,7 +158,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
   if (r.smallest_gap && std::isfinite(*r.smallest_gap)) steps_ << general_text(*r.smallest_gap, 6);
   steps_ << ',';
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
-    if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << count.dump();
+    if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << json_text(count);
   steps_ << ',' << general_text(spent_.flops + r.flops, 9) << std::endl;
   require_written(steps_, "steps.csv");
 }

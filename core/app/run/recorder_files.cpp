@@ -75,7 +75,7 @@ void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
 
 void record_abort(const RunFolder& folder, const std::string& cause) {
   try {
-    auto results = nlohmann::ordered_json::parse(read_file(folder.file("results.json")));
+    nlohmann::ordered_json results = parse_json(read_file(folder.file("results.json")));
     results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
       if (method.at("status") == "running") method["status"] = "aborted";

@@ -16,7 +16,7 @@ MemoryEstimate::MemoryEstimate(const Sweep& sweep, const SweepFolder& folder) {
 void MemoryEstimate::learn(const SweepRun& run, const RunFiles& files) {
   const std::filesystem::path path = files.folder / "results.json";
   const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
-  const auto results = JsonFile::Json::parse(text_of_file(path), nullptr, false);
+  const auto results = parse_json(text_of_file(path));
   if (!results.is_object() || !results.contains("methods")) return;
   double& peak = peaks_[{run.vertices, run.levels}];
   for (const auto& [name, method] : results["methods"].items())

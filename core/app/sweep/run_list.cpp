@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/app/files/json_file.h"
 #include "core/app/sweep/local_engine.h"
 #include "core/app/sweep/sweep_folder.h"
 #include "core/kernel/plugin/string_utils.h"
@@ -18,7 +19,7 @@ std::string list_of_runs(const nlohmann::ordered_json& sweep) {
   for (const auto& run : sweep["runs"]) {
     const std::string status = run["status"];
     const bool timed = run["seconds"] > 0.0;
-    text += line(run["name"], run["seed"].dump(), status, timed ? duration_text(run["seconds"]) : "");
+    text += line(run["name"], json_text(run["seed"]), status, timed ? duration_text(run["seconds"]) : "");
     std::istringstream error(run["error"].get<std::string>());
     for (std::string said; status == "failed" && std::getline(error, said);) text += "    " + said + "\n";
   }

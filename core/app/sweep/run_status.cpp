@@ -79,7 +79,7 @@ RunStatus read_status(const RunFiles& files) {
   const std::string text = text_of_file(files.status());
   if (text.empty()) return {};
   const JsonFile file(files.status(), "remove it and the run's folder");
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = parse_json(text);
   if (!json.is_object()) file.refuse("is not a run's status");
   RunStatus status;
   const auto word = file.at<std::string>(json, "status");
@@ -106,7 +106,7 @@ RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   status.state = RunState::cancelled;
   const std::filesystem::path path = files.folder / "results.json";
   const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
-  const Json results = Json::parse(text_of_file(path), nullptr, false);
+  const Json results = parse_json(text_of_file(path));
   if (!file.find<bool>(results, "complete").value_or(false)) return status;
   if (!results.contains("methods")) file.refuse("\"methods\" is missing");
   status.state = RunState::converged;

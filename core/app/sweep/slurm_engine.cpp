@@ -75,7 +75,7 @@ bool in_queue(const SlurmJobs& jobs) {
 }  // namespace
 
 std::optional<SlurmJobs> submitted_jobs(const SweepFolder& folder) {
-  const Json json = Json::parse(text_of_file(folder.jobs()), nullptr, false);
+  const Json json = parse_json(text_of_file(folder.jobs()));
   if (!json.is_object()) return std::nullopt;
   const JsonFile file(folder.jobs(), "see which of its jobs are in the queue (`squeue`), then remove it");
   return SlurmJobs{file.find<std::string>(json, "array").value_or(""),
@@ -120,7 +120,7 @@ SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vecto
 
   SlurmJobs jobs;
   const auto remember = [&] {
-    write_file(folder.jobs(), Json{{"array", jobs.array}, {"collector", jobs.collector}}.dump(1) + "\n");
+    write_file(folder.jobs(), json_text({{"array", jobs.array}, {"collector", jobs.collector}}, 1) + "\n");
   };
   jobs.array = submit_script(slurm / "job.sh", options.sbatch);
   remember();  // before anything else can fail: they must stay cancellable

@@ -29,7 +29,7 @@ Json SweepFolder::read() const {
   const fs::path file = path_ / "sweep.json";
   const std::string text = text_of_file(file);
   if (text.empty()) return nullptr;
-  Json json = Json::parse(text, nullptr, false);
+  Json json = parse_json(text);
   const JsonFile sweep(file, "name another folder with --out");
   if (!json.is_object() || !json.contains("sweep") || !json.contains("runs"))
     sweep.refuse("is not a sweep's");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -127,6 +128,12 @@ std::string fill(std::string_view page, const std::map<std::string, std::string>
     text += found->second;
     place = close + 2;
   }
+}
+
+std::string script_json(const nlohmann::ordered_json& data) {
+  std::string json = ascii_json_text(data);
+  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
+  return json;
 }
 
 std::string url_path(const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,9 @@ std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<
 
 /// Replaces each {{name}} of the template by its value. Throws std::runtime_error on an unknown name.
 std::string fill(std::string_view page, const std::map<std::string, std::string>& values);
+
+/// JSON made safe inside a script element.
+std::string script_json(const nlohmann::ordered_json& data);
 
 /// A path as a URL, reserved characters as %XX.
 std::string url_path(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/app/files/json_file.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
 
@@ -183,7 +184,7 @@ std::string LiveView::news(long version, std::size_t rows) {
   news["first_row"] = std::min(rows, rows_.size());
   news["rows"] = Json::array();
   for (std::size_t k = rows; k < rows_.size(); ++k) news["rows"].push_back(rows_[k]);
-  return news.dump(-1, ' ', true, Json::error_handler_t::replace);
+  return ascii_json_text(news);
 }
 
 std::string LiveView::page() const {

@@ -106,9 +106,8 @@ std::string block_element(const std::string& name, const std::string& bytes) {
 }
 
 std::string document_element(const ViewDocument::Json& document) {
-  std::string json = document.dump(-1, ' ', true, ViewDocument::Json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = json.find('<', at)) != std::string::npos;) json.replace(at, 1, "\\u003c");
-  return "<script type=\"application/json\" id=\"viewer-data\">" + json + "</script>\n";
+  return "<script type=\"application/json\" id=\"viewer-data\">" + html::script_json(document) +
+         "</script>\n";
 }
 
 std::string viewer_scripts() {

@@ -1,6 +1,8 @@
 #include "core/kernel/contact/intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Surface_mesh.h>
 
 #include <array>
 #include <limits>
@@ -139,6 +141,18 @@ std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const Triangle
   AdjacencyList candidates;
   broad_phase_of(mesh)->overlaps(*broad_phase_of(other), unlimited, candidates);
   return meeting(mesh, other, false, candidates);
+}
+
+std::optional<Eigen::Index> first_outside(const TriangleMesh& closed, const Positions& points) {
+  using Surface = CGAL::Surface_mesh<Point>;
+  Surface surface;
+  for (const auto& x : closed.vertices.rowwise()) surface.add_vertex(point(x));
+  for (const auto& t : closed.triangles.rowwise())
+    surface.add_face(Surface::Vertex_index(t[0]), Surface::Vertex_index(t[1]), Surface::Vertex_index(t[2]));
+  const CGAL::Side_of_triangle_mesh<Surface, Kernel> side_of(surface);
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (side_of(point(points.row(i))) != CGAL::ON_BOUNDED_SIDE) return i;
+  return {};
 }
 
 }  // namespace drape

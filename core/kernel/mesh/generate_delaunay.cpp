@@ -20,12 +20,12 @@ namespace drape {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Point = Kernel::Point_2;
+using Point2 = Kernel::Point_2;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, CGAL::Delaunay_mesh_face_base_2<Kernel>>;
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure>;
 using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
-using Ring = std::vector<Point>;
+using Ring = std::vector<Point2>;
 
 std::string loop_name(std::size_t i) {
   return "polygon: loop " + std::to_string(i) + (i == 0 ? " (the outer border)" : " (a hole)");
@@ -44,7 +44,7 @@ bool is_simple(const Ring& ring) { return CGAL::is_simple_2(ring.begin(), ring.e
 
 double area(const Ring& ring) { return std::abs(CGAL::polygon_area_2(ring.begin(), ring.end(), Kernel())); }
 
-bool contains(const Ring& ring, const Point& p) {
+bool contains(const Ring& ring, const Point2& p) {
   return CGAL::bounded_side_2(ring.begin(), ring.end(), p, Kernel()) == CGAL::ON_BOUNDED_SIDE;
 }
 
@@ -73,7 +73,7 @@ std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
 }
 
 /// Whether p lies in the region to be meshed; not for points on a loop.
-bool encloses(const std::vector<Ring>& rings, const Point& p) {
+bool encloses(const std::vector<Ring>& rings, const Point2& p) {
   return contains(rings[0], p) &&
          std::none_of(rings.begin() + 1, rings.end(), [&](const Ring& hole) { return contains(hole, p); });
 }
@@ -81,7 +81,7 @@ bool encloses(const std::vector<Ring>& rings, const Point& p) {
 /// The loops as constraints, every side divided evenly into segments of about `spacing`.
 void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulation& triangulation) {
   for (const Polygon& loop : loops) {
-    std::vector<Point> points;
+    std::vector<Point2> points;
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Eigen::Vector2d& a = loop[i];
       const Eigen::Vector2d along = loop[(i + 1) % loop.size()] - a;
@@ -102,7 +102,7 @@ void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned
   const auto box = CGAL::bbox_2(rings[0].begin(), rings[0].end());
   for (int attempt = 0; attempt < 1000; ++attempt) {
     const double u = random.unit(), v = random.unit();
-    const Point p(box.xmin() + u * (box.xmax() - box.xmin()), box.ymin() + v * (box.ymax() - box.ymin()));
+    const Point2 p(box.xmin() + u * (box.xmax() - box.xmin()), box.ymin() + v * (box.ymax() - box.ymin()));
     const bool far = std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
       for (std::size_t i = 0; i < ring.size(); ++i)
         if (CGAL::squared_distance(p, side(ring, i)) <= spacing * spacing) return false;
@@ -143,9 +143,9 @@ std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std
   Triangulation triangulation;
   insert_loops(loops, spacing, triangulation);
   insert_first_inner(rings, spacing, seed, triangulation);
-  std::vector<Point> hole_points;  // CGAL needs a point in every region that is not meshed
+  std::vector<Point2> hole_points;  // CGAL needs a point in every region that is not meshed
   for (auto f : triangulation.finite_face_handles()) {
-    const Point c = CGAL::centroid(triangulation.triangle(f));
+    const Point2 c = CGAL::centroid(triangulation.triangle(f));
     if (!encloses(rings, c)) hole_points.push_back(c);
   }
   // sin² of the smallest angle, 20.7°: refinement terminates for certain.
@@ -173,7 +173,7 @@ double even_spacing(double area, double border_length, int vertices) {
 Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
   Triangulation triangulation;
   for (std::size_t i = 0; i < points.size(); ++i)
-    triangulation.insert(Point(points[i].x(), points[i].y()))->info() = static_cast<int>(i);
+    triangulation.insert(Point2(points[i].x(), points[i].y()))->info() = static_cast<int>(i);
   std::vector<std::array<int, 3>> triangles;
   for (auto f : triangulation.finite_face_handles())
     triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});

@@ -1,9 +1,6 @@
 #include "plugins/contact/ipc/cages.h"
 
-#include <CGAL/Side_of_triangle_mesh.h>
-
 #include <Eigen/Geometry>
-#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -13,12 +10,6 @@
 
 namespace drape::ipc {
 namespace {
-
-using Point = ExactPredicates::Point_3;
-
-Point point(const TriangleMesh& mesh, int v) {
-  return {mesh.vertices(v, 0), mesh.vertices(v, 1), mesh.vertices(v, 2)};
-}
 
 /// The wrap first splits the mesh into pieces of about alpha. Throws if they would exceed memory: a folded
 /// mesh has many times the area of its box, so bounds on alpha do not suffice.
@@ -36,28 +27,7 @@ void check_piece_count(const TriangleMesh& mesh, double alpha) {
 
 std::shared_ptr<const ValidatedMesh> wrap(const TriangleMesh& mesh, double alpha, double offset) {
   check_piece_count(mesh, alpha);
-  std::vector<Point> points;
-  std::vector<std::array<std::size_t, 3>> faces;
-  for (int v = 0; v < mesh.vertices.rows(); ++v) points.push_back(point(mesh, v));
-  for (const auto& t : mesh.triangles.rowwise())
-    faces.push_back(
-        {static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
-  SurfaceMesh wrapped = alpha_wrap(points, faces, alpha, offset);
-  wrapped.collect_garbage();
-  TriangleMesh cage;
-  cage.vertices.resize(static_cast<Eigen::Index>(wrapped.number_of_vertices()), 3);
-  for (const auto v : wrapped.vertices()) {
-    const Point& p = wrapped.point(v);
-    cage.vertices.row(static_cast<Eigen::Index>(v.idx())) << p.x(), p.y(), p.z();
-  }
-  cage.triangles.resize(static_cast<Eigen::Index>(wrapped.number_of_faces()), 3);
-  Eigen::Index row = 0;
-  for (const auto f : wrapped.faces()) {
-    int k = 0;
-    for (const auto v : wrapped.vertices_around_face(wrapped.halfedge(f)))
-      cage.triangles(row, k++) = static_cast<int>(v.idx());
-    ++row;
-  }
+  TriangleMesh cage = alpha_wrap(mesh, alpha, offset);
   if (const auto faults = check_mesh(cage); !faults.empty()) throw std::runtime_error(faults[0]);
   return ValidatedMesh::of(std::move(cage));
 }
@@ -102,15 +72,9 @@ std::string enclosure_fault(const ValidatedMesh& outer, const ValidatedMesh& inn
     return text(pairs[0], " intersects its triangle ");
   if (const auto pairs = intersections(outer.mesh, inner.mesh); !pairs.empty())
     return text(pairs[0], " intersects that one's triangle ");
-  SurfaceMesh surface;
-  for (int v = 0; v < outer.mesh.vertices.rows(); ++v) surface.add_vertex(point(outer.mesh, v));
-  for (const auto& t : outer.mesh.triangles.rowwise())
-    surface.add_face(SurfaceMesh::Vertex_index(t[0]), SurfaceMesh::Vertex_index(t[1]),
-                     SurfaceMesh::Vertex_index(t[2]));
-  const CGAL::Side_of_triangle_mesh<SurfaceMesh, ExactPredicates> side(surface);
-  for (const int v : inner.topology.components())
-    if (side(point(inner.mesh, v)) != CGAL::ON_BOUNDED_SIDE)
-      return "that one's vertex " + std::to_string(v) + " is outside";
+  const std::vector<int> one_of_each = inner.topology.components();
+  if (const auto outside = first_outside(outer.mesh, inner.mesh.vertices(one_of_each, Eigen::all)))
+    return "that one's vertex " + std::to_string(one_of_each[*outside]) + " is outside";
   return "";
 }
 
