@@ -13,8 +13,9 @@ struct NewtonProblem {
   drape::Iterate iterate;
 
   explicit NewtonProblem(const std::vector<std::shared_ptr<drape::Energy>>& energies,
-                         std::vector<drape::DirichletVertex> dirichlet = {})
-      : model(level, drape::Material(), named(energies), std::move(dirichlet)),
+                         std::vector<drape::DirichletVertex> dirichlet = {},
+                         const std::vector<std::shared_ptr<drape::ContactModel>>& contacts = {})
+      : model(level, drape::Material(), named(energies), std::move(dirichlet), contacts),
         objective(model),
         iterate(objective, result) {
     move_to(level.rest.vertices);

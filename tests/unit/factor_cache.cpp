@@ -3,7 +3,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/kernel/solve/equilibrium_check.h"
 #include "tests/support/newton_problem.h"
+#include "tests/support/registry.h"
 #include "tests/support/wells.h"
 
 using namespace drape;
@@ -104,6 +106,38 @@ TEST_CASE("A restored cache solves with the same factor, bit for bit") {
   other.values.pop_back();
   CacheCase third(3);
   CHECK_THROWS_WITH(third.cache.restore(other), Catch::Contains("belongs to another matrix"));
+}
+
+TEST_CASE("A cache restored after contacts added blocks to the matrix orders it as the first one does") {
+  const auto problem = [] {
+    return NewtonProblem({std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1)}, {},
+                         {make_plugin_from<ContactModel>("{type: ipc, dhat: 0.1}")});
+  };
+  Positions folded = NewtonProblem::rest();
+  for (int v = 0; v < folded.rows(); ++v)
+    if (folded(v, 0) > 0.5) folded.row(v) = Eigen::RowVector3d(1 - folded(v, 0), folded(v, 1), 0.05);
+  const NewtonParameters p;
+  NewtonProblem first = problem(), second = problem();
+  FactorCache cache(first.iterate, p), restored(second.iterate, p);
+  REQUIRE(cache.update(first.model.fixed(), mass_shift, 1));
+  for (NewtonProblem* each : {&first, &second}) {
+    each->objective.contacts().reset();
+    each->objective.contacts().begin_step(folded);
+    each->move_to(folded);
+  }
+  EquilibriumCheck(first.iterate, p).is_at_rounding_floor(cache);
+  REQUIRE(cache.analyses() == 2);
+  restored.restore(cache.state());
+
+  Positions expected, solution;
+  REQUIRE(cache.update(first.model.fixed(), mass_shift, 1));
+  REQUIRE(restored.update(second.model.fixed(), mass_shift, 1));
+  CHECK(cache.state().analysis.ordering == restored.state().analysis.ordering);
+  CHECK(cache.analyses() == restored.analyses());
+  const Positions b = Positions::Random(16, 3);
+  cache.solve(b, expected);
+  restored.solve(b, solution);
+  CHECK(solution == expected);
 }
 
 TEST_CASE("A stale factor is not stored") {

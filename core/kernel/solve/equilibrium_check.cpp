@@ -25,11 +25,11 @@ bool EquilibriumCheck::in_tolerance() {
   return iterate_.force_residual() <= p_.force_tolerance;
 }
 
-bool EquilibriumCheck::is_at_rounding_floor() {
+bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
   idle_.restart();
   iterate_.update_friction();
   const RoundingFloor floor =
-      rounding_floor(iterate_.hessian(Projection::none), iterate_.x(), iterate_.gradient(), iterate_.fixed());
+      rounding_floor(factor.plain_hessian(), iterate_.x(), iterate_.gradient(), iterate_.fixed());
   rounding_residual_ = floor.norm / iterate_.residual_scale();
   return floor.reached;
 }

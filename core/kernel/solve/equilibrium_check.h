@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "core/kernel/solve/factor_cache.h"
 #include "core/kernel/solve/iterate.h"
 #include "core/kernel/solve/newton_parameters.h"
 #include "core/kernel/solve/rounding_floor.h"
@@ -33,9 +34,8 @@ class EquilibriumCheck {
   /// Whether progress has stopped: many idle steps.
   bool is_idle() const { return idle_.many(); }
   /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
-  /// the count of idle steps. Call it only once progress has stopped: it overwrites the objective's last
-  /// matrix.
-  bool is_at_rounding_floor();
+  /// the count of idle steps. Call it only once progress has stopped: the factor's matrix becomes another.
+  bool is_at_rounding_floor(FactorCache& factor);
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }
   /// Distance of the free vertices' centroid from where the drift begins, in diagonals of the rest shape.

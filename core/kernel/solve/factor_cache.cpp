@@ -34,6 +34,15 @@ bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& 
   return cholesky_.factorise(matrix, shift_ * iterate_.model().masses());
 }
 
+const BlockMatrix& FactorCache::plain_hessian() {
+  const BlockMatrix& matrix = iterate_.hessian(Projection::none);
+  // State has one pattern, that of the objective's last matrix: if it has changed, it is analysed here and
+  // not with the next factorisation, which a restored cache would otherwise order differently.
+  if (cholesky_.analyses() > 0) cholesky_.analyse(matrix.pattern, iterate_.fixed());
+  invalidate();
+  return matrix;
+}
+
 void FactorCache::end_iteration(double step_length) {
   const bool stale = age_ > 0 && step_length < 1;
   age_ = stale ? interval_ : age_ + 1;

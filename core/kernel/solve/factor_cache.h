@@ -43,6 +43,10 @@ class FactorCache {
   /// The factorised matrix without the shift.
   const BlockMatrix& matrix() const { return *factored_; }
 
+  /// The Hessian at the iterate without projection [N/m], valid until the next update. It takes the place of
+  /// the factorised matrix, so the next update factorises.
+  const BlockMatrix& plain_hessian();
+
   /// Iterations since the Hessian was updated.
   int age() const { return age_; }
   /// Ends an iteration. A shortened step along the direction of a reused factor makes the factor

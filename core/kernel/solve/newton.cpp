@@ -158,10 +158,7 @@ class Newton {
     return std::nullopt;
   }
 
-  bool is_at_rounding_floor() {
-    step_.factor().invalidate();  // the check overwrites its matrix
-    return check_.is_at_rounding_floor();
-  }
+  bool is_at_rounding_floor() { return check_.is_at_rounding_floor(step_.factor()); }
 
   /// Whether a tolerance asks for early refinement. Never at the start, under load stepping, or before
   /// Dirichlet vertices have reached their targets.
