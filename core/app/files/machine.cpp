@@ -9,8 +9,8 @@ namespace drape {
 
 namespace {
 
-/// The rest of the first line of a /proc file that starts with `key`.
-std::string proc_value(const char* file, const std::string& key) {
+/// The rest of the first line of a file that starts with `key`.
+std::string value_in(const std::filesystem::path& file, const std::string& key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
     if (line.rfind(key, 0) == 0) {
@@ -24,33 +24,43 @@ constexpr double unknown_memory = 1e18;
 
 /// An entry of /proc/meminfo [bytes].
 double memory_of(const std::string& key) {
-  const std::string kilobytes = proc_value("/proc/meminfo", key);
+  const std::string kilobytes = value_in("/proc/meminfo", key);
   return kilobytes.empty() ? unknown_memory : 1024 * std::stod(kilobytes);
 }
+
+ContainerMemory own_container() { return ContainerMemory::of("/sys/fs/cgroup"); }
 
 }  // namespace
 
 std::string cpu_name() {
-  const std::string name = proc_value("/proc/cpuinfo", "model name");
+  const std::string name = value_in("/proc/cpuinfo", "model name");
   return name.empty() ? "unknown" : name;
 }
 
 double machine_memory() {
-  double bytes = memory_of("MemTotal");
-  double container = 0;
-  if (std::ifstream("/sys/fs/cgroup/memory.max") >> container) bytes = std::min(bytes, container);
+  double bytes = std::min(memory_of("MemTotal"), own_container().limit);
   rlimit shell{};
   if (getrlimit(RLIMIT_AS, &shell) == 0 && shell.rlim_cur != RLIM_INFINITY)
     bytes = std::min(bytes, static_cast<double>(shell.rlim_cur));
   return bytes;
 }
 
-double available_memory() { return memory_of("MemAvailable"); }
+double available_memory() { return std::min(memory_of("MemAvailable"), own_container().available); }
+
+ContainerMemory ContainerMemory::of(const std::filesystem::path& group) {
+  double limit = 0, used = 0;
+  if (!(std::ifstream(group / "memory.max") >> limit)) return {unknown_memory, unknown_memory};
+  if (!(std::ifstream(group / "memory.current") >> used)) return {limit, limit};
+  const std::string files =
+      value_in(group / "memory.stat", "inactive_file");  // the kernel drops them on demand
+  if (!files.empty()) used -= std::min(used, std::stod(files));
+  return {limit, std::max(0.0, limit - used)};
+}
 
 void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::int64_t peak_memory_bytes() {
-  const std::string kilobytes = proc_value("/proc/self/status", "VmHWM");
+  const std::string kilobytes = value_in("/proc/self/status", "VmHWM");
   return kilobytes.empty() ? 0 : 1024 * std::stoll(kilobytes);
 }
 
