@@ -453,6 +453,9 @@ TEST_CASE("errors are read, drawn and described; a run without them says so") {
   for (Json& level : run.results["methods"]["newton"]["levels"]) level["from_initial_state"] = true;
   CHECK(contains(run.page(),
                  "The reference is <b>newton</b>'s finest state, solved on to a force residual of 1.00e-5."));
+  run.results["reference"] = {{"file", "fine & far.ply"}, {"mesh", "reference.ply"}};
+  CHECK(contains(run.page(), "The reference is the file <code>fine &amp; far.ply</code>."));
+  run.results["reference"] = {{"method", "newton"}, {"force_tolerance", 1e-5}};
   const RunData data = read_run(run.folder);
   REQUIRE(data.errors.size() == 3);
   CHECK(data.errors[0].method == "pcs");

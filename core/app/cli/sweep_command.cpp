@@ -177,7 +177,7 @@ int SweepCommand::run_slurm(const Sweep& sweep, const SweepFolder& folder) const
   }
   if (jobs && !wait_) return exit_done;
   return begun(folder, [&] {
-    if (jobs && !wait_for(folder, *jobs, stop)) {
+    if (jobs && !wait_for(folder, *jobs, stop, quiet_)) {
       std::cerr << "no longer waiting; the jobs go on\n";
       return exit_by_signal + stop_signal();
     }

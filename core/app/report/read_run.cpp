@@ -215,6 +215,7 @@ RunData read_run(const std::filesystem::path& folder) {
   const Json& reference = member_of(json, "reference");
   for (const char* key : {"method", "file"})
     if (!text_member(reference, key).empty()) run.reference = text_member(reference, key);
+  run.reference_is_file = !text_member(reference, "file").empty();
   run.reference_is_lowest = text_member(reference, "chosen") == ReferenceParameters::lowest;
   run.reference_tolerance = number(member_of(reference, "force_tolerance"));
   run.force_tolerance = number(member_of(member_of(json, "tolerance"), "force_residual"));

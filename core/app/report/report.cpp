@@ -189,6 +189,7 @@ std::string machine_line(const RunData& run) {
 std::string reference_sentence(const RunData& run) {
   if (run.errors.empty()) return "No states were recorded in this run (<code>snapshots: 0</code>).";
   if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
+  if (run.reference_is_file) return "The reference is the file <code>" + escape(run.reference) + "</code>.";
   std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
   if (run.reference_is_lowest) text += ", the lowest in energy of all that have converged";
   if (run.reference_tolerance)

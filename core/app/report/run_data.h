@@ -120,8 +120,9 @@ struct RunData {
   std::vector<ErrorSeries> errors;          ///< likewise
   std::vector<IncrementSeries> increments;  ///< likewise; empty without a schedule
   std::string reference;                    ///< method or file of the state that errors are measured against
-  bool reference_is_lowest = false;         ///< it was chosen for its lowest energy
-  OptionalNumber reference_tolerance;       ///< force tolerance to which it was solved
+  bool reference_is_file = false;
+  bool reference_is_lowest = false;    ///< it was chosen for its lowest energy
+  OptionalNumber reference_tolerance;  ///< force tolerance to which it was solved
 
   /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;

@@ -148,7 +148,8 @@ bool still_in_queue(const SlurmJobs& jobs, int& silent) {
 
 }  // namespace
 
-bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop) {
+bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop,
+              bool quiet) {
   std::size_t told = 0;
   for (int silent = 0; still_in_queue(jobs, silent);) {
     std::size_t done = 0, failed = 0;
@@ -158,7 +159,7 @@ bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::funct
       done += state == RunState::converged || state == RunState::not_converged || state == RunState::failed;
       failed += state == RunState::failed;
     }
-    if (done != told)
+    if (done != told && !quiet)
       std::fprintf(stderr, "[%zu/%zu] done, %zu failed\n", done, sweep["runs"].size(), failed);
     told = done;
     for (int k = 0; k < 10; ++k) {

@@ -30,8 +30,10 @@ void refuse_while_queued(const SweepFolder& folder);
 SlurmJobs submit(const Sweep& sweep, const SweepFolder& folder, const std::vector<std::size_t>& missing,
                  const SlurmOptions& options);
 
-/// Waits until no job is in the queue, with progress on standard error; false if `stop` came first.
-bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop);
+/// Waits until no job is in the queue, with progress on standard error unless `quiet`; false if `stop` came
+/// first.
+bool wait_for(const SweepFolder& folder, const SlurmJobs& jobs, const std::function<bool()>& stop,
+              bool quiet = false);
 
 /// Cancels the folder's jobs and waits until they are off the queue. Throws std::runtime_error without any.
 void cancel_jobs(const SweepFolder& folder, const std::function<bool()>& stop);
