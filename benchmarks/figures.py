@@ -245,6 +245,7 @@ STUDIES = [
     ("[scenes](scenes.md)", "scenes.md"),
     ("[scenes, three levels](scenes.md)", "scenes_levels_3.md"),
     ("the paper's settings", "papers_settings.md"),
+    ("the dragon, by decrements, four levels", "dragon_decrements_levels_4.md"),
     ("the dragon, by decrements", "dragon_decrements.md"),
 ]
 
