@@ -26,7 +26,7 @@ std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
   }
   if (numbers.size() != 3) return {};
   const Eigen::Vector3d direction(numbers[0], numbers[1], numbers[2]);
-  const double length = direction.stableNorm();
+  const double length = direction.norm();
   if (!(length > 1e-9 && length < 1e9)) return {};
   return direction;
 }

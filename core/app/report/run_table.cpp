@@ -96,7 +96,7 @@ std::string outcome_without_results(const RunRecord& run) {
 
 bool passes(const RunRecord& run, const std::string& outcome, const TableRow& row) {
   const Json energy = row.value("energy", Json()), crossing = row.value("intersections", Json());
-  if (run.data && (energy.is_null() || (crossing.is_number() && crossing > 0))) return false;
+  if (run.data && (energy.is_null() || (crossing.is_number() && crossing.get<double>() > 0))) return false;
   const bool expected = outcome == run.expected || (run.expected == "converged" && has_converged(outcome));
   return expected && row.value("message", "").find(run.expected_message) != std::string::npos;
 }
@@ -136,7 +136,7 @@ RunTable table_of(const RunCollection& collection) {
 }
 
 bool RunTable::all_pass() const {
-  return std::all_of(rows.begin(), rows.end(), [](const TableRow& row) { return row["pass"] == true; });
+  return std::all_of(rows.begin(), rows.end(), [](const TableRow& row) { return row["pass"].get<bool>(); });
 }
 
 }  // namespace drape

@@ -24,10 +24,11 @@ const RecordedState* Recorder::reference_state() const {
   for (const RecordedState* state : finest_states()) {
     if (state->method == named) return state;
     for (const Json& entry : results_.at("methods").at(state->method).at("levels")) {
-      if (entry.at("level") != state->level || !has_converged(entry.at("status").get<std::string>()))
+      if (entry.at("level").get<int>() != state->level ||
+          !has_converged(entry.at("status").get<std::string>()))
         continue;
       const Json& energy = entry.at("energy");  // with limits and contact
-      if (energy.is_number() && energy < lowest_energy) lowest = state, lowest_energy = energy;
+      if (energy.is_number() && energy.get<double>() < lowest_energy) lowest = state, lowest_energy = energy;
     }
   }
   return named == ReferenceParameters::lowest ? lowest : nullptr;

@@ -78,7 +78,7 @@ void record_abort(const RunFolder& folder, const std::string& cause) {
     nlohmann::ordered_json results = parse_json(read_file(folder.file("results.json")));
     results["aborted"] = cause;
     for (auto& [name, method] : results.at("methods").items())
-      if (method.at("status") == "running") method["status"] = "aborted";
+      if (method.at("status").get<std::string>() == "running") method["status"] = "aborted";
     folder.write_text("results.json", json_text(results, 1) + "\n");
     std::ofstream(folder.file("log.jsonl"), std::ios::app)
         << json_text({{"event", "run_aborted"}, {"message", cause}, {"time", wall_clock()}}) << std::endl;
@@ -150,7 +150,7 @@ Recorder::Names Recorder::write_again() {
   const auto add = [&](const Names& names) { all.insert(all.end(), names.begin(), names.end()); };
   for (const RecordedState& state : states_) add(write_state(state));
   for (const auto& [name, method] : results_["methods"].items())
-    if (method["status"] != "running") add(write_collection(name));
+    if (method["status"].get<std::string>() != "running") add(write_collection(name));
   add(restore_fields());
   return all;
 }

@@ -18,8 +18,8 @@ std::string list_of_runs(const nlohmann::ordered_json& sweep) {
   std::string text = line("variation", "seed", "status", "time");
   for (const auto& run : sweep["runs"]) {
     const std::string status = run["status"];
-    const bool timed = run["seconds"] > 0.0;
-    text += line(run["name"], json_text(run["seed"]), status, timed ? duration_text(run["seconds"]) : "");
+    const double seconds = run["seconds"];
+    text += line(run["name"], json_text(run["seed"]), status, seconds > 0 ? duration_text(seconds) : "");
     std::istringstream error(run["error"].get<std::string>());
     for (std::string said; status == "failed" && std::getline(error, said);) text += "    " + said + "\n";
   }

@@ -93,12 +93,21 @@ double nearest_to_box_on_edge(const Vector3d& half, const Vector3d& a, const Vec
   return low + (high - low) * low_slope / (low_slope - high_slope);
 }
 
+/// The shortest rotation that takes +z to this unit vector; for -z, half a turn about y. Eigen's own
+/// (Quaternion::FromTwoVectors) brings a singular value decomposition, which takes ten seconds to compile.
+Eigen::Matrix3d rotation_of_z_to(const Vector3d& u) {
+  const double sine = std::hypot(u.x(), u.y()), turned = 1 - u.z();
+  const double x = sine > 0 ? u.x() / sine : 1, y = sine > 0 ? u.y() / sine : 0;
+  Eigen::Matrix3d r;
+  r << 1 - turned * x * x, -turned * x * y, u.x(), -turned * x * y, 1 - turned * y * y, u.y(), -u.x(), -u.y(),
+      u.z();
+  return r;
+}
+
 }  // namespace
 
 void Solid::update_axes() {
-  axes = kind == SolidKind::half_space
-             ? Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), plane).toRotationMatrix()
-             : rotation_matrix(rotate);
+  axes = kind == SolidKind::half_space ? rotation_of_z_to(plane.normalized()) : rotation_matrix(rotate);
 }
 
 SignedDistance Solid::nearest(const Vector3d& p) const {

@@ -318,6 +318,28 @@ TEST_CASE("shapes: the smallest gap is the cloth's distance") {
   }
 }
 
+TEST_CASE("shapes: a half-space's axes are those of the shortest rotation, wherever its normal points") {
+  Solid s;
+  s.kind = SolidKind::half_space;
+  for (const Vector3d& normal :
+       {Vector3d(0, 0, 1), Vector3d(0, 0, -3), Vector3d(1e-9, 0, 1), Vector3d(0, 1e-9, -1),
+        Vector3d(2, -1, 0.5), Vector3d(-3, 0, 0), Vector3d(1e-3, 2e-3, -1e-3)}) {
+    s.plane = normal;
+    s.update_axes();
+    INFO(normal.transpose());
+    CHECK((s.axes.transpose() * s.axes - Eigen::Matrix3d::Identity()).norm() < 1e-15);
+    CHECK(s.axes.determinant() == Approx(1));
+    CHECK((s.axes.col(2) - normal.normalized()).norm() < 1e-15);
+    if (normal.normalized().z() > -0.999)
+      CHECK(
+          (s.axes - Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal).toRotationMatrix()).norm() <
+          1e-14);
+  }
+  s.plane = Vector3d::UnitZ();
+  s.update_axes();
+  CHECK(s.axes == Eigen::Matrix3d::Identity());
+}
+
 TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
   const Level level = square(5, 0.04);
   for (const SolidKind kind : {SolidKind::half_space, SolidKind::box, SolidKind::cylinder}) {
