@@ -9,7 +9,6 @@ benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python
 MESHES = ["bunny.ply", "armadillo.ply"]
 ALL_MESHES = [*MESHES, "bear.ply", "dragon.ply"]
 RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
-METHOD_COLUMNS = "run,method,outcome,vertices,iterations,flops,energy,intersections"
 
 
 def sweep(name, out="{out}", most_levels=None):
@@ -17,9 +16,10 @@ def sweep(name, out="{out}", most_levels=None):
     return command + (["--most-levels", str(most_levels)] if most_levels else [])
 
 
-def previews(name, what, starts, timed=False, meshes=()):
-    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name)],
-            "gather": [["benchmarks/previews", name, "{out}"]], "records": [f"{name}.json", f"{name}.md"]}
+def previews(name, what, starts, timed=False, meshes=(), most_levels=None):
+    record = f"{name}_levels_{most_levels}" if most_levels else name
+    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
+            "gather": [["benchmarks/previews", record, "{out}"]], "records": [f"{record}.json", f"{record}.md"]}
 
 
 def table(name, what, starts, columns, timed=False, meshes=(), most_levels=None):
@@ -57,7 +57,7 @@ STUDIES = {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
-    "papers_settings": table("papers_settings", "PCS against direct, the paper's settings and ours", 3, METHOD_COLUMNS),
+    "papers_settings": previews("papers_settings", "PCS against direct, the paper's settings and ours", 3),
     "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
     "interpolation": previews("interpolation", "the choice of interpolation", 3),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
@@ -72,8 +72,7 @@ STUDIES = {
                              meshes=ALL_MESHES, most_levels=3),
     "table1": table1("the supplement's Table 1"),
     "scenes": table("scenes", "every scene of the supplement's Table 2", 1, RUN_COLUMNS, meshes=ALL_MESHES),
-    "dragon_decrements_levels_4": table("dragon_decrements", "the dragon under the paper's rule for ending levels, to 93K vertices", 3,
-                                        METHOD_COLUMNS, meshes=["dragon.ply"], most_levels=4),
-    "dragon_decrements": table("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, METHOD_COLUMNS,
-                               meshes=["dragon.ply"]),
+    "dragon_decrements_levels_4": previews("dragon_decrements", "the dragon under the paper's rule for ending levels, to 93K vertices", 3,
+                                           meshes=["dragon.ply"], most_levels=4),
+    "dragon_decrements": previews("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, meshes=["dragon.ply"]),
 }
