@@ -173,7 +173,7 @@ def decrements():
         r = runs("dragon_decrements_levels_4", method)
         rows.append([method, ", ".join(figure(n) for n in iterations(r)),
                      with_range([x["tflop"] / direct[x["seed"]] for x in r], lambda v: figure(v, 2)),
-                     with_range([x["energy"] for x in r], lambda v: figure(v, 3)),
+                     with_range([x["energy"] for x in r], lambda v: figure(v, 4)),
                      with_range([x["force_residual"] for x in r], lambda v: figure(v, 2))])
     # No comment for docs_figures: ratios start by start stand in no record.
     return table(["method", "Newton iterations by level", "total flops, relative to direct", "final energy [J]", "force residual"], rows, [], "llrrr")[1:]

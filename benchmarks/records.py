@@ -60,7 +60,7 @@ def conditions(name):
         cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "")
         parts.append(f"{cpu} with {count(stamp['cores'], 'core')}" if stamp.get("cores") else cpu)
     if stamp.get("commit"):
-        parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", an earlier build"))
+        parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", another build"))
     else:
         parts.append(stamp.get("note", "build not recorded"))
     if stamp.get("runs_at_a_time", 1) > 1:
