@@ -61,6 +61,8 @@ struct Ended {
 class Command {
  public:
   Command(const std::string& line, const std::filesystem::path& folder) {
+    for (const char* stream : {"out", "err"})
+      output_.write(stream, "");  // it may be killed before it opens them
     pid_ = fork();
     REQUIRE(pid_ >= 0);
     if (pid_ == 0) {
