@@ -16,21 +16,25 @@ def sweep(name, out="{out}", most_levels=None):
     return command + (["--most-levels", str(most_levels)] if most_levels else [])
 
 
+def record_of(name, most_levels):
+    return f"{name}_levels_{most_levels}" if most_levels else name
+
+
 def previews(name, what, starts, timed=False, meshes=(), most_levels=None):
-    record = f"{name}_levels_{most_levels}" if most_levels else name
+    record = record_of(name, most_levels)
     return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
             "gather": [["benchmarks/previews", record, "{out}"]], "records": [f"{record}.json", f"{record}.md"]}
 
 
-def table(name, what, starts, columns, timed=False, meshes=(), most_levels=None):
-    record = f"{name}_levels_{most_levels}.md" if most_levels else f"{name}.md"
-    return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
-            "twins": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", columns]],
+def scenes(what, most_levels=None):
+    record = record_of("scenes", most_levels) + ".md"
+    return {"what": what, "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes", most_levels=most_levels)],
+            "twins": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
             "records": [record]}
 
 
 def table1(what, most_levels=None):
-    record = f"table1_levels_{most_levels}" if most_levels else "table1"
+    record = record_of("table1", most_levels)
     return {"what": what, "timed": False, "starts": 1, "meshes": MESHES, "run": [sweep("table1", most_levels=most_levels)],
             "gather": [["benchmarks/table1", "{out}", "{results}/" + record]], "records": [f"{record}.json", f"{record}.md"]}
 
@@ -68,10 +72,9 @@ STUDIES = {
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
     "table1_levels_3": table1("the supplement's Table 1, to three levels", 3),
-    "scenes_levels_3": table("scenes", "every scene of the supplement's Table 2, to three levels", 1, RUN_COLUMNS,
-                             meshes=ALL_MESHES, most_levels=3),
+    "scenes_levels_3": scenes("every scene of the supplement's Table 2, to three levels", 3),
     "table1": table1("the supplement's Table 1"),
-    "scenes": table("scenes", "every scene of the supplement's Table 2", 1, RUN_COLUMNS, meshes=ALL_MESHES),
+    "scenes": scenes("every scene of the supplement's Table 2"),
     "dragon_decrements_levels_4": previews("dragon_decrements", "the dragon under the paper's rule for ending levels, to 93K vertices", 3,
                                            meshes=["dragon.ply"], most_levels=4),
     "dragon_decrements": previews("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, meshes=["dragon.ply"]),

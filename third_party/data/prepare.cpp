@@ -21,7 +21,6 @@
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <CGAL/boost/graph/IO/polygon_mesh_io.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

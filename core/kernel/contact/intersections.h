@@ -20,11 +20,11 @@ struct TrianglePair {
 /// every triangle whose bounding box its own overlaps.
 std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh);
 
+/// Pairs of a triangle of one mesh and one of another that intersect or touch, by exact predicates, in order.
+std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other);
+
 /// The first of these points [m] that is outside a closed surface or on it, by exact predicates; empty if all
 /// are inside.
 std::optional<Eigen::Index> first_outside(const TriangleMesh& closed, const Positions& points);
-
-/// Pairs of a triangle of one mesh and one of another that intersect or touch, by exact predicates, in order.
-std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other);
 
 }  // namespace drape

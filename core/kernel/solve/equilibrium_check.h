@@ -34,7 +34,7 @@ class EquilibriumCheck {
   /// Whether progress has stopped: many idle steps.
   bool is_idle() const { return idle_.many(); }
   /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
-  /// the count of idle steps. Call it only once progress has stopped: the factor's matrix becomes another.
+  /// the count of idle steps. Call it only once progress has stopped: it invalidates the factor.
   bool is_at_rounding_floor(FactorCache& factor);
   /// Bound on the force residual by round-off at the last such check [1].
   double rounding_residual() const { return rounding_residual_; }

@@ -21,11 +21,8 @@ bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, doub
 }
 
 bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
+  analyse(matrix, fixed);
   LevelResult& result = iterate_.result();
-  {
-    PhaseTimer t(result.seconds_by_phase, "analyse");
-    cholesky_.analyse(matrix.pattern, fixed);
-  }
   PhaseTimer t(result.seconds_by_phase, "factorise");
   ++result.factorisations;
   result.flops += cholesky_.flops();
@@ -34,11 +31,17 @@ bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& 
   return cholesky_.factorise(matrix, shift_ * iterate_.model().masses());
 }
 
+void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fixed) {
+  PhaseTimer t(iterate_.result().seconds_by_phase, "analyse");
+  cholesky_.analyse(matrix.pattern, fixed);
+}
+
 const BlockMatrix& FactorCache::plain_hessian() {
   const BlockMatrix& matrix = iterate_.hessian(Projection::none);
-  // State has one pattern, that of the objective's last matrix: if it has changed, it is analysed here and
-  // not with the next factorisation, which a restored cache would otherwise order differently.
-  if (cholesky_.analyses() > 0) cholesky_.analyse(matrix.pattern, iterate_.fixed());
+  // New contacts may have added blocks. They are analysed now and not with the next factorisation: a
+  // checkpoint stores the pattern of the last matrix, and a resumed run takes that for the one that was
+  // analysed.
+  if (cholesky_.analyses() > 0) analyse(matrix, iterate_.fixed());
   invalidate();
   return matrix;
 }

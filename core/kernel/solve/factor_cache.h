@@ -60,6 +60,7 @@ class FactorCache {
 
  private:
   bool has_fresh_factor() const { return cholesky_.has_factor() && age_ < interval_; }
+  void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
   bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
 
   Iterate& iterate_;
