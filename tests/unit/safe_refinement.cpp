@@ -68,6 +68,45 @@ struct TwoLevels {
   }
 };
 
+/// A contact model that lets the cloth move by no more than a hundred-thousandth of any step, and counts
+/// them.
+class Jam : public ContactModel {
+ public:
+  struct Candidates : CollisionCandidates {
+    std::unique_ptr<CollisionCandidates> own;
+    StepLimit max_step() const override { return {1e-5, "the jam"}; }
+    std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
+      return own->build_collisions(x);
+    }
+  };
+  struct Bound : BoundContact {
+    std::unique_ptr<BoundContact> own;
+    std::shared_ptr<int> motions;
+    std::unique_ptr<CollisionCandidates> build_candidates(const Positions& x0,
+                                                          const Positions& x1) const override {
+      ++*motions;
+      auto candidates = std::make_unique<Candidates>();
+      candidates->own = own->build_candidates(x0, x1);
+      return candidates;
+    }
+    std::vector<Intersection> intersections(const Positions& x) const override {
+      return own->intersections(x);
+    }
+    std::vector<TriangleMesh> obstacles() const override { return {}; }
+  };
+
+  std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override {
+    auto bound = std::make_unique<Bound>();
+    bound->own = make_plugin_from<ContactModel>("ipc")->bind(level, material);
+    bound->motions = motions_;
+    return bound;
+  }
+  int motions() const { return *motions_; }
+
+ private:
+  std::shared_ptr<int> motions_ = std::make_shared<int>(0);
+};
+
 double largest_distance(const Positions& x, const Positions& y) {
   return (x - y).rowwise().norm().maxCoeff();
 }
@@ -245,6 +284,19 @@ TEST_CASE("Triangles that cannot be within the strain limit are named") {
   const auto& limit = dynamic_cast<const StretchLimited&>(*cloth.models[1]->limits()[0]);
   const std::string first = to_string(limit.violations(refined.x)[0], 1.1);
   CHECK_THAT(refined.fault, Catch::Contains(": " + first));
+}
+
+TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
+  TwoLevels cloth(grid({1, 1}, 5, 5, Diagonals::one_way), {}, {"{type: strain_limit, limit: 1.06}"});
+  const auto jam = std::make_shared<Jam>();
+  cloth.contacts_ = {jam};
+  cloth.prescribe({});
+  const Positions x = 1.5 * cloth.starts[0];
+  const Refined refined = cloth.refine(x);
+  CHECK(refined.iterations > 10);
+  CHECK(refined.iterations < 60);
+  CHECK(jam->motions() < 150);
+  CHECK_THAT(refined.fault, Catch::StartsWith("the refined state violates the strain limit: "));
 }
 
 TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {

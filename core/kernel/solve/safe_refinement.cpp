@@ -16,6 +16,9 @@ constexpr double target_step_size = 1e-3;
 /// Force residual at which a round's descent ends, relative to its start.
 constexpr double tolerance = 0.05;
 constexpr int max_steps = 100, max_rounds = 12;
+/// A round ends after so many steps in a row of which the line search left less than this fraction.
+constexpr int max_negligible_steps = 8;
+constexpr double negligible_step = 1e-3;
 /// Consecutive rounds without convergence and without fewer violations, after which refinement fails.
 constexpr int max_idle_rounds = 4;
 constexpr std::size_t max_named = 5;  // triangles in a message
@@ -126,14 +129,24 @@ class TargetObjective : public Objective {
   double scale_ = 1, relaxation_ = 1;
 };
 
-/// Forwards only stop requests.
-class Quiet : public Observer {
+/// Ends a round's descent once contact or limits leave nothing of its steps; otherwise forwards only stop
+/// requests.
+class Round : public Observer {
  public:
-  explicit Quiet(Observer& observer) : observer_(observer) {}
-  bool stop_requested() override { return observer_.stop_requested(); }
+  explicit Round(Observer& observer) : observer_(observer) {}
+  void iteration(const IterationRow& row, const Positions&) override {
+    negligible_steps_ = row.step_length < negligible_step ? negligible_steps_ + 1 : 0;
+  }
+  bool stop_requested() override {
+    if (observer_.stop_requested()) cancelled_ = true;
+    return cancelled_ || negligible_steps_ == max_negligible_steps;
+  }
+  bool cancelled() const { return cancelled_; }
 
  private:
   Observer& observer_;
+  int negligible_steps_ = 0;
+  bool cancelled_ = false;
 };
 
 /// Moves Dirichlet vertices towards their targets as far as contact allows; the level's solve does the rest.
@@ -177,14 +190,15 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
     newton.psd_blend = PsdBlend::full;
     newton.force_tolerance = tolerance;
     newton.max_steps = max_steps;
-    Quiet quiet(observer);
+    newton.step_size = target_step_size;  // scales the mass that damps a step without descent
     int fewest = model.level().triangle_count() + 1, idle = 0;
     for (int round = 0; round < max_rounds; ++round) {
-      LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, quiet});
+      Round descent(observer);
+      LevelResult result = minimise(objective, std::move(refined.x), newton, {clock, descent});
       refined.x = std::move(result.x);
       refined.iterations += result.iterations;
       const int violating = objective.partition_by_strain_limit(refined.x);
-      refined.cancelled = result.outcome == Outcome::cancelled;
+      refined.cancelled = descent.cancelled();
       idle = violating < fewest || has_converged(result.outcome) ? 0 : idle + 1;
       fewest = std::min(fewest, violating);
       if (violating == 0 || refined.cancelled || idle == max_idle_rounds) break;
