@@ -3,7 +3,8 @@
 A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or
 only its iterations and flops (one thread a run, a run a core); `starts`; the commands that `run` it in {out}, which go on
 where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
-benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python `module`; commands to `attempt`, whose failure is what is recorded.
+benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python `module`; commands to `attempt`, whose failure is what is recorded;
+whether a run that is refused, or exceeds its sweep's time limit, is one of the `failures` that it records.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -67,7 +68,7 @@ STUDIES = {
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
     "ablations": previews("ablations", "one choice changed at a time", 3),
     "hard": {
-        "what": "the hard cases", "timed": False, "starts": 1,
+        "what": "the hard cases", "timed": False, "starts": 1, "failures": True,
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
