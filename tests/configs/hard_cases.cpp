@@ -82,8 +82,7 @@ TEST_CASE("a huge triangle beside tiny ones is refined into its strain limit") {
 TEST_CASE(
     "a rest shape that Loop moves too far makes the next level begin from the initial state, with a "
     "message") {
-  // From the proxy's state: from the relaxed one the refinement gives up only after minutes
-  // (docs/results/hard-cases.md).
+  // From the proxy's state: from the relaxed one the refinement gives up only after half a minute.
   const Json levels = huge_beside_tiny("pcs", " --set methods.pcs.relaxation=none");
   REQUIRE(levels.size() == 2);
   CHECK(levels[1]["status"] == "converged");
