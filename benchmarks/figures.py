@@ -69,7 +69,7 @@ def scenes(study, columns):
         if len(cells) != len(head) or cells[0] == "method":
             break
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
-    right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", "final energy minus cascadic's [J]") else "l" for c in columns)
+    right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", "final energy, pcs minus cascadic [J]") else "l" for c in columns)
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
 
 
@@ -291,7 +291,7 @@ def row_count(name):
 
 
 TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs / cascadic / direct",
-       "total flops, relative to direct: pcs / cascadic", "final energy minus cascadic's [J]"]
+       "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic [J]"]
 
 BLOCKS = {
     "sphere": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",

@@ -421,7 +421,7 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   CHECK_THAT(refused_by("run --resume out --set newton.step_size=1 --out ./out", folder.path),
              Contains("leaves the run that it begins from as it is"));
   CHECK_THAT(refused_by("run e.yaml --level 1", folder.path), Contains("name its run with --resume"));
-  CHECK_THAT(refused_by("run", folder.path), Contains("config is required"));
+  CHECK_THAT(refused_by("run", folder.path), Contains("experiment is required"));
 
   const auto damaged = [&](const std::string& name, const std::string& text, const std::string& expected) {
     const std::string whole = text_of(folder / name);

@@ -35,11 +35,12 @@ int report_errors(const ConfigErrors& errors) {
 }
 
 void ConfigArguments::add_to(CLI::App& command) {
-  config_option = command.add_option("config", config, "experiment file (YAML)")->required();
+  config_option = command.add_option("experiment", config, "experiment file (YAML)")->required();
   command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command.add_option("--levels", levels, "number of levels, in place of the experiment's")
+      ->type_name("N")
       ->check(positive_integer);
   command.add_flag("--allow-start-repair", allow_start_repair,
                    "translate an intersecting start up or sideways until it is free");

@@ -57,9 +57,13 @@ ExportCommand::ExportCommand(CLI::App& app)
       ->add_option("-o,--to", file_,
                    "file to write: .glb has every level as a scene, with the obstacles; .obj, .ply and .vtp "
                    "have the finest level's cloth; .png is a picture of the finest level")
+      ->type_name("FILE")
       ->required();
-  command_->add_option("--method", options_.method, "method (default: pcs, or the only one that was run)");
-  command_->add_option("--level", options_.level, "this level only")->check(CLI::NonNegativeNumber);
+  command_->add_option("--method", options_.method, "method (default: pcs, or the only one that was run)")
+      ->type_name("NAME");
+  command_->add_option("--level", options_.level, "this level only")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
   command_->add_flag("--frames", options_.frames,
                      "with .glb: the recorded snapshots of one level (default: the finest) as an animation; "
                      "with .png: those of every level, coarse to fine, as numbered pictures");

@@ -31,6 +31,18 @@ std::string nearest_option(const CLI::App& command, const std::string& name) {
 
 }  // namespace
 
+std::string HelpFormatter::make_option_name(const CLI::Option* option, bool is_positional) const {
+  const std::string name = CLI::Formatter::make_option_name(option, is_positional);
+  return name.substr(0, name.find('{'));  // a flag of value false is "--no-report{false}"
+}
+
+std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
+  const bool has_value = option->get_type_size() != 0 && !option->get_positional();
+  if (!has_value) return "";
+  const std::string type = option->get_type_name();  // "SECONDS:NONNEGATIVE" with a check
+  return " " + type.substr(0, type.find(':'));
+}
+
 std::string exit_codes_help() {
   std::string text = "Exit codes:\n";
   for (const ExitCode& code : exit_codes)

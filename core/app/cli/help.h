@@ -6,6 +6,14 @@
 
 namespace drape {
 
+/// Lists an option by its names and its type's name alone, without CLI11's marks of checks and of what it
+/// needs.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override;
+  std::string make_option_opts(const CLI::Option* option) const override;
+};
+
 /// The end of every help page: the exit codes.
 std::string exit_codes_help();
 

@@ -156,6 +156,8 @@ nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
 int main_checked(int argc, char** argv) {
   CLI::App app("drape: progressive cloth quasistatics", "drape");
   app.footer(exit_codes_help());
+  app.formatter(std::make_shared<HelpFormatter>());
+  app.set_help_flag("-h,--help", "print this help and exit");
   app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
   app.require_subcommand(1);
   app.failure_message([](const CLI::App* app, const CLI::Error& error) { return refusal(*app, error); });
@@ -178,8 +180,9 @@ int main_checked(int argc, char** argv) {
       app.add_subcommand("report", "write the report of a run, of several runs or of a sweep");
   show_example(*report_command, "drape report results/sphere results/cube -o results/both.html");
   report_command->add_option("folder", report_folders, "results folders, or a sweep's")->required();
-  report_command->add_option("-o,--out", out,
-                             "page of several runs (default: report.html in a sweep's folder)");
+  report_command
+      ->add_option("-o,--out", out, "page of several runs (default: report.html in a sweep's folder)")
+      ->type_name("FILE");
   std::optional<int> picture_width;
   add_picture_width(*report_command, picture_width, "width of a run's pictures in pixels (default: 900)");
   CLI::App* compare_command = app.add_subcommand(
@@ -196,9 +199,11 @@ int main_checked(int argc, char** argv) {
   show_example(*table_command, "drape table results/sphere --columns method,outcome,seconds,energy");
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
   table_command->add_option("--format", format, "md, csv or json")
+      ->type_name("NAME")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
           {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}}));
   table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
+      ->type_name("A,B")
       ->delimiter(',')
       ->allow_extra_args(false);
   const SweepCommand sweep(app);
@@ -221,8 +226,10 @@ int main_checked(int argc, char** argv) {
       app.add_subcommand("reference", "print the configuration reference (Markdown)");
   for_developers(*reference_command);
   show_example(*reference_command, "drape reference --readmes plugins");
-  reference_command->add_option("--readmes", readmes_folder,
-                                "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md");
+  reference_command
+      ->add_option("--readmes", readmes_folder,
+                   "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md")
+      ->type_name("FOLDER");
 
   std::vector<std::string> words = command_words(argc, argv);
   if (words.empty()) {

@@ -52,7 +52,7 @@ friction: 0.1              # Coulomb's coefficient, with the cloth itself and wi
 # A level ends once its forces balance to this fraction.
 newton: {force_tolerance: 1e-3}
 
-# Progressive cloth quasistatics. To compare it with coarse to fine and with the finest level alone, take
+# Progressive cloth quasistatics. To compare it with the cascadic method and with direct solves, take
 # the two comments away and run with --method all.
 methods:
   pcs: {}

@@ -36,27 +36,36 @@ RunCommand::RunCommand(CLI::App& app) {
   show_example(*command_, "drape run configs/sphere.yaml --levels 3 --method all -o results/sphere");
   arguments_.add_to(*command_);
   arguments_.config_option->required(false);
-  command_->add_option_function<std::string>(
-      "-o,--out", [this](const std::string& folder) { options_.out = folder; },
-      "results folder (default: results/NAME)");
+  command_
+      ->add_option_function<std::string>(
+          "-o,--out", [this](const std::string& folder) { options_.out = folder; },
+          "results folder (default: results/NAME)")
+      ->type_name("FOLDER");
   command_
       ->add_option("--method", options_.methods,
                    "methods to run, or all (default: pcs, or the experiment's only method)")
+      ->type_name("A,B")
       ->delimiter(',')
       ->allow_extra_args(false);
   command_->add_option("-j,--threads", threads_, "threads (default: one per core that the process may use)")
+      ->type_name("N")
       ->check(positive_integer);
   command_->add_flag("--overwrite", options_.overwrite,
                      "replace the results of an earlier run in the folder");
-  command_->add_option(
-      "--resume", resumed_,
-      "results folder of an interrupted run to resume; with --set, --levels, --level or --method, and "
-      "--out: warm-start from its state in another folder");
-  command_->add_option("--level", level_,
-                       "level of the state to warm-start from (default: the run's last one)");
+  command_
+      ->add_option(
+          "--resume", resumed_,
+          "results folder of an interrupted run to resume; with --set, --levels, --level or --method, and "
+          "--out: start another run in that folder from its state")
+      ->type_name("FOLDER");
+  command_
+      ->add_option("--level", level_,
+                   "with --resume: level of the state to start from (default: the run's last one)")
+      ->type_name("N");
   command_
       ->add_option("--checkpoint", options_.checkpoint,
                    "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
+      ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   CLI::Option* quiet = command_->add_flag_function(
       "-q,--quiet", [this](std::int64_t) { options_.verbosity = Verbosity::quiet; },
@@ -68,13 +77,15 @@ RunCommand::RunCommand(CLI::App& app) {
       ->excludes(quiet);
   CLI::Option* show =
       command_->add_flag("--view", view_, "serve a live view of the run on 127.0.0.1; prints its address");
-  command_->add_option("--port", port_, "port of the live view (default: any free one)")
+  command_->add_option("--port", port_, "with --view: port (default: any free one)")
+      ->type_name("N")
       ->check([](const std::string& text) -> std::string {
         const std::optional<int> number = parse_integer(text);
         return number && *number >= 0 && *number <= 65535 ? "" : "must be a port, 0 to 65535, not " + text;
       })
       ->needs(show);
-  command_->add_flag("--view-keep", keep_view_, "keep serving the view after the run, until Ctrl-C")
+  command_
+      ->add_flag("--view-keep", keep_view_, "with --view: keep serving the view after the run, until Ctrl-C")
       ->needs(show);
   command_->add_flag("!--no-report", options_.report, "write no report.html and pictures");
 }

@@ -59,22 +59,26 @@ SweepCommand::SweepCommand(CLI::App& app)
           app.add_subcommand("sweep", "run every variation of an experiment; resumes an interrupted sweep")),
       job_(app.add_subcommand("sweep-job", "executed by a sweep's jobs on a cluster")->group("")) {
   show_example(*sweep_, "drape sweep configs/sweeps/ablations.yaml -j 2 --dry-run");
-  sweep_->add_option("config", config_, "sweep file (YAML)")->required();
-  sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)");
+  sweep_->add_option("file", config_, "sweep file (YAML)")->required();
+  sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)")->type_name("FOLDER");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
+      ->type_name("NAME")
       ->check(CLI::IsMember({"local", "slurm"}));
   sweep_
       ->add_option("-j,--workers", workers_,
                    "concurrent runs (default: as many as the cores allow with --threads)")
+      ->type_name("N")
       ->check(positive_integer);
   sweep_->add_option("--threads", threads_, "threads of each run, in place of the sweep's")
+      ->type_name("N")
       ->check(positive_integer);
-  sweep_
-      ->add_option("--memory-limit", memory_limit_, "memory of all runs together in GB; with slurm, of each")
+  sweep_->add_option("--memory-limit", memory_limit_, "memory of all runs together; with slurm, of each")
+      ->type_name("GB")
       ->check(CLI::Range(1e-3, 1e9));
   sweep_->add_flag("--allow-memory", allow_memory_,
                    "allow runs that may need more memory than this machine has");
   sweep_->add_option("--most-levels", most_levels_, "largest number of levels of every run")
+      ->type_name("N")
       ->check(positive_integer);
   sweep_->add_flag("--dry-run", dry_run_, "validate and list the runs without running any");
   sweep_->add_flag("--retry-failed", retry_failed_, "rerun failed runs");
@@ -85,6 +89,7 @@ SweepCommand::SweepCommand(CLI::App& app)
   sweep_
       ->add_option("--sbatch", sbatch_,
                    "with slurm: a further option of sbatch, as --sbatch=--partition=long; may be repeated")
+      ->type_name("OPTION")
       ->allow_extra_args(false);
 
   job_->add_option("folder", out_, "the sweep's folder")->required();

@@ -28,7 +28,9 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
   d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
       .at_least(1)
       .at_most(1000)
-      .description("maximum Newton iterations of an implicit step")
+      .description(
+          "maximum Newton iterations of an implicit step; at least 30 where obstacles have just moved under "
+          "friction")
       .source("PCS section 4");
   d.add("max_steps", &NewtonParameters::max_steps)
       .at_least(1)

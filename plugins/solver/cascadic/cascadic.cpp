@@ -14,7 +14,9 @@ class CascadicSolver : public ResumableSolver {
     static void declare(Declaration<Parameters>& d) {
       d.add_choice("prolongation", &Parameters::prolongation,
                    {{"midpoint", Interpolation::midpoint}, {"refiner", Interpolation::refiner}})
-          .description("prolongs a level's state: by edge midpoints, or by the experiment's refiner")
+          .description(
+              "prolongs a level's state: linearly over the rest shape, on grids by edge midpoints, or by the "
+              "experiment's refiner")
           .source("docs/theory/method.md section 3");
       d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
     }
