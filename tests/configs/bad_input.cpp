@@ -498,6 +498,40 @@ TEST_CASE("earlier results stay without --overwrite, which removes only a run's 
   }
 }
 
+TEST_CASE("a folder is a run's only with results or a lock of drape's own") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  fs::create_directory(folder / "mine");
+  folder.write("mine/results.json", "{\"accuracy\": 0.9}");
+  folder.write("mine/config.yaml", "mine");
+  CHECK(refused(folder, "run e.yaml --out mine --overwrite") ==
+        "error: mine/config.yaml: is there already, and not from a run; name another results folder with "
+        "--out\n");
+  CHECK(refused(folder, "run --resume mine") ==
+        "error: mine: holds no run; give the results folder of one\n");
+  CHECK(text_of(folder / "mine/config.yaml") == "mine");
+  CHECK(std::distance(fs::directory_iterator(folder / "mine"), {}) == 2);
+
+  fs::create_directory(folder / "sweep");
+  folder.write("sweep/sweep.json", "{}");
+  CHECK(refused(folder, "run e.yaml --out sweep") ==
+        "error: sweep: is a sweep's folder; name another results folder with --out\n");
+}
+
+TEST_CASE("--overwrite removes no file that the new run reads") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string options = " --quiet --no-report --levels 1 --method pcs --out out";
+  REQUIRE(drape_with("run e.yaml" + options, folder.path).exit_code == 0);
+  const std::string mesh = (folder / "out/levels/pcs_l0.ply").string();
+  CHECK(refused(folder, "run e.yaml --set contact=[ipc] --set 'obstacles=[{mesh: " + mesh +
+                            ", translate: [0, 0, -9]}]' --overwrite" + options) ==
+        "error: " + mesh +
+            ": is read by this experiment, and --overwrite would remove it; copy it, or name another "
+            "results folder with --out\n");
+  CHECK(fs::exists(mesh));
+}
+
 TEST_CASE("a file where a run has a folder, or a folder where it has a file, is refused and not removed") {
   for (const std::string name : {"pictures", "steps.csv/mine"}) {
     const Scratch folder;

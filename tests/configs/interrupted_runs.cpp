@@ -50,6 +50,75 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
 }
 
+TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; under nohup it does not") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  {
+    Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
+    wait_for_lines(command, folder / "out/steps.csv", 6);
+    command.send(SIGHUP);
+    CHECK(command.wait().exit_code == 129);
+  }
+  CHECK(fs::exists(folder / "out/checkpoint/state.bin"));
+  fs::remove_all(folder / "out");
+  Command command("trap '' HUP; exec " + drape_command + " " + endless + " -q --no-report " +
+                      "--set newton.max_steps=100000",
+                  folder.path);
+  wait_for_lines(command, folder / "out/steps.csv", 6);
+  command.send(SIGHUP);
+  const std::string steps = contents(folder / "out/steps.csv");
+  const auto rows = std::count(steps.begin(), steps.end(), '\n');
+  wait_for_lines(command, folder / "out/steps.csv", static_cast<int>(rows) + 20);
+  command.send(SIGINT);
+  CHECK(command.wait().exit_code == 130);
+}
+
+TEST_CASE("A run writes nothing of its progress into its files where the standard streams are closed") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  Command command(
+      "exec " + drape_command + " run e.yaml --levels 1 --method pcs --no-report --out out <&- >&- 2>&-",
+      folder.path);
+  REQUIRE(command.wait().exit_code == 0);
+  for (const auto& entry : fs::recursive_directory_iterator(folder / "out")) {
+    if (!entry.is_regular_file()) continue;
+    INFO(entry.path());
+    CHECK_THAT(text_of(entry.path()), !Catch::Matchers::Contains("pcs       level 0/0"));
+  }
+}
+
+TEST_CASE("A run goes on where nobody reads its progress") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  Command command(
+      "( " + drape_command +
+          " run e.yaml --levels 1 --method pcs --no-report -v --out out 2>&1; echo $? > code ) | head -c 1",
+      folder.path);
+  command.wait();
+  CHECK(Json::parse(text_of(folder / "out/results.json"))["complete"] == true);
+}
+
+TEST_CASE("An interrupted run is resumed although its results.json is damaged and its config.yaml is gone") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string run = "run e.yaml --out out --threads 1 --no-report --quiet --method pcs --checkpoint 0 ";
+  Command command("exec " + drape_command + " " + run + "--set newton.max_steps=100000 " +
+                      "--set newton.force_tolerance=1e-300",
+                  folder.path);
+  wait_for_lines(command, folder / "out/steps.csv", 6);
+  command.send(SIGKILL);
+  command.wait();
+  std::ofstream(folder / "out/results.json") << "";
+  fs::remove(folder / "out/config.yaml");
+  Command resumed("exec " + drape_command + " run --resume out --quiet --no-report", folder.path);
+  const std::string before = text_of(folder / "out/steps.csv");
+  resumed.wait_until("it has gone on",
+                     [&] { return contents(folder / "out/steps.csv").size() > before.size() + 500; });
+  resumed.send(SIGINT);
+  CHECK(resumed.wait().exit_code == 130);
+  CHECK(Json::parse(text_of(folder / "out/results.json"))["methods"]["pcs"]["status"] == "cancelled");
+}
+
 TEST_CASE("SIGKILL at any moment leaves complete files, sufficient for a report") {
   int levels_read = 0;
   // Few steps on few vertices, so that levels, metrics and methods follow fast on each other.

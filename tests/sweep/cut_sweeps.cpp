@@ -52,6 +52,28 @@ TEST_CASE("a sweep that was killed runs an experiment that has changed since fro
              !Catch::Matchers::Contains("\"run_resumed\""));
 }
 
+TEST_CASE("a sweep removes no run that another process is resuming") {
+  const Scratch folder;
+  write_slow(folder);
+  cut_slow(folder, SIGKILL);
+  const std::string run = "out/runs/slow/seed_1";
+  Command by_hand("exec " + drape_command + " run --resume " + run + " --no-report", folder.path);
+  by_hand.wait_until("it resumes", [&] {
+    return text_of(folder / (run + "/log.jsonl")).find("run_resumed") != std::string::npos;
+  });
+  by_hand.send(SIGSTOP);
+  folder.write(run + "/notes", "mine");
+  folder.write("s.yaml", replaced(text_of(folder / "s.yaml"), "max_steps: 400", "max_steps: 3"));
+  drape_with("sweep s.yaml --out out", folder.path);
+  CHECK(text_of(folder / (run + "/notes")) == "mine");
+  CHECK(runs_of(folder / "out")[0]["status"] == "failed");
+  CHECK_THAT(runs_of(folder / "out")[0]["error"].get<std::string>(),
+             Catch::Matchers::Contains("uses this folder"));
+  by_hand.send(SIGCONT);
+  by_hand.send(SIGINT);
+  by_hand.wait();
+}
+
 TEST_CASE("a run that was resumed without its sweep is one of the sweep's results") {
   const Scratch folder;
   write_slow(folder);

@@ -141,7 +141,7 @@ TEST_CASE("conflicting options, and a foreign folder") {
   CHECK(said_of("threads: " + more + "\n") == "error: 1 × " + more + rest);
   CHECK(said_of("", "--wait") == "error: --wait is of --engine slurm; give that too\n");
   CHECK(said_of("", "--engine cloud") ==
-        "error: --engine: cloud not in {local,slurm}; see `drape sweep --help`\n");
+        "error: --engine: must be local or slurm, not cloud; see `drape sweep --help`\n");
   CHECK(said_of("", "--engine slurm --cancel") ==
         "error: out: has no jobs in Slurm's queue; there is nothing to cancel\n");
 

@@ -174,6 +174,35 @@ TEST_CASE("Delaunay patterns meet the count, the area and the angle", "[generate
   CHECK_FALSE(same(plain, other));
 }
 
+TEST_CASE("Outlines with slanted sides and holes are triangulated at every count", "[generate]") {
+  // Points of a slanted side are on one line only up to rounding.
+  const std::vector<std::vector<Polygon>> outlines = {
+      {{{0, 0}, {1, 0}, {0, 1}}},
+      {{{0, 0}, {1, 0}, {0.5, 0.86602540378443865}}},
+      {{{0, 0}, {1, 0}, {0.8, 0.7}, {0.2, 0.7}}},
+      {{{0, 0}, {0.5, -0.3}, {1, 0}, {0.7, 0.9}, {0.3, 0.9}}},
+      {{{0.1, 0}, {0.9, 0.2}, {0.7, 1}, {0, 0.8}}, {{0.3, 0.3}, {0.6, 0.35}, {0.5, 0.6}}},
+      {{{0, 0}, {1, 0}, {0.4, 0.4}, {0, 1}}},
+  };
+  for (std::size_t k = 0; k < outlines.size(); ++k)
+    for (const int count : {60, 141, 300, 1024, 2000}) {
+      CAPTURE(k, count);
+      const TriangleMesh mesh = delaunay_polygon(outlines[k], count, 1);
+      CHECK(std::abs(mesh.vertices.rows() - count) <= 0.15 * count);
+      double area = 0;
+      for (std::size_t loop = 0; loop < outlines[k].size(); ++loop) {
+        const Polygon& p = outlines[k][loop];
+        double own = 0;
+        for (std::size_t i = 0; i < p.size(); ++i) {
+          const Eigen::Vector2d &a = p[i], &b = p[(i + 1) % p.size()];
+          own += 0.5 * (a.x() * b.y() - a.y() * b.x());
+        }
+        area += loop == 0 ? std::abs(own) : -std::abs(own);
+      }
+      require_pattern(mesh, area, static_cast<int>(outlines[k].size()) - 1, 20);
+    }
+}
+
 TEST_CASE("a disc's border is on the circle, its spacing that of the inside", "[generate]") {
   const int count = GENERATE(200, 1500);
   const TriangleMesh mesh = disc(0.6, count);

@@ -1,17 +1,29 @@
 #include "core/app/cli/config_arguments.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/run/start_repair.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 std::string positive_integer(const std::string& text) {
   const std::optional<int> number = parse_integer(text);
   return number && *number > 0 ? "" : "must be an integer of at least 1, not " + text;
+}
+
+std::function<std::string(const std::string&)> number_of_at_least(double least) {
+  return [least](const std::string& text) {
+    const std::optional<double> number = parse_number(text);
+    return number && std::isfinite(*number) && *number >= least
+               ? ""
+               : "must be a number of at least " + three_digits(least) + ", not " + excerpt(text);
+  };
 }
 
 namespace {

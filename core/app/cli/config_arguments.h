@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,9 @@ namespace drape {
 
 /// Validates a positive integer option: an error text, or "".
 std::string positive_integer(const std::string& text);
+
+/// The same for a number of at least `least`.
+std::function<std::string(const std::string&)> number_of_at_least(double least);
 
 /// Prints the errors and returns the exit code.
 int report_errors(const ConfigErrors& errors);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <sstream>
 
+#include "core/app/cli/config_arguments.h"
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/picture_scene.h"
@@ -63,7 +64,7 @@ ExportCommand::ExportCommand(CLI::App& app)
       ->type_name("NAME");
   command_->add_option("--level", options_.level, "this level only")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_of_at_least(0));
   command_->add_flag("--frames", options_.frames,
                      "with .glb: the recorded snapshots of one level (default: the finest) as an animation; "
                      "with .png: those of every level, coarse to fine, as numbered pictures");

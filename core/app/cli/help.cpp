@@ -83,8 +83,10 @@ std::string refusal(const CLI::App& app, const CLI::Error& error) {
   const std::string unknown = unknown_option(error);
   const std::string near = unknown.empty() ? "" : nearest_option(chosen.empty() ? app : *chosen[0], unknown);
   const std::string what =
-      near.empty() ? printable(error.what())
-                   : "there is no option --" + excerpt(unknown) + "; did you mean --" + near + "?";
+      !near.empty() && near == unknown
+          ? "there is no option --" + excerpt(unknown) + " before the command; write it after that."
+      : near.empty() ? printable(error.what())
+                     : "there is no option --" + excerpt(unknown) + "; did you mean --" + near + "?";
   return "error: " + what + (near.empty() ? "; see" : " See") + " `drape" + command + " --help`\n";
 }
 

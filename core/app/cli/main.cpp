@@ -1,9 +1,14 @@
 // The `drape` command. Its exit codes are in exit_codes.h.
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "core/app/cli/config_arguments.h"
@@ -153,6 +158,9 @@ nlohmann::ordered_json experiment_json_schema(const Registry& registry) {
   return schema;
 }
 
+const std::map<std::string, TableFormat> formats = {
+    {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}};
+
 int main_checked(int argc, char** argv) {
   CLI::App app("drape: progressive cloth quasistatics", "drape");
   app.footer(exit_codes_help());
@@ -175,7 +183,7 @@ int main_checked(int argc, char** argv) {
 
   std::string kind, plugin, help_on, out, readmes_folder, schema_kind = "experiment";
   std::vector<std::string> report_folders, compared, bounds, columns;
-  TableFormat format = TableFormat::markdown;
+  std::string format = "md";
   CLI::App* report_command =
       app.add_subcommand("report", "write the report of a run, of several runs or of a sweep");
   show_example(*report_command, "drape report results/sphere results/cube -o results/both.html");
@@ -200,8 +208,9 @@ int main_checked(int argc, char** argv) {
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
   table_command->add_option("--format", format, "md, csv or json")
       ->type_name("NAME")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TableFormat>{
-          {"md", TableFormat::markdown}, {"csv", TableFormat::csv}, {"json", TableFormat::json}}));
+      ->check([](const std::string& name) {
+        return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
+      });
   table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
       ->type_name("A,B")
       ->delimiter(',')
@@ -259,10 +268,11 @@ int main_checked(int argc, char** argv) {
   }
   if (*table_command) {
     const RunTable table = table_of(read_runs({report_folders.begin(), report_folders.end()}));
-    const std::string text = table_text(table, columns, format);
-    std::cout << (format == TableFormat::json ? text : printable_lines(text));
+    const std::string text = table_text(table, columns, formats.at(format));
+    std::cout << (format == "json" ? text : printable_lines(text));
     return table.all_pass() ? exit_done : exit_not_converged;
   }
+  std::signal(SIGPIPE, SIG_IGN);  // a run goes on where nobody reads its progress
   if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
   load_plugins(registry, plugin_directories());
@@ -285,9 +295,21 @@ int main_checked(int argc, char** argv) {
 
 }  // namespace
 
+namespace {
+
+/// Opens those of the three standard streams that are closed on /dev/null: otherwise the first files of a run
+/// would take their places, and what is printed would go into them.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) std::_Exit(exit_aborted);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   // Exceeding a file size limit is reported as an error instead of ending the process.
   std::signal(SIGXFSZ, SIG_IGN);
+  open_standard_streams();
   const auto end = [](const std::string& message, int exit_code) {
     std::cerr << "error: " << printable(message) << "\n";
     return exit_code;

@@ -66,7 +66,7 @@ RunCommand::RunCommand(CLI::App& app) {
       ->add_option("--checkpoint", options_.checkpoint,
                    "approximate interval of checkpoints in seconds (default 5; 0: at every step)")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_of_at_least(0));
   CLI::Option* quiet = command_->add_flag_function(
       "-q,--quiet", [this](std::int64_t) { options_.verbosity = Verbosity::quiet; },
       "no progress on standard error");

@@ -21,6 +21,7 @@ void on_signal(int number) {
 void stop_on_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup
 }
 
 int stop_signal() { return received; }

@@ -2,7 +2,8 @@
 
 namespace drape {
 
-/// Makes SIGINT and SIGTERM request a stop; a second one ends the process at once.
+/// Makes SIGINT, SIGTERM and SIGHUP (a lost terminal) request a stop; a second one ends the process at once.
+/// SIGHUP stays ignored under nohup.
 void stop_on_signals();
 /// The signal that requested the stop, 0 before.
 int stop_signal();

@@ -63,7 +63,9 @@ SweepCommand::SweepCommand(CLI::App& app)
   sweep_->add_option("-o,--out", out_, "the sweep's folder (default: results/NAME)")->type_name("FOLDER");
   sweep_->add_option("--engine", engine_, "local: processes on this machine; slurm: a job array on a cluster")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"local", "slurm"}));
+      ->check([](const std::string& name) {
+        return name == "local" || name == "slurm" ? "" : "must be local or slurm, not " + excerpt(name);
+      });
   sweep_
       ->add_option("-j,--workers", workers_,
                    "concurrent runs (default: as many as the cores allow with --threads)")
@@ -74,7 +76,7 @@ SweepCommand::SweepCommand(CLI::App& app)
       ->check(positive_integer);
   sweep_->add_option("--memory-limit", memory_limit_, "memory of all runs together; with slurm, of each")
       ->type_name("GB")
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(number_of_at_least(1e-3));
   sweep_->add_flag("--allow-memory", allow_memory_,
                    "allow runs that may need more memory than this machine has");
   sweep_->add_option("--most-levels", most_levels_, "largest number of levels of every run")
@@ -102,7 +104,7 @@ void SweepCommand::check_options(int threads) const {
   if (engine_ != "slurm") {
     const char* given = wait_ ? "--wait" : cancel_ ? "--cancel" : !sbatch_.empty() ? "--sbatch" : nullptr;
     if (given) throw std::runtime_error(std::string(given) + " is of --engine slurm; give that too");
-    const int workers = std::max(1, workers_), cores = core_count();
+    const long workers = std::max(1, workers_), cores = core_count();
     if (workers * threads > cores)
       throw std::runtime_error(std::to_string(workers) + " × " + std::to_string(threads) +
                                " threads (workers × threads) are more than the " + std::to_string(cores) +

@@ -28,6 +28,7 @@ constexpr ExitCode exit_codes[] = {
     {exit_aborted,
      "aborted after it had begun, as on a full disk; once the cause is removed, `drape run --resume` resumes "
      "a run"},
+    {exit_by_signal + 1, "stopped by SIGHUP, as when its terminal is closed; all results so far are saved"},
     {exit_by_signal + 2, "stopped by Ctrl-C (SIGINT) or in the live view; all results so far are saved"},
     {exit_by_signal + 15, "stopped by SIGTERM; all results so far are saved"},
 };

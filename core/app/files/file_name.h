@@ -9,7 +9,8 @@ namespace drape {
 /// Checked before a run rather than left to the file system in its middle.
 std::string fault_of_file_name(const std::string& name);
 
-/// Throws std::runtime_error, which names the option --overwrite, if a file or folder of that path exists.
-void refuse_existing(const std::filesystem::path& file);
+/// Throws std::runtime_error if a file cannot be written there, is there already and not to be replaced, or
+/// would first be written over another one.
+void refuse_target(const std::filesystem::path& file, bool overwrite);
 
 }  // namespace drape

@@ -52,8 +52,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   for (const LevelRecord* level : levels)
     for (TriangleMesh& state : states_of(run, method, *level, snapshots)) states.push_back(std::move(state));
   std::vector<fs::path> files = snapshots ? numbered(file, states.size()) : std::vector<fs::path>{file};
-  if (!overwrite)
-    for (const fs::path& each : files) refuse_existing(each);
+  for (const fs::path& each : files) refuse_target(each, overwrite);
 
   PictureFrame frame;
   frame.width = options.width.value_or(default_width);

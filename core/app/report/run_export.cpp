@@ -131,7 +131,7 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   if (!all_levels) levels = {levels.back()};
   if (extension == ".png")
     return export_pictures(run, method, levels, options.frames, options.picture, file, options.overwrite);
-  if (!options.overwrite) refuse_existing(file);
+  refuse_target(file, options.overwrite);
   if (extension == ".glb")
     write_file(file, gltf_of(run, method, levels, options.frames));
   else if (extension == ".vtp")

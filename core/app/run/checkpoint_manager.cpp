@@ -37,14 +37,20 @@ FileFingerprint fingerprint_of(const fs::path& path) {
   return {path.string(), bytes.size(), checksum_of(bytes)};
 }
 
+/// Copies of inputs in a results folder, as its config.yaml names them.
+constexpr const char* copies[] = {"rest/l0.ply", "reference.ply", "start.ply"};
+
+bool is_valid(const nlohmann::ordered_json& results) {
+  return results.is_object() && results.contains("methods") && results["methods"].is_object() &&
+         (!results.contains("complete") || results["complete"].is_boolean());
+}
+
 nlohmann::ordered_json results_of(const fs::path& folder) {
   const fs::path file = folder / "results.json";
   if (!fs::exists(file))
     throw std::runtime_error(folder.string() + ": holds no run; give the results folder of one");
   nlohmann::ordered_json results = parse_json(read_file(file));
-  const bool valid = results.is_object() && results.contains("methods") && results["methods"].is_object() &&
-                     (!results.contains("complete") || results["complete"].is_boolean());
-  if (!valid) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
+  if (!is_valid(results)) throw std::runtime_error(file.string() + ": is damaged; run the experiment again");
   return results;
 }
 
@@ -99,23 +105,37 @@ void CheckpointManager::save() {
   since_ = Stopwatch();
 }
 
-std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
-  std::vector<FileFingerprint> fingerprints;
-  // Paths in the saved config are absolute, except those of copies in the folder.
+std::vector<fs::path> files_of(const ConfigNode& saved) {
+  std::vector<fs::path> files;
   const std::string& path = saved.scalar;
-  if (path.starts_with('/') && fs::exists(path)) fingerprints.push_back(fingerprint_of(path));
-  for (const char* copy : {"rest/l0.ply", "reference.ply", "start.ply"})
-    if (path == copy) fingerprints.push_back(fingerprint_of(folder / copy)), fingerprints.back().path = copy;
+  if (path.starts_with('/') && fs::exists(path)) files.emplace_back(path);
+  for (const char* copy : copies)
+    if (path == copy) files.emplace_back(path);  // all other paths are absolute
   const auto add = [&](const ConfigNode& part) {
-    for (FileFingerprint& fingerprint : fingerprints_of_files(part, folder))
-      fingerprints.push_back(std::move(fingerprint));
+    for (fs::path& file : files_of(part)) files.push_back(std::move(file));
   };
   for (const ConfigNode& item : saved.items) add(item);
   for (const auto& entry : saved.entries) add(entry.second);
+  return files;
+}
+
+std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, const fs::path& folder) {
+  std::vector<FileFingerprint> fingerprints;
+  for (const fs::path& file : files_of(saved)) {
+    fingerprints.push_back(fingerprint_of(folder / file));  // an absolute path stays as it is
+    fingerprints.back().path = file;
+  }
   return fingerprints;
 }
 
-bool is_complete(const fs::path& folder) { return results_of(folder).value("complete", false); }
+bool is_complete(const fs::path& folder) {
+  // A checkpoint has results.json too, which a power cut may have damaged.
+  const fs::path file = folder / "results.json";
+  if (fs::exists(folder / "checkpoint/state.bin") &&
+      !(fs::exists(file) && is_valid(parse_json(read_file(file)))))
+    return false;
+  return results_of(folder).value("complete", false);
+}
 
 bool all_methods_succeeded(const fs::path& folder) {
   const RunData run = read_run(folder);
@@ -145,10 +165,10 @@ void refuse_damaged_results(const fs::path& folder) {
 
 InterruptedRun interrupted_run(RunFolder run, std::string& warning) {
   const fs::path& folder = run.path();
-  results_of(folder);
   Checkpoint checkpoint = load_checkpoint(folder, warning);
   const fs::path config = folder / "config.yaml";
-  if (!fs::exists(config) || read_file(config) != checkpoint.config)
+  if (!fs::exists(config)) write_file(config, checkpoint.config);
+  if (read_file(config) != checkpoint.config)
     throw std::runtime_error(config.string() +
                              ": is not the one that the checkpoint was made with; put that one back, or "
                              "change parameters with --set KEY=VALUE --out ANOTHER");

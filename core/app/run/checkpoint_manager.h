@@ -34,8 +34,10 @@ class CheckpointManager {
   Stopwatch method_clock_, since_;
 };
 
-/// Fingerprints of the files that the config.yaml of a results folder names; files inside have relative
-/// paths.
+/// The files that a config.yaml names; those of its results folder have relative paths.
+std::vector<std::filesystem::path> files_of(const ConfigNode& saved);
+
+/// Fingerprints of those files.
 std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved,
                                                    const std::filesystem::path& folder);
 

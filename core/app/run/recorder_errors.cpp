@@ -10,6 +10,13 @@
 
 namespace drape {
 
+namespace {
+
+/// After a stop, errors are measured for at most so long [s]; a resumed run measures all of them.
+constexpr double seconds_after_stop = 5;
+
+}  // namespace
+
 std::vector<const RecordedState*> Recorder::finest_states() const {
   std::vector<const RecordedState*> finest;
   for (const RecordedState& state : states_)
@@ -81,7 +88,10 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   }
   save();
   if (errors_.empty()) return !observer.stop_requested() || cancelled;
-  const auto stop = [&] { return !cancelled && observer.stop_requested(); };
+  const Stopwatch watch;
+  const auto stop = [&] {
+    return cancelled ? watch.seconds() > seconds_after_stop : observer.stop_requested();
+  };
   const auto fault = [&](const std::string& message) {
     log({{"event", "not_measured"}, {"message", message}});
   };

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/model/metric_declaration.h"
 
@@ -35,9 +36,34 @@ constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
 constexpr std::size_t longest_ending = std::string_view("_l10_l11_.png.part").size() + longest_picture_name;
 
+/// Whether results.json is a run's, and not of another program.
+bool has_results_of_a_run(const RunFolder& folder) {
+  const fs::path path = folder.file("results.json");
+  return fs::is_regular_file(path) &&
+         text_member(parse_json(read_file(path)), "version").starts_with("drape ");
+}
+
 /// Whether it is a run's folder: a run creates its lock first and never removes it.
 bool is_of_a_run(const RunFolder& folder) {
-  return fs::exists(folder.file("results.json")) || fs::exists(folder.file(lock_name));
+  return fs::exists(folder.file(lock_name)) || has_results_of_a_run(folder);
+}
+
+/// The files there with names that a run writes, finished or not.
+std::vector<fs::path> files_of_run(const RunFolder& folder) {
+  std::vector<fs::path> files;
+  for (const char* own : own_files)
+    for (const char* ending : {"", unfinished})
+      if (fs::path path = folder.file(std::string(own) + ending); fs::exists(fs::symlink_status(path)))
+        files.push_back(std::move(path));
+  for (const auto& [own, pattern] : own_folders) {
+    const fs::path path = folder.file(own);
+    if (!fs::is_directory(path)) continue;
+    const std::regex own_name("(?:" + std::string(pattern) + ")(?:\\" + unfinished + ")?");
+    for (const auto& entry : fs::directory_iterator(path))
+      if (!entry.is_directory() && std::regex_match(entry.path().filename().string(), own_name))
+        files.push_back(entry.path());
+  }
+  return files;
 }
 
 /// A file or non-empty folder with one of a run's names; "" without one.
@@ -69,8 +95,34 @@ void refuse_other_kinds(const RunFolder& folder) {
     if (const fs::path path = folder.file(own); fs::exists(path) && !fs::is_directory(path)) refuse(path);
 }
 
+/// Removing a file takes the right to write to its folder.
+void refuse_read_only_folders(const RunFolder& folder) {
+  for (const auto& [own, pattern] : own_folders)
+    if (const fs::path path = folder.file(own); fs::exists(path) && access(path.c_str(), W_OK | X_OK) != 0)
+      throw std::runtime_error(path.string() +
+                               ": cannot be written to; make it writable, or name another results folder "
+                               "with --out");
+}
+
+/// Files that the new run reads may not be among those of the earlier run that it replaces.
+void refuse_inputs(const RunFolder& folder, const std::vector<fs::path>& inputs) {
+  const std::vector<fs::path> own = files_of_run(folder);
+  for (const fs::path& input : inputs)
+    for (const fs::path& file : own) {
+      std::error_code error;
+      if (input.is_relative() || !fs::equivalent(input, file, error)) continue;  // relative: a copy
+      throw std::runtime_error(input.string() +
+                               ": is read by this experiment, and --overwrite would remove it; copy it, or "
+                               "name another results folder with --out");
+    }
+}
+
 /// Files may be replaced only if they are a run's and `overwrite` is set.
-void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
+void refuse_what_is_there(const RunFolder& folder, bool overwrite, const std::vector<fs::path>& inputs) {
+  for (const char* name : {"sweep.json", "sweep.lock"})
+    if (fs::exists(folder.file(name)))
+      throw std::runtime_error(folder.path().string() +
+                               ": is a sweep's folder; name another results folder with --out");
   const fs::path left = left_there(folder);
   if (left.empty()) return;
   if (!is_of_a_run(folder))
@@ -82,6 +134,8 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite) {
                              ": holds the results of another run; name another folder with --out, or "
                              "replace them with --overwrite");
   refuse_other_kinds(folder);
+  refuse_read_only_folders(folder);
+  refuse_inputs(folder, inputs);
 }
 
 /// The missing folders of the path, innermost first.
@@ -113,19 +167,14 @@ void make_writable(const RunFolder& folder) {
 
 /// Removes the files of an earlier run; those that others have put into its folders stay.
 void clear(const RunFolder& folder) {
-  std::error_code error;
-  for (const char* own : own_files)
-    for (const char* ending : {"", unfinished}) fs::remove(folder.file(std::string(own) + ending), error);
+  for (const fs::path& file : files_of_run(folder)) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw WriteError(file.string() + ": cannot be removed (" + error.message() + ")");
+  }
   for (const auto& [own, pattern] : own_folders) {
-    const fs::path path = folder.file(own);
-    if (!fs::exists(path)) continue;
-    const std::regex own_name("(?:" + std::string(pattern) + ")(?:\\" + unfinished + ")?");
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(path))
-      if (!entry.is_directory() && std::regex_match(entry.path().filename().string(), own_name))
-        files.push_back(entry.path());
-    for (const fs::path& file : files) fs::remove(file, error);
-    fs::remove(path, error);  // if it is empty
+    std::error_code error;
+    if (const fs::path path = folder.file(own); !fs::is_symlink(path)) fs::remove(path, error);  // if empty
   }
 }
 
@@ -160,25 +209,27 @@ void refuse_long_names(const fs::path& folder, const std::vector<std::string>& m
   }
 }
 
-RunFolder::RunFolder(std::filesystem::path path, bool overwrite) : path_(std::move(path)) {
+RunFolder::RunFolder(std::filesystem::path path, bool overwrite,
+                     const std::vector<std::filesystem::path>& inputs)
+    : path_(std::move(path)) {
   const std::vector<fs::path> made = missing_folders(path_);
   try {
     make_writable(*this);
-    refuse_what_is_there(*this, overwrite);
+    refuse_what_is_there(*this, overwrite, inputs);
   } catch (...) {
     std::error_code error;
     for (const fs::path& folder : made) fs::remove(folder, error);  // removes only empty ones
     throw;
   }
   lock();
-  refuse_what_is_there(*this, overwrite);  // by another run that has just finished
+  refuse_what_is_there(*this, overwrite, inputs);  // by another run that has just finished
   clear(*this);
   for (const char* folder : {"levels", "fields", "rest", "obstacles"}) make_folder(file(folder));
 }
 
 RunFolder RunFolder::of_run(std::filesystem::path path) {
   RunFolder folder(std::move(path));
-  if (!std::filesystem::exists(folder.file("results.json")))
+  if (!is_of_a_run(folder))
     throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
   folder.lock();
   // A pipe in their place would block the resumed run.

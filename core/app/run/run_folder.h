@@ -18,9 +18,11 @@ void refuse_long_names(const std::filesystem::path& folder, const std::vector<st
 class RunFolder {
  public:
   /// Creates the folder and removes the results of an earlier run. Throws std::runtime_error, without a
-  /// change, if the folder is not writable, has results and `overwrite` is false, or has foreign files with
-  /// names of a run. Throws WriteError if a later write fails.
-  RunFolder(std::filesystem::path path, bool overwrite);
+  /// change, if the folder is not writable, is a sweep's, has results and `overwrite` is false, has foreign
+  /// files with names of a run, or if one of the `inputs`, which the new run reads, is among the results.
+  /// Throws WriteError if a later write fails.
+  RunFolder(std::filesystem::path path, bool overwrite,
+            const std::vector<std::filesystem::path>& inputs = {});
   /// The folder of a run to be resumed. Throws std::runtime_error if it has no run, or one that is still
   /// running.
   static RunFolder of_run(std::filesystem::path path);

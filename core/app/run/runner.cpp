@@ -250,9 +250,9 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
   TriangleMesh start;
   if (!start_file.empty()) start = read_mesh(start_file);  // it may be of the run that is overwritten
   refuse_long_names(options.out, methods);
-  const RunFolder folder(options.out, options.overwrite);
+  const ConfigNode config = saved_config(experiment);
+  const RunFolder folder(options.out, options.overwrite, files_of(config));
   return with_folder(folder, options, [&] {
-    const ConfigNode config = saved_config(experiment);
     Checkpoint begun;
     begun.config = to_yaml(config);
     begun.methods = methods;

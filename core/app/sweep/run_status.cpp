@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/app/experiment/method_choice.h"
+#include "core/app/files/file_lock.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -41,23 +42,36 @@ bool is_resumable(const RunFiles& files, const RunStatus& status, int threads) {
          std::filesystem::exists(files.folder / "checkpoint/state.bin");
 }
 
-/// Marks the run as running, and removes the files of an earlier start that is not resumed.
+/// Removes the states of an earlier start that is not resumed, unless a process still uses the folder: the
+/// run is then refused. The run itself replaces the other files.
+void discard_states(const RunFiles& files) {
+  const std::filesystem::path states = files.folder / "checkpoint";
+  if (!std::filesystem::is_directory(states)) return;
+  FileLock lock(states / "lock");
+  if (!lock.acquire(0)) return;
+  for (const char* name : {"checkpoint/state.bin", "checkpoint/previous.bin", "results.json"})
+    std::filesystem::remove(files.folder / name);
+}
+
+/// Marks the run as running.
 RunStatus begin(const RunFiles& files, int threads, bool resumes) {
   const RunStatus before = read_status(files);
   RunStatus status{RunState::running, "", 0, resumes ? before.seconds : 0, before.starts + 1, threads};
   // First: cut between the two, a run that is marked as running would resume from what should be gone.
-  if (before.starts > 0 && !resumes) std::filesystem::remove_all(files.folder);
+  if (before.starts > 0 && !resumes) discard_states(files);
   write_status(files, status);
   std::filesystem::remove(files.log());
   return status;
 }
 
 std::vector<std::string> command(const RunFiles& files, const RunProcessOptions& options, bool resumes) {
+  const std::filesystem::path folder = std::filesystem::absolute(files.folder);  // may begin with "-"
   // The config has the chosen methods only.
   std::vector<std::string> all =
-      resumes ? std::vector<std::string>{own_program(), "run", "--resume", files.folder}
-              : std::vector<std::string>{own_program(), "run",      files.config(), "--out",
-                                         files.folder,  "--method", all_methods};
+      resumes ? std::vector<std::string>{own_program(), "run", "--resume", folder}
+              : std::vector<std::string>{own_program(), "run",      std::filesystem::absolute(files.config()),
+                                         "--out",       folder,     "--overwrite",
+                                         "--method",    all_methods};
   // The sweep has checked the memory.
   for (const std::string& option : {std::string("--quiet"), std::string("--allow-memory"),
                                     std::string("--threads"), std::to_string(options.threads)})

@@ -114,6 +114,21 @@ void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned
   }
 }
 
+/// A point well inside a ring whose sides are constraints: the centroid of the largest triangle in it.
+Point2 point_inside(const Ring& ring, const Triangulation& triangulation) {
+  Point2 inside;
+  double largest = 0;
+  for (auto f : triangulation.finite_face_handles()) {
+    const auto triangle = triangulation.triangle(f);
+    const Point2 c = CGAL::centroid(triangle);
+    const double area = std::abs(triangle.area());
+    if (area <= largest || !contains(ring, c)) continue;
+    inside = c;
+    largest = area;
+  }
+  return inside;
+}
+
 /// Rotated so that the smallest index comes first, and sorted: independent of CGAL's order.
 Triangles in_order(std::vector<std::array<int, 3>> triangles) {
   for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
@@ -143,11 +158,9 @@ std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std
   Triangulation triangulation;
   insert_loops(loops, spacing, triangulation);
   insert_first_inner(rings, spacing, seed, triangulation);
-  std::vector<Point2> hole_points;  // CGAL needs a point in every region that is not meshed
-  for (auto f : triangulation.finite_face_handles()) {
-    const Point2 c = CGAL::centroid(triangulation.triangle(f));
-    if (!encloses(rings, c)) hole_points.push_back(c);
-  }
+  std::vector<Point2> hole_points;  // CGAL finds what is outside the outer border itself
+  for (auto ring = rings.begin() + 1; ring != rings.end(); ++ring)
+    hole_points.push_back(point_inside(*ring, triangulation));
   // sin² of the smallest angle, 20.7°: refinement terminates for certain.
   constexpr double shape_bound = 0.125;
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
