@@ -443,6 +443,16 @@ TEST_CASE("a live view that is not available") {
         "error: --view-keep requires --view; see `drape run --help`\n");
 }
 
+TEST_CASE("a schedule may not change an integer, whose values between are none") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment() +
+                             "contact: ipc\nobstacles: [{name: ball, meshed_shape: sphere, radius: 0.1, "
+                             "subdivisions: 1, translate: [0, 0, -3]}]\nschedule: {keys: [{parameter: "
+                             "obstacles.ball.subdivisions, times: [0, 1], values: [1, 3]}]}\n");
+  CHECK_THAT(refused(folder, "run e.yaml --out out"),
+             Catch::Contains("\"subdivisions\" must be an integer, not 1.76"));
+}
+
 TEST_CASE("a results folder that cannot be used") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());

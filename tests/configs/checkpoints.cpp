@@ -615,6 +615,35 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   CHECK(text_of(folder / "out/log.jsonl") == before);
 }
 
+TEST_CASE("A run whose schedule selects ever more pinned vertices resumes while they are blocked") {
+  const Scratch folder;
+  folder.write("e.yaml", R"yaml(name: g
+cloth: {shape: square, side: 0.4, vertices: 100}
+levels: 1
+start: {translate: [-0.2, -0.2, 0.12], perturbation: 1e-3}
+pins: [{region: ball, point: [0.2, 0.2, 0], radius: 0.05, translate: [-0.2, -0.2, 0.12]}]
+obstacles: [{name: ball, shape: sphere, radius: 0.1}]
+energies: [neo_hookean, hinge, gravity]
+contact: [shapes]
+friction: 0.3
+schedule:
+  steps: 4
+  equilibrate: true
+  keys:
+    - {parameter: pins.0.translate, times: [0, 1], values: [[-0.2, -0.2, 0.12], [-0.2, -0.2, 0.05]]}
+    - {parameter: pins.0.radius, times: [0, 1], values: [0.05, 0.12]}
+methods: {newton: {}}
+)yaml");
+  Command command("exec " + drape_command + " run e.yaml --out out --checkpoint 0 -q --no-report",
+                  folder.path);
+  wait_for_steps(command, folder / "out", 320);
+  command.send(SIGINT);
+  REQUIRE(command.wait().exit_code == 130);
+  const Ended resumed = drape_with("run --resume out -q --no-report", folder.path);
+  CHECK(resumed.exit_code != 2);
+  CHECK(is_complete(folder / "out"));
+}
+
 TEST_CASE("An obstacle's mesh that changed since is named") {
   const Scratch folder;
   folder.write("e.yaml", replaced(text_of(fs::path(folders::source()) / "tests/configs/data/contact.yaml"),

@@ -352,6 +352,15 @@ TEST_CASE("fractions that are known in closed form") {
   CHECK(together.time() == 1);
 }
 
+TEST_CASE("A motion along a triangle is free, however much of the gap is to be kept") {
+  for (const double kept : {0.1, 0.9, 0.98, 0.99}) {
+    CAPTURE(kept);
+    Query q = point_over_triangle(0.5, {0.2, 0, -2e-3});
+    q.min_gap_fraction = kept;
+    CHECK(q.time() == 1);
+  }
+}
+
 TEST_CASE("the first of many pairs limits the motion, with any number of threads") {
   const int points = 5000;
   Positions obstacle(3, 3), x0(points, 3), x1(points, 3);

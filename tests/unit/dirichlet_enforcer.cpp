@@ -71,7 +71,7 @@ struct Prediction {
   NewtonProblem problem;
   NewtonParameters p = statics();
   EquilibriumCheck check{problem.iterate, p};
-  NewtonStep step{problem.iterate, check, p, [](int) {}};
+  NewtonStep step{problem.iterate, check, p, [](int) {}, [] { return false; }};
   DirichletEnforcer enforcer{problem.model};
   DirichletPredictor predictor{enforcer, problem.iterate, step};
 

@@ -266,6 +266,26 @@ TEST_CASE("Reusing a factor over several iterations reaches the same minimum wit
   REQUIRE(a.factorisations >= a.iterations);
 }
 
+TEST_CASE("A stop, and a cloth that nothing holds, end an implicit step between its iterations", "[newton]") {
+  NewtonParameters p = tight();
+  p.iterations_per_step = 1000;
+  NewtonCase stopped;
+  stopped.observer.stop_after = 3;
+  const LevelResult r = stopped.solve(p, 0.4);
+  CHECK(r.outcome == Outcome::cancelled);
+  CHECK(r.iterations == 3);
+  CHECK(r.steps <= 1);
+
+  NewtonCase falling;
+  const LevelModel model(falling.level, Material(), {{"weight", std::make_shared<Weight>(16)}}, {});
+  PlainObjective objective(model);
+  p.form = NewtonForm::statics;
+  const LevelResult fallen =
+      minimise(objective, falling.level.rest.vertices, p, {Stopwatch(), falling.observer});
+  CHECK(fallen.outcome == Outcome::infeasible);
+  CHECK(fallen.iterations < 100);
+}
+
 TEST_CASE("An implicit step ends when it is solved, however many iterations it may take", "[newton]") {
   NewtonCase patient;
   NewtonParameters p = tight();

@@ -76,6 +76,25 @@ void check_plugins(const Experiment& e, const ExperimentParameters& changed, Con
     make_from<ContactModel>(*e.registry, contacts[k].node, errors, nullptr, e.contacts[k].get());
 }
 
+/// The values of a key, and one between each two that differ: increments set such values too, also where a
+/// step of a key has to be made in parts. None is a round fraction, which an integer might take.
+std::vector<ConfigNode> with_values_between(const KeyParameters& key) {
+  constexpr double fraction = 0.38196601125;
+  std::vector<ConfigNode> nodes = key.values.items;
+  const auto values = values_of(key);
+  for (std::size_t i = 0; i + 1 < values.size(); ++i) {
+    if (values[i] == values[i + 1]) continue;
+    ConfigNode between = key.values.items[i];
+    const auto value = [&](std::size_t c) {
+      return ConfigNode::of(values[i][c] + fraction * (values[i + 1][c] - values[i][c]));
+    };
+    if (between.kind != NodeKind::list) between = value(0);
+    for (std::size_t c = 0; c < between.items.size(); ++c) between.items[c] = value(c);
+    nodes.push_back(std::move(between));
+  }
+  return nodes;
+}
+
 }  // namespace
 
 void KeyParameters::declare(Declaration<KeyParameters>& d) {
@@ -160,9 +179,9 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
   }
   if (!errors.empty() || p.keys.empty()) return;
   static const Schema schema = schema_of<ExperimentParameters>();
-  // Every keyed value, as its parameter would take it from the file.
+  // Every keyed value, and one between each two, as its parameter would take it from the file.
   for (std::size_t k = 0; k < p.keys.size(); ++k)
-    for (const ConfigNode& value : p.keys[k].values.items) {
+    for (const ConfigNode& value : with_values_between(p.keys[k])) {
       ConfigNode config = e.resolved;
       ConfigErrors own;
       const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;

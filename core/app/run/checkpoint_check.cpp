@@ -87,9 +87,8 @@ class Check {
     const int level = c_.state.level, n = static_cast<int>(s.so_far.x.rows());
     require(s.so_far.level == level, "the level under way");
     result(s.so_far);
-    const std::size_t dirichlet_count = scene_.model(level).dirichlet().size();
-    for (const int k : s.dirichlet.unsatisfied)
-      require(k >= 0 && static_cast<std::size_t>(k) < dirichlet_count, "a Dirichlet vertex out of range");
+    // How many the load under way has, the enforcer checks.
+    for (const int k : s.dirichlet.unsatisfied) require(k >= 0 && k < n, "a Dirichlet vertex out of range");
     const int blend = s.step.factor.modification.blend;
     require(s.step.controller.step_size > 0 && s.step.implicit_step.max_iterations > 0 &&
                 s.step.factor.age >= 0 && blend >= 0 && blend < HessianModification::blend_count,

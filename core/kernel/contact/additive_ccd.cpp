@@ -70,13 +70,15 @@ double safe_time(const Motion& motion, double min_gap_fraction, double limit) {
   const double speed = motion.speed();
   if (speed == 0 || motion.stays_apart(min_gap_fraction)) return limit;
   double time = 0, initial_gap = 0;
+  // With nearly the whole gap to be kept, the usual tolerance is more than what may be used of it.
+  const double allowance = std::min(tolerance, 0.5 * (1 - min_gap_fraction));
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const PairPositions now = motion.x + time * motion.p;
     const Closest nearest = closest(motion.kind, now);
     const double distance = connection(now, nearest).norm(), gap = distance - motion.offset - motion.rounding;
     if (iteration == 0) initial_gap = gap;
     const double room = gap - min_gap_fraction * initial_gap;
-    if (!(room > tolerance * initial_gap)) return time;
+    if (!(room > allowance * initial_gap)) return time;
     time += std::max(room / speed,
                      motion.separation_time(now, separating_direction(now, nearest), distance - room));
     if (time >= limit) return limit;

@@ -124,7 +124,11 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
   for (int v = 0; v < pattern_->rows(); ++v)
     if (!fixed_[v]) free.push_back(v);
   flops_ = entries_ = 0;
-  if (free.empty()) return ordering_.clear();
+  if (free.empty()) {
+    ordering_.clear();
+    reused_ordering_.clear();
+    return;
+  }
 
   SymbolicAnalysis c;
   make_graph(*pattern_, free, c);

@@ -79,6 +79,9 @@ double DirichletEnforcer::patch_width() const {
 void DirichletEnforcer::restore(const State& s) {
   fixed_ = model_->fixed();
   unsatisfied_ = s.unsatisfied;
+  for (const int k : unsatisfied_)
+    if (static_cast<std::size_t>(k) >= model_->dirichlet().size())
+      throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
   stiffness_ = s.stiffness;
   best_ = s.best;
   idle_ = s.idle;

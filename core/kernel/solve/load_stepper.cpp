@@ -59,6 +59,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   if (applied < 1 && applied * (1 - s_.response.fraction) <= s_.response.fraction) {
     const StepLimit limit = load_stepping_->advance(result.level, iterate_.x());
     iterate_.set_limited_by(limit.by);
+    limit_text_ = iterate_.limit_text();  // the pins' move that follows has a limit of its own
     applied += limit.fraction * (1 - applied);
     predicted = from;  // the cloth has not responded yet
     update_model(iterate_.x());

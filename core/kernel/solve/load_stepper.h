@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/solve/dirichlet_enforcer.h"
@@ -56,8 +57,10 @@ class LoadStepper {
   /// Begins the next increment or continues the current one, as far as limits and contact allow. Does not
   /// evaluate the iterate.
   void advance(bool at_equilibrium);
-  /// Whether the current increment cannot be completed. The iterate's limited_by() names what blocks it.
+  /// Whether the current increment cannot be completed.
   bool blocked() const;
+  /// What limited the last advance, as Iterate::limit_text().
+  const std::string& limit_text() const { return limit_text_; }
   /// Reports the current increment to the observer; does nothing without a schedule.
   void report_increment();
 
@@ -74,6 +77,7 @@ class LoadStepper {
   const Stopwatch& clock_;
   Observer& observer_;
   State s_;
+  std::string limit_text_;
 };
 
 }  // namespace drape

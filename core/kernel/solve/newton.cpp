@@ -37,7 +37,8 @@ class Newton {
         observer_(run.observer),
         iterate_(objective, result_),
         check_(iterate_, parameters),
-        step_(iterate_, check_, parameters, [this](int k) { report(k); }),
+        step_(
+            iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); }),
         dirichlet_(objective.model()),
         predictor_(dirichlet_, iterate_, step_),
         load_(run.load_stepping, iterate_, dirichlet_, run.clock, run.observer) {
@@ -65,6 +66,9 @@ class Newton {
         if (!stuck_) return finish({Outcome::stalled, step_.failure()});
         step_.abandon();
       }
+      // A resumed run repeats the step, from the last checkpoint.
+      if (step_.interrupted() && observer_.stop_requested())
+        return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
         return finish({Outcome::infeasible,
                        "nothing holds the cloth: it has drifted by " + three_digits(drift) +
@@ -138,7 +142,7 @@ class Newton {
         advance_increment(at_equilibrium);
         if (load_.blocked())
           return End{Outcome::infeasible, "the increment to pseudo-time " + three_digits(*load_.time()) +
-                                              " cannot be completed" + iterate_.limit_text()};
+                                              " cannot be completed" + load_.limit_text()};
       }
       if (load_.steps() == p_.max_steps)
         return End{Outcome::max_steps_reached,
@@ -157,6 +161,9 @@ class Newton {
                  "refined on request; force residual " + three_digits(iterate_.force_residual())};
     return std::nullopt;
   }
+
+  /// Asked within steps of several iterations.
+  bool is_to_end() { return observer_.stop_requested() || check_.drift() > max_drift; }
 
   bool is_at_rounding_floor() { return check_.is_at_rounding_floor(step_.factor()); }
 

@@ -13,7 +13,9 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .unit("s")
       .at_least(bounds::smallest_time_step)
       .at_most(bounds::largest_time_step)
-      .description("h of the first implicit step; the static form uses it only for the decrement")
+      .description(
+          "h of the first implicit step; in the static form the unit of the decrement and of the mass that "
+          "damps a step without descent")
       .source("PCS section 4");
   d.add("step_growth", &NewtonParameters::step_growth)
       .at_least(1)
@@ -24,7 +26,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .unit("s")
       .at_least(bounds::smallest_time_step)
       .at_most(bounds::largest_time_step)
-      .description("upper bound of h");
+      .description("the largest h that growth leads to; a larger step_size stays");
   d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
       .at_least(1)
       .at_most(1000)

@@ -21,11 +21,12 @@ constexpr int iterations_after_obstacle_motion = 30;
 }  // namespace
 
 NewtonStep::NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
-                       std::function<void(int)> report)
+                       std::function<void(int)> report, std::function<bool()> interrupt)
     : iterate_(iterate),
       check_(check),
       p_(parameters),
       report_(std::move(report)),
+      interrupt_(std::move(interrupt)),
       controller_(parameters),
       factor_(iterate, parameters) {}
 
@@ -63,10 +64,12 @@ void NewtonStep::begin() {
 
 bool NewtonStep::solve() {
   controller_.begin_step();
+  interrupted_ = false;
   for (int k = 0; k < step_.max_iterations(); ++k) {
     if (!iterate(k)) return false;
     if (check_.in_tolerance()) break;
     if (k + 1 == step_.max_iterations()) continue;
+    if ((interrupted_ = interrupt_())) break;
     step_.evaluate(iterate_, controller_.inverse_h2());
     if (is_solved_to(solved_fraction)) break;
   }

@@ -27,9 +27,10 @@ class NewtonStep {
   /// The iterate must have been evaluated.
   void restore(const State& state);
 
-  /// Refers to all arguments. `report` is called after iteration k of a step.
+  /// Refers to all arguments. `report` is called after iteration k of a step, and `interrupt` between two
+  /// iterations of one step: true ends it.
   NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
-             std::function<void(int k)> report);
+             std::function<void(int k)> report, std::function<bool()> interrupt);
 
   /// Begins a step at the iterate; lags friction there.
   void begin();
@@ -37,6 +38,8 @@ class NewtonStep {
   /// false if no iterate with less energy can be found; failure() then says why.
   bool solve();
   const std::string& failure() const { return failure_; }
+  /// Whether `interrupt` ended the last step.
+  bool interrupted() const { return interrupted_; }
   /// Resets the damping of a step without descent.
   void abandon() { controller_.abandon_step(); }
   /// Starts over, for another objective.
@@ -60,6 +63,8 @@ class NewtonStep {
   EquilibriumCheck& check_;
   const NewtonParameters& p_;
   std::function<void(int)> report_;
+  std::function<bool()> interrupt_;
+  bool interrupted_ = false;
   ImplicitStep step_;
   StepController controller_;
   LineSearch line_search_;
