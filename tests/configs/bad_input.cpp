@@ -443,6 +443,25 @@ TEST_CASE("a live view that is not available") {
         "error: --view-keep requires --view; see `drape run --help`\n");
 }
 
+TEST_CASE("keys that the shape or the region does not read, and empty items, are refused") {
+  CHECK(said_of_edit("levels: 2", "friction: 0.2").starts_with("error: e.yaml:3:"));
+  const auto said = [](const std::string& written) {
+    const Scratch folder;
+    folder.write("e.yaml", "name: e\nlevels: 1\nenergies: [gravity]\nmethods: {newton: {}}\n" + written);
+    return refused(folder, "check e.yaml");
+  };
+  CHECK(said("cloth: {file: skirt.obj}\n") ==
+        "error: e.yaml:5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square\n");
+  CHECK(said("cloth: {shape: disc, side: 3}\n") ==
+        "error: e.yaml:5:28: \"side\" in cloth needs \"shape: square\"; here \"shape\" is disc\n");
+  CHECK(said("pins: [{point: [1, 1, 1], radius: 1}]\n") ==
+        "error: e.yaml:5:35: \"radius\" in pins needs \"region: ball\"; here \"region\" is nearest\n");
+  CHECK(said("pins: [{region: border, point: [1, 0, 0]}]\n") ==
+        "error: e.yaml:5:32: \"point\" in pins needs \"region: nearest or region: ball\"; here \"region\" is "
+        "border\n");
+  CHECK(said("pins: [~]\n") == "error: e.yaml:5:8: an item of \"pins\" is empty; remove it\n");
+}
+
 TEST_CASE("a schedule may not change an integer, whose values between are none") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment() +

@@ -175,7 +175,8 @@ TEST_CASE("So does one whose iterations share a matrix, and one with several of 
     write_sheets(folder);
     const Overrides shared =
         some_steps({{"newton.hessian_update_interval", "3"}, {"newton.iterations_per_step", iterations}});
-    CHECK(check_in_parts(folder, shared) > 60);
+    // Within a step of two iterations a stop is asked for once more, and the part then leads nowhere.
+    CHECK(check_in_parts(folder, shared) > (std::string(iterations) == "1" ? 60 : 40));
   }
 }
 

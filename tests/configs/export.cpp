@@ -207,6 +207,24 @@ TEST_CASE("snapshots that are damaged are neither exported nor shown") {
              Contains("snapshots/pcs_l1.bin: is damaged: its checksum does not fit"));
 }
 
+TEST_CASE("an export that cannot be written is refused before any work, and writes over no other file") {
+  const std::string run = finished_run().string();
+  const Scratch folder;
+  const auto refused_to = [&](const std::string& file) {
+    const Ended ended = drape_with("export " + run + " --width 90 --to " + file, folder.path);
+    CHECK(ended.exit_code == 2);
+    return ended.err;
+  };
+  CHECK(refused_to("nowhere/a.png") == "error: nowhere: is no folder; make it, or name another file\n");
+  fs::create_directory(folder / "b.png");
+  CHECK(refused_to("b.png --overwrite") == "error: b.png: is a folder; name a file\n");
+  folder.write("c.png.part", "mine");
+  CHECK_THAT(refused_to("c.png"), Contains("c.png.part: exists already"));
+  CHECK(text_of(folder / "c.png.part") == "mine");
+  fs::create_symlink("missing.png", folder / "d.png");
+  CHECK_THAT(refused_to("d.png"), Contains("d.png: exists already"));
+}
+
 TEST_CASE("an export replaces no file unless it is asked to") {
   const std::string run = finished_run().string();
   const Scratch folder;

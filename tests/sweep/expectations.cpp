@@ -103,6 +103,24 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
   CHECK(!rows({}, 0.0).all_pass());
 }
 
+TEST_CASE("a run that has converged passes no more once its results are gone") {
+  RunRecord run;
+  run.variation = "case";
+  run.status = "converged";
+  CHECK(!table_of({"set", true, {run}}).all_pass());
+}
+
+TEST_CASE("a table counts no shortened steps where rows of steps.csv are missing") {
+  RunRecord run;
+  run.status = "converged";
+  run.data.emplace();
+  run.data->methods.push_back({});
+  run.data->methods[0].status = "converged";
+  run.data->methods[0].levels.push_back({});
+  run.data->methods[0].levels[0].newton_iterations = 3;
+  CHECK(table_of({"set", true, {run}}).rows[0]["shortened_steps"].is_null());
+}
+
 TEST_CASE("what has converged to rounding passes where it was to converge, and is told apart") {
   const auto passes = [](const std::string& status, const std::string& expected) {
     RunData data;

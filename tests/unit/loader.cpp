@@ -52,9 +52,9 @@ constexpr DrapePluginDescriptor ours = DRAPE_ABI_DESCRIPTOR(nullptr);
 
 TEST_CASE("whoever changes a class that plugins see is told to raise the ABI number") {
   // If a size differs: raise DRAPE_ABI_NUMBER, then write the new number and the new size here.
-  CHECK(DRAPE_ABI_NUMBER == 11);
+  CHECK(DRAPE_ABI_NUMBER == 12);
   CHECK(sizeof(ConfigNode) == 192);
-  CHECK(sizeof(Parameter) == 432);
+  CHECK(sizeof(Parameter) == 488);
   CHECK(sizeof(TriangleMesh) == 32);
   CHECK(sizeof(Topology) == 168);
   CHECK(sizeof(Level) == 392);

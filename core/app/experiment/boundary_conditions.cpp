@@ -15,7 +15,7 @@ void check_selection(const std::string& word, std::size_t number, const VertexSe
   if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
     errors.push_back({where, name + " selects no vertex of the coarsest level; " +
                                  (by_index ? "list some under \"vertices\"" : "widen its region")});
-  else
+  else if (!by_index)
     for (const Level& level : levels)
       if (selected_vertices(p, level, coarsest).empty()) {
         errors.push_back(

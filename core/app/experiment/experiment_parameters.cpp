@@ -23,20 +23,26 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"square"})
       .description("side of a square");
   d.add("size", &ClothParameters::size)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"rectangle"})
       .description("width and height of a rectangle");
   d.add("radius", &ClothParameters::radius)
       .unit("m")
       .at_least(1e-6)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"disc"})
       .description("radius of a disc");
-  d.add_sections("loops", &ClothParameters::loops).description("outline of a polygon, then its holes");
+  d.add_sections("loops", &ClothParameters::loops)
+      .only_with("shape", {"polygon"})
+      .description("outline of a polygon, then its holes");
   d.add("file", &ClothParameters::file)
       .path()
+      .only_with("shape", {"file"})
       .description("mesh of the rest shape (OBJ, OFF or PLY), relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
@@ -104,25 +110,30 @@ void declare_selection(Declaration<Condition>& d) {
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
+      .only_with("region", {"nearest", "ball"})
       .description("point of `nearest`, centre of `ball`, in the rest shape");
   d.add("radius", member(&VertexSelection::radius))
       .unit("m")
       .at_least(0)
       .at_most(bounds::largest_coordinate)
+      .only_with("region", {"ball"})
       .description("radius of `ball`");
   d.add("lower", member(&VertexSelection::lower))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
+      .only_with("region", {"box"})
       .description("lower corner of `box`, in the rest shape");
   d.add("upper", member(&VertexSelection::upper))
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
+      .only_with("region", {"box"})
       .description("upper corner of `box`, in the rest shape");
   d.add("vertices", member(&VertexSelection::vertices))
       .at_least(0)
       .at_most(bounds::largest_int)
+      .only_with("region", {"vertices"})
       .description("indices on the coarsest level, from 0");
   d.add("translate", member(&VertexSelection::translate))
       .formerly("move")

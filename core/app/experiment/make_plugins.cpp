@@ -92,7 +92,12 @@ class PluginMaker {
     ConfigNode models, obstacles;
     models.kind = obstacles.kind = ConfigNode::Kind::list;
     obstacles.items = e_.parameters.obstacles;
-    for (const ContactConfig& config : contact_configs(registry_, e_.parameters, errors_)) {
+    const std::size_t before = errors_.size();
+    const std::vector<ContactConfig> configs = contact_configs(registry_, e_.parameters, errors_);
+    for (std::size_t i = before; i < errors_.size(); ++i)  // without "contact" they have only a key
+      if (Location& where = errors_[i].where; where.line == 0 && e_.source.find(where.key))
+        where = e_.location_of(where.key);
+    for (const ContactConfig& config : configs) {
       e_.contacts.push_back(make<ContactModel>(config.node, models));
       split_resolved(registry_, config, models.items.back(), obstacles.items);
     }

@@ -10,6 +10,19 @@ namespace {
 /// Deepest nesting, as of YAML files; a list that contains itself ends here.
 constexpr int max_depth = 100;
 
+/// A str's text, which a config.yaml can hold.
+std::string text_of(const py::handle& value) {
+  std::string text;
+  try {
+    text = value.cast<std::string>();
+  } catch (const py::cast_error&) {
+    throw py::value_error(std::string(py::repr(value)) + " is no text that UTF-8 can hold");
+  }
+  if (text.find('\0') != std::string::npos)
+    throw py::value_error(std::string(py::repr(value)) + " has a NUL character; take it out");
+  return text;
+}
+
 ConfigNode nested_node(const py::handle& value, int depth) {
   if (depth > max_depth) throw py::value_error("the experiment is nested too deeply");
   if (value.is_none()) return {};
@@ -20,14 +33,14 @@ ConfigNode nested_node(const py::handle& value, int depth) {
     return node;
   }
   if (py::isinstance<py::float_>(value)) return ConfigNode::of(value.cast<double>());
-  if (py::isinstance<py::str>(value)) return ConfigNode::of(value.cast<std::string>());
+  if (py::isinstance<py::str>(value)) return ConfigNode::of(text_of(value));
   ConfigNode node;
   if (py::isinstance<py::dict>(value)) {
     node.kind = ConfigNode::Kind::map;
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
       if (!py::isinstance<py::str>(key))
         throw py::type_error("a key of an experiment must be a str, not " + std::string(py::repr(key)));
-      node.add(key.cast<std::string>(), nested_node(entry, depth + 1));
+      node.add(text_of(key), nested_node(entry, depth + 1));
     }
     return node;
   }
@@ -37,7 +50,7 @@ ConfigNode nested_node(const py::handle& value, int depth) {
     return node;
   }
   if (py::hasattr(value, "tolist")) return nested_node(value.attr("tolist")(), depth + 1);  // numpy's
-  if (py::hasattr(value, "__fspath__")) return ConfigNode::of(value.attr("__fspath__")().cast<std::string>());
+  if (py::hasattr(value, "__fspath__")) return ConfigNode::of(text_of(value.attr("__fspath__")()));
   throw py::type_error("an experiment cannot hold " + std::string(py::repr(value)));
 }
 

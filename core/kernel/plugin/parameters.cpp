@@ -192,6 +192,24 @@ std::string renaming_of(const std::string& key, const std::string& in, const Sch
   return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
 }
 
+/// A written key that the choice beside it makes meaningless, such as a mesh file for a square.
+void refuse_unread(const Schema& schema, const Parameter& p, const void* object, const ConfigNode& map,
+                   ConfigErrors& errors) {
+  const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
+  if (!written) return;
+  const auto selector = std::find_if(schema.parameters.begin(), schema.parameters.end(),
+                                     [&](const Parameter& other) { return other.name == p.selector; });
+  const std::string chosen = selector->write(object).scalar;
+  const auto& reads = p.selector_values;
+  if (std::find(reads.begin(), reads.end(), chosen) != reads.end()) return;
+  if (p.write(object).one_line() == p.write(schema.fresh().get()).one_line()) return;
+  std::string needed;
+  for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
+  errors.push_back({written->where, "\"" + p.name + "\"" + (schema.name.empty() ? "" : " in " + schema.name) +
+                                        " needs \"" + needed + "\"; here \"" + p.selector + "\" is " +
+                                        chosen});
+}
+
 /// "did you mean …?" or the known keys, for an unknown one.
 std::string hint_for(const std::string& key, const Schema& schema) {
   std::vector<std::string> known;
@@ -237,6 +255,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   for (const Parameter& p : parameters)
     if (p.required && !map.find(p.name) && !renamed.count(&p))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
+  for (const Parameter& p : parameters) refuse_unread(*this, p, object, map, errors);
 }
 
 ConfigNode Schema::write(const void* object) const {

@@ -36,6 +36,8 @@ struct Parameter {
   bool path = false;                 ///< text: a file, relative to the config's folder
   bool from_experiment = false;      ///< a contact model's: its value stands at the top of the experiment
   bool identifies_item = false;      ///< an obstacle's: only the obstacles of this contact model have the key
+  std::string selector;  ///< the choice beside it that decides whether it is read; empty: it always is
+  std::vector<std::string> selector_values;  ///< … the values of that choice with which it is
 
   // Type-erased access to the member of a struct; `read` receives only validated nodes.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
@@ -136,6 +138,13 @@ class ParameterHandle {
   /// A contact model's parameter that is written at the top of the experiment, once for all models.
   ParameterHandle& from_experiment() {
     p_.from_experiment = true;
+    return *this;
+  }
+  /// It is read only where the choice `key` beside it has one of these values. Written elsewhere, it is
+  /// refused unless it is the default, which a saved config has.
+  ParameterHandle& only_with(std::string key, std::vector<std::string> values) {
+    p_.selector = std::move(key);
+    p_.selector_values = std::move(values);
     return *this;
   }
   /// A key that tells an obstacle of this contact model from those of others.

@@ -179,7 +179,11 @@ class Declaration {
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
       std::vector<Section>& list = static_cast<Struct*>(object)->*member;
       list.assign(node.items.size(), Section());
-      for (size_t i = 0; i < list.size(); ++i) section->read(&list[i], node.items[i], errors);
+      for (size_t i = 0; i < list.size(); ++i) {
+        if (node.items[i].kind == ConfigNode::Kind::null)
+          errors.push_back({node.items[i].where, "an item of \"" + section->name + "\" is empty; remove it"});
+        section->read(&list[i], node.items[i], errors);
+      }
     };
     p.write = [member, section](const void* object) {
       return parameter_detail::list_node(static_cast<const Struct*>(object)->*member,

@@ -43,6 +43,8 @@ class Experiment(_core.ExperimentBase):
         """
         if isinstance(methods, str):
             methods = [methods]
+        if out is not None and not os.fspath(out):
+            raise ValueError("out is empty; name a folder, or leave it out for a temporary one")
         record = self._run(
             methods=None if methods is None else list(methods),
             out=out,

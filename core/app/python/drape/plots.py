@@ -30,7 +30,9 @@ def plot_errors(result, measure: str, target: str, cost: str, axes=None):
     table = result.errors
     columns = [name for name in table if name.startswith(target + ".")]
     if not columns:
-        raise ValueError(f"the run has no errors against \"{target}\"; it has the columns {list(table)}")
+        targets = sorted({name.split(".")[0] for name in table if "." in name})
+        raise ValueError(f"the run has no errors against \"{target}\"; "
+                         + (f"take target={' or '.join(map(repr, targets))}" if targets else "it recorded no snapshots"))
     column = f"{target}.{measure}" if measure else columns[0]
     if column not in table or cost not in COSTS:
         raise ValueError(f"choose a measure of {[name.split('.', 1)[1] for name in columns]} and a cost of "
