@@ -69,7 +69,8 @@ bool NewtonStep::solve() {
     if (!iterate(k)) return false;
     if (check_.in_tolerance()) break;
     if (k + 1 == step_.max_iterations()) continue;
-    if ((interrupted_ = interrupt_())) break;
+    interrupted_ = interrupt_();
+    if (interrupted_) break;
     step_.evaluate(iterate_, controller_.inverse_h2());
     if (is_solved_to(solved_fraction)) break;
   }
