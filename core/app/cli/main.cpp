@@ -272,7 +272,6 @@ int main_checked(int argc, char** argv) {
     std::cout << (format == "json" ? text : printable_lines(text));
     return table.all_pass() ? exit_done : exit_not_converged;
   }
-  std::signal(SIGPIPE, SIG_IGN);  // a run goes on where nobody reads its progress
   if (sweep.job_chosen()) return sweep.run_job();
   Registry registry;
   load_plugins(registry, plugin_directories());

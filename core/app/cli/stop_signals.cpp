@@ -19,6 +19,7 @@ void on_signal(int number) {
 }  // namespace
 
 void stop_on_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // by nohup

@@ -87,7 +87,7 @@ class Check {
     const int level = c_.state.level, n = static_cast<int>(s.so_far.x.rows());
     require(s.so_far.level == level, "the level under way");
     result(s.so_far);
-    // How many the load under way has, the enforcer checks.
+    // The load under way may pin more vertices than the first: DirichletEnforcer checks against its number.
     for (const int k : s.dirichlet.unsatisfied) require(k >= 0 && k < n, "a Dirichlet vertex out of range");
     const int blend = s.step.factor.modification.blend;
     require(s.step.controller.step_size > 0 && s.step.implicit_step.max_iterations > 0 &&

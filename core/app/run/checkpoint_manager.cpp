@@ -129,12 +129,12 @@ std::vector<FileFingerprint> fingerprints_of_files(const ConfigNode& saved, cons
 }
 
 bool is_complete(const fs::path& folder) {
-  // A checkpoint has results.json too, which a power cut may have damaged.
   const fs::path file = folder / "results.json";
-  if (fs::exists(folder / "checkpoint/state.bin") &&
-      !(fs::exists(file) && is_valid(parse_json(read_file(file)))))
-    return false;
-  return results_of(folder).value("complete", false);
+  if (!fs::exists(folder / "checkpoint/state.bin")) return results_of(folder).value("complete", false);
+  // The checkpoint holds these results too: a power cut may have damaged the file.
+  if (!fs::exists(file)) return false;
+  const nlohmann::ordered_json results = parse_json(read_file(file));
+  return is_valid(results) && results.value("complete", false);
 }
 
 bool all_methods_succeeded(const fs::path& folder) {

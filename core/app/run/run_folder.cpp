@@ -107,14 +107,16 @@ void refuse_read_only_folders(const RunFolder& folder) {
 /// Files that the new run reads may not be among those of the earlier run that it replaces.
 void refuse_inputs(const RunFolder& folder, const std::vector<fs::path>& inputs) {
   const std::vector<fs::path> own = files_of_run(folder);
-  for (const fs::path& input : inputs)
+  for (const fs::path& input : inputs) {
+    if (input.is_relative()) continue;  // a copy that the new run makes
     for (const fs::path& file : own) {
       std::error_code error;
-      if (input.is_relative() || !fs::equivalent(input, file, error)) continue;  // relative: a copy
+      if (!fs::equivalent(input, file, error)) continue;
       throw std::runtime_error(input.string() +
                                ": is read by this experiment, and --overwrite would remove it; copy it, or "
                                "name another results folder with --out");
     }
+  }
 }
 
 /// Files may be replaced only if they are a run's and `overwrite` is set.

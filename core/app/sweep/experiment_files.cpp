@@ -66,9 +66,13 @@ std::vector<ExperimentSource> experiment_sources(const SweepParameters& p, const
                            : "\"base\" is required and missing, or \"experiments\" in its place"});
     return all;
   }
-  if (base && p.base.empty()) errors.push_back({base->where, "\"base\" is empty; name an experiment"});
-  if (base && !p.base.empty()) read_one(p.base, "base", base->where, all, errors);
-  if (!several) return all;
+  if (base) {
+    if (p.base.empty())
+      errors.push_back({base->where, "\"base\" is empty; name an experiment"});
+    else
+      read_one(p.base, "base", base->where, all, errors);
+    return all;
+  }
   if (p.experiments.empty())
     errors.push_back({several->where, "\"experiments\" is empty; name an experiment"});
   for (std::size_t k = 0; k < p.experiments.size(); ++k) {

@@ -70,7 +70,7 @@ double safe_time(const Motion& motion, double min_gap_fraction, double limit) {
   const double speed = motion.speed();
   if (speed == 0 || motion.stays_apart(min_gap_fraction)) return limit;
   double time = 0, initial_gap = 0;
-  // With nearly the whole gap to be kept, the usual tolerance is more than what may be used of it.
+  // If nearly the whole gap is to be kept, the usual tolerance exceeds the part that may be used.
   const double allowance = std::min(tolerance, 0.5 * (1 - min_gap_fraction));
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     const PairPositions now = motion.x + time * motion.p;
