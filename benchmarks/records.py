@@ -57,7 +57,7 @@ def conditions(name):
     parts = [count(stamp["starts"], "start")] if stamp.get("starts") else []
     parts += [count(stamp["threads"], "thread")] if stamp.get("threads") else []
     if stamp.get("cpu"):
-        cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "")
+        cpu = stamp["cpu"].replace("(R)", "").replace(" Processor", "") + (" (AVX-512)" if stamp.get("avx512") else "")
         parts.append(f"{cpu} with {count(stamp['cores'], 'core')}" if stamp.get("cores") else cpu)
     if stamp.get("commit"):
         parts.append(f"commit {stamp['commit']}" + ("" if stamp["commit"] == all_stamps["build"] else ", another build"))
