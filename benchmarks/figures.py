@@ -83,11 +83,11 @@ def chosen_scenes():
     return table(columns, [by_name[n] for n in names], ["scenes.md"], "lrrrrrrr")
 
 
-def table1(study):
+def table1():
     """A row a scene of the supplement's Table 1: on how many rows the first method is best, iterations, builds."""
-    text = (RESULTS / f"{study}.md").read_text()
+    text = (RESULTS / "table1.md").read_text()
     rows = []
-    for scene, entry in read(f"{study}.json").items():
+    for scene, entry in read("table1.json").items():
         methods = entry["methods"]
         best = re.search(rf"^## {scene}[:,].*?(\w+) is best on (\d+ of \d+) rows", text, re.M | re.S)
         finest = ", ".join(f"{m} {r['iterations_by_level'][-1]}" for m, r in methods.items())
@@ -255,7 +255,6 @@ STUDIES = [
     ("[hard cases](hard-cases.md)", "hard.md"),
     ("[remedies](hard-cases.md#remedies)", "hard_remedies.md"),
     ("[Table 1](table1.md)", "table1.md"),
-    ("[Table 1, three levels](table1.md)", "table1_levels_3.md"),
     ("[scenes](scenes.md)", "scenes.md"),
     ("[scenes, three levels](scenes.md)", "scenes_levels_3.md"),
     ("the paper's settings", "papers_settings.md"),
@@ -304,8 +303,7 @@ BLOCKS = {
     "four levels": lambda: scenes("four_levels", [
         "starts", TOP[0], "overlap", "finest level, iterations: pcs / cascadic", "total flops, relative to cascadic", TOP[-1]]),
     "chosen scenes": chosen_scenes,
-    "table 1": lambda: table1("table1"),
-    "table 1, three levels": lambda: table1("table1_levels_3"),
+    "table 1": table1,
     "remedies": remedies,
     "interpolation": interpolation,
     "ablations": ablations,

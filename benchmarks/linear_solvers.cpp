@@ -8,9 +8,11 @@
 // CHOLMOD still copies and adds with up to four, unless OMP_THREAD_LIMIT=1.
 
 #include <dlfcn.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -41,6 +43,25 @@ std::string blas() {
   if (!symbol || !dladdr(symbol, &info)) return "unknown";
   const std::filesystem::path path = std::filesystem::canonical(info.dli_fname);
   return path.parent_path().filename() / path.filename();
+}
+
+/// The processor whose kernels OpenBLAS has taken; "" with another BLAS.
+std::string openblas_kernels() {
+  void* const symbol = dlsym(RTLD_DEFAULT, "openblas_get_corename");
+  return symbol ? reinterpret_cast<const char* (*)()>(symbol)() : "";
+}
+
+/// OpenBLAS takes kernels without AVX-512 for a processor that is newer than itself. It reads the environment
+/// as it is loaded, so the program begins again, with kernels that this processor's instructions allow.
+void take_best_kernels(char** arguments) {
+#ifdef __x86_64__
+  const std::string kernels = openblas_kernels();
+  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
+  if (!wide || (kernels != "Haswell" && kernels != "Zen") || std::getenv("OPENBLAS_CORETYPE")) return;
+  setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
+  execv("/proc/self/exe", arguments);
+#endif
 }
 
 /// Sets OpenBLAS's number of threads and returns it; 1 with another BLAS, which keeps its own.
@@ -214,16 +235,23 @@ void measure(const Registry& registry, const std::string& scene_name, int levels
 }  // namespace
 
 int main(int argc, char** argv) try {
+  take_best_kernels(argv);
   Registry registry;
   load_plugins(registry, plugin_directories());
-  std::printf("BLAS: %s\n", blas().c_str());
+  std::printf("BLAS: %s %s\n", blas().c_str(), openblas_kernels().c_str());
   ordered_json rows = ordered_json::array();
   for (const char* scene : {"pinned_square", "sphere"})
     for (const int levels : {3, 4}) measure(registry, scene, levels, rows);
   if (argc > 1) {
-    const ordered_json result = {
-        {"benchmark", "linear_solvers"}, {"version", version()}, {"commit", commit()}, {"cpu", cpu_name()},
-        {"cores", core_count()},         {"blas", blas()},       {"repeats", repeats}, {"rows", rows}};
+    const ordered_json result = {{"benchmark", "linear_solvers"},
+                                 {"version", version()},
+                                 {"commit", commit()},
+                                 {"cpu", cpu_name()},
+                                 {"cores", core_count()},
+                                 {"blas", blas()},
+                                 {"blas_kernels", openblas_kernels()},
+                                 {"repeats", repeats},
+                                 {"rows", rows}};
     std::ofstream(argv[1]) << result.dump(1) << "\n";
   }
   return 0;

@@ -69,6 +69,8 @@ def conditions(name):
         parts.append(f"beside other work (load {figure(stamp['load_before'], 2)} before)")
     elif stamp.get("busy"):
         parts.append("beside other work")
+    if stamp.get("complete") is False:
+        parts.append("not complete")
     return ", ".join(parts)
 
 

@@ -190,6 +190,29 @@ TEST_CASE("with --frames a .png is a series of every level's snapshots, coarse t
   CHECK(frames("--level 0").size() == recorded[0]);
 }
 
+TEST_CASE("a series of pictures leaves none of a longer one behind it") {
+  const Scratch folder;
+  const std::string film =
+      "export " + finished_run().string() + " --to film.png --frames --width 90 --level 0";
+  REQUIRE(drape_with(film, folder.path).exit_code == 0);
+  std::size_t count = 0;
+  const auto name = [](std::size_t k) {
+    char text[32];
+    std::snprintf(text, sizeof text, "film_%04zu.png", k);
+    return std::string(text);
+  };
+  while (fs::exists(folder / name(count))) ++count;
+  REQUIRE(count > 1);
+  for (std::size_t k = 0; k < count; ++k) fs::remove(folder / name(k));
+  for (const std::size_t k : {count, count + 1, count + 3}) folder.write(name(k), "longer");
+  CHECK(drape_with(film, folder.path).exit_code == 2);
+  CHECK_FALSE(fs::exists(folder / name(0)));
+  REQUIRE(drape_with(film + " --overwrite", folder.path).exit_code == 0);
+  CHECK(fs::exists(folder / name(count - 1)));
+  for (const std::size_t k : {count, count + 1}) CHECK_FALSE(fs::exists(folder / name(k)));
+  CHECK(text_of(folder / name(count + 3)) == "longer");  // no part of a series
+}
+
 TEST_CASE("snapshots that are damaged are neither exported nor shown") {
   const Scratch folder;
   fs::copy(finished_run(), folder / "out", fs::copy_options::recursive);

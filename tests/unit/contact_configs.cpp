@@ -61,6 +61,12 @@ TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
   CHECK(errors[0].message == "\"ball\" is also the name of obstacles[1]; give each obstacle its own");
 }
 
+TEST_CASE("A contact model is listed once") {
+  std::string twice = mixed;
+  twice.replace(twice.find("[shapes,"), 8, "[shapes, shapes,");
+  CHECK_THROWS_WITH(experiment_from(twice), Contains("\"contact\" lists shapes twice; list each model once"));
+}
+
 TEST_CASE("Friction is refused where no contact model has it, also where only a schedule's key sets it") {
   const std::string free = R"(name: free
 cloth: {shape: square, side: 1, columns: 3, rows: 3}

@@ -15,6 +15,7 @@
 
 using namespace drape;
 using Json = nlohmann::ordered_json;
+using Catch::Matchers::Contains;
 
 namespace {
 
@@ -162,6 +163,15 @@ TEST_CASE("labels have subscripts and superscripts, and cannot break a page") {
   CHECK(html::formula("of d_H, [1/m]") == "of d<sub>H</sub>, [1/m]");
   CHECK(html::formula("_a b_ ^") == "_a b_ ^");
   CHECK(html::formula("a_<b>") == "a_&lt;b&gt;");
+}
+
+TEST_CASE(
+    "a table of errors that is cut short at its end is read as far as it goes, one damaged before is "
+    "refused") {
+  const std::string header = "method,level,seconds\n", row = "pcs,0,1\n";
+  CHECK(run_of({{"methods", Json::object()}}, header + row + row + "pcs,").errors[0].rows.size() == 2);
+  CHECK_THROWS_WITH(run_of({{"methods", Json::object()}}, header + row + "pcs,\n" + row),
+                    Contains("errors.csv:3: fewer cells than the header has; run the experiment again"));
 }
 
 TEST_CASE("the published Table 1 says what the supplement says: PCS lower in every measure") {

@@ -102,6 +102,15 @@ void check_friction(const Registry& registry, const ExperimentParameters& p,
                   (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"")});
 }
 
+/// Each model sees every pair of the cloth and all of its obstacles, so a second one would count them twice.
+void check_models(const std::vector<ConfigNode>& written, const std::vector<const RegistryEntry*>& models,
+                  ConfigErrors& errors) {
+  for (std::size_t k = 0; k < models.size(); ++k)
+    if (models[k] && std::find(models.begin(), models.begin() + k, models[k]) != models.begin() + k)
+      errors.push_back(
+          {written[k].where, "\"contact\" lists " + models[k]->name + " twice; list each model once"});
+}
+
 /// A path of keys finds an obstacle by its name, so no two have the same.
 void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors) {
   std::map<std::string, std::size_t> named;
@@ -127,6 +136,7 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
     models.push_back(model_of(registry, node));
     configs.push_back({models.back() ? own_section(*models.back(), node, errors) : node, {}});
   }
+  check_models(written, models, errors);
   check_names(p.obstacles, errors);
   check_friction(registry, p, models, errors);
   for (std::size_t i = 0; i < p.obstacles.size(); ++i) {

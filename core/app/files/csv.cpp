@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/plugin/parameters.h"
@@ -11,7 +12,12 @@ namespace drape {
 Csv::Csv(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return;
   std::istringstream lines(read_file(path));
+  std::size_t number = 0, cut_short = 0;
   for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (cut_short > 0)
+      throw std::runtime_error(path.string() + ":" + std::to_string(cut_short) +
+                               ": fewer cells than the header has; run the experiment again");
     std::vector<std::string> cells;
     std::istringstream rest(line + ",");
     for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
@@ -21,6 +27,8 @@ Csv::Csv(const std::filesystem::path& path) {
       names_ = std::move(cells);
     } else if (cells.size() >= columns_.size()) {
       rows_.push_back(std::move(cells));
+    } else {
+      cut_short = number;
     }
   }
 }

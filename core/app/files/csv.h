@@ -10,7 +10,7 @@
 namespace drape {
 
 /// A table of a run, with columns by the header's names. An incomplete last line of a killed run is ignored;
-/// a missing file is an empty table.
+/// a missing file is an empty table. Throws std::runtime_error for an incomplete line before the last.
 class Csv {
  public:
   explicit Csv(const std::filesystem::path& path);

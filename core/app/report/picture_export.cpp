@@ -33,14 +33,15 @@ std::vector<TriangleMesh> states_of(const RunData& run, const MethodRecord& meth
 }
 
 /// FILE_0000.png, FILE_0001.png, …
-std::vector<fs::path> numbered(const fs::path& file, std::size_t count) {
-  std::vector<fs::path> files;
-  for (std::size_t k = 0; k < count; ++k) {
-    std::string number = std::to_string(k);
-    if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
-    files.push_back(file.parent_path() / (file.stem().string() + "_" + number + file.extension().string()));
-  }
-  return files;
+fs::path numbered(const fs::path& file, std::size_t k) {
+  std::string number = std::to_string(k);
+  if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+  return file.parent_path() / (file.stem().string() + "_" + number + file.extension().string());
+}
+
+/// Pictures of an earlier, longer series, which would be read as this one's.
+void remove_from(const fs::path& file, std::size_t first) {
+  for (std::size_t k = first; fs::is_regular_file(numbered(file, k)); ++k) fs::remove(numbered(file, k));
 }
 
 }  // namespace
@@ -51,8 +52,10 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
   std::vector<TriangleMesh> states;
   for (const LevelRecord* level : levels)
     for (TriangleMesh& state : states_of(run, method, *level, snapshots)) states.push_back(std::move(state));
-  std::vector<fs::path> files = snapshots ? numbered(file, states.size()) : std::vector<fs::path>{file};
+  std::vector<fs::path> files;
+  for (std::size_t k = 0; k < states.size(); ++k) files.push_back(snapshots ? numbered(file, k) : file);
   for (const fs::path& each : files) refuse_target(each, overwrite);
+  if (snapshots) refuse_target(numbered(file, files.size()), overwrite);
 
   PictureFrame frame;
   frame.width = options.width.value_or(default_width);
@@ -70,6 +73,7 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
     if (coarsest) draw_outline(image, *coarsest, scene.camera(), outline_colour());
     write_file(files[k], encode_png(image));
   }
+  if (snapshots) remove_from(file, files.size());
   return files;
 }
 
