@@ -44,7 +44,7 @@ struct MetricInput {
   const Positions* other = nullptr;  ///< n×3 [m], pairs only: the prolonged coarse state
 };
 
-/// A measure of a state or of a pair of states. Evaluation is const and stateless.
+/// A measure of a state or of a pair of states. Evaluation is const: the same states have the same values.
 class Metric {
  public:
   virtual ~Metric() = default;

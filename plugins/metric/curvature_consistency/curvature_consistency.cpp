@@ -1,9 +1,39 @@
 #include "plugins/metric/curvature_consistency/curvature_consistency.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/kernel/plugin/plugin.h"
-#include "plugins/metric/curvature_consistency/curvature.h"
 
 namespace drape {
+
+namespace {
+
+template <class Matrix>
+bool same(const Matrix& a, const Matrix& b) {
+  return a.rows() == b.rows() && a == b;
+}
+
+}  // namespace
+
+std::shared_ptr<const RecentCurvatures::Curvatures> RecentCurvatures::of(const Positions& x,
+                                                                         const Level& level,
+                                                                         int rings) const {
+  const Triangles& triangles = level.rest.triangles;
+  const std::lock_guard lock(mutex_);
+  const auto known = std::find_if(states_.begin(), states_.end(), [&](const State& state) {
+    return same(state.x, x) && same(state.triangles, triangles);
+  });
+  if (known != states_.end()) {
+    std::rotate(states_.begin(), known, known + 1);
+  } else {
+    states_.push_front({x, triangles,
+                        std::make_shared<Curvatures>(fit_curvatures(x, triangles, level.topology, rings),
+                                                     ddg_curvatures(x, triangles, level.topology))});
+    if (states_.size() > most) states_.pop_back();
+  }
+  return states_.front().curvatures;
+}
 
 void CurvatureConsistency::Parameters::declare(Declaration<Parameters>& d) {
   d.add("rings", &Parameters::rings)
@@ -54,12 +84,10 @@ MetricDeclaration CurvatureConsistency::declaration() const {
 }
 
 MetricResult CurvatureConsistency::measure(const MetricInput& input) const {
-  const Triangles& triangles = input.level.rest.triangles;
-  const Topology& topology = input.level.topology;
-  const VertexCurvatures fit = fit_curvatures(input.x, triangles, topology, parameters_.rings);
-  const VertexCurvatures other_fit = fit_curvatures(*input.other, triangles, topology, parameters_.rings);
-  const VertexCurvatures ddg = ddg_curvatures(input.x, triangles, topology);
-  const VertexCurvatures other_ddg = ddg_curvatures(*input.other, triangles, topology);
+  const auto of_x = curvatures_.of(input.x, input.level, parameters_.rings);
+  const auto of_other = curvatures_.of(*input.other, input.level, parameters_.rings);
+  const auto& [fit, ddg] = *of_x;
+  const auto& [other_fit, other_ddg] = *of_other;
 
   const auto integral = [&](const Eigen::VectorXd& coarse, const Eigen::VectorXd& fine) {
     return integrated_square_difference(input.level.vertex_area, coarse, fine);

@@ -506,6 +506,30 @@ TEST_CASE("fields and weights belong to the right state", "[curvature_consistenc
   CHECK(value(result, "d_H_fit") == Approx(level.vertex_area.dot(f.mean.cwiseAbs2())));
 }
 
+TEST_CASE("curvatures of states seen lately are kept, and belong to their own state and mesh",
+          "[curvature_consistency]") {
+  const Surface s = torus(12);
+  Triangles turned_over = s.triangles;
+  turned_over.col(1).swap(turned_over.col(2));
+  const Level level = Level::of(0, {s.x, s.triangles}), other = Level::of(0, {s.x, turned_over});
+  const RecentCurvatures recent;
+  const auto first = recent.of(s.x, level, 2), reversed = recent.of(s.x, other, 2),
+             large = recent.of(2 * s.x, level, 2);
+  CHECK(recent.of(s.x, level, 2) == first);
+  CHECK(recent.of(s.x, other, 2) == reversed);
+  CHECK((first->fit.mean + reversed->fit.mean).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((first->fit.mean - 2 * large->fit.mean).cwiseAbs().maxCoeff() < 1e-9);
+  // As a run uses them: two targets, and one state after the other.
+  for (int k = 3; k < 8; ++k) {
+    const auto state = recent.of(k * s.x, level, 2);
+    for (const auto& target : {first, reversed}) {
+      CHECK(recent.of(s.x, target == first ? level : other, 2) == target);
+      CHECK(recent.of(k * s.x, level, 2) == state);
+    }
+  }
+  CHECK(recent.of(2 * s.x, level, 2) != large);
+}
+
 TEST_CASE("rings end with the mesh, however many are asked for", "[curvature_consistency]") {
   const Surface s = torus(12);
   const VertexCurvatures all = fit(s, 100), more = fit(s, std::numeric_limits<int>::max());

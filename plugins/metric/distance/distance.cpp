@@ -7,7 +7,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "core/kernel/contact/closest.h"
@@ -47,27 +49,35 @@ struct Traits : Plain {
   Nearest closest_point_object() const { return {Plain::closest_point_object()}; }
 };
 
-/// Per vertex of `from`, squared distance to the surface of `to`. The search begins at the nearer of two
-/// points of that surface: the vertex of the same number, and what was nearest to the vertex before.
-Eigen::VectorXd squared_surface_distances(const Positions& from, const Positions& to,
-                                          const Triangles& triangles) {
+/// The largest squared distance of a vertex of `from` to the surface of `to`. The vertex of the same number
+/// bounds each; those with the largest bounds come first, until no bound exceeds a distance that was found.
+double largest_squared_distance(const Positions& from, const Positions& to, const Triangles& triangles) {
+  const Eigen::VectorXd bounds = (from - to).rowwise().squaredNorm();
+  std::vector<int> order(from.rows());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return bounds[i] > bounds[j]; });
+
   Corners corners;
   corners.reserve(triangles.rows());
   for (Eigen::Index t = 0; t < triangles.rows(); ++t)
     corners.emplace_back(point(to, triangles(t, 0)), point(to, triangles(t, 1)), point(to, triangles(t, 2)));
   CGAL::AABB_tree<Traits> surface(corners.begin(), corners.end());
   surface.build();  // else the first of the threads would
-  Eigen::VectorXd result(from.rows());
-  parallel_for(static_cast<int>(from.rows()), 256, [&](int begin, int end) {
-    Point nearest = point(to, begin);
-    for (int i = begin; i < end; ++i) {
-      const Point p = point(from, i), same = point(to, i);
-      const bool last_is_nearer = CGAL::squared_distance(p, nearest) < CGAL::squared_distance(p, same);
-      nearest = surface.closest_point(p, last_is_nearer ? nearest : same);
-      result[i] = CGAL::squared_distance(p, nearest);
-    }
-  });
-  return result;
+  constexpr int at_once = 256;
+  double largest = 0;
+  std::array<double, at_once> found;
+  for (std::size_t first = 0; first < order.size() && bounds[order[first]] > largest; first += at_once) {
+    const int count = static_cast<int>(std::min<std::size_t>(at_once, order.size() - first));
+    parallel_for(count, 16, [&](int begin, int end) {
+      for (int k = begin; k < end; ++k) {
+        const int i = order[first + k];
+        const Point p = point(from, i);
+        found[k] = CGAL::squared_distance(p, surface.closest_point(p, point(to, i)));
+      }
+    });
+    largest = std::max(largest, *std::max_element(found.begin(), found.begin() + count));
+  }
+  return largest;
 }
 
 }  // namespace
@@ -97,8 +107,8 @@ MetricResult Distance::measure(const MetricInput& input) const {
 
   const Eigen::VectorXd squared = (x - other).rowwise().squaredNorm();
   const Triangles& triangles = input.level.rest.triangles;
-  const double there = squared_surface_distances(x, other, triangles).maxCoeff();
-  const double back = squared_surface_distances(other, x, triangles).maxCoeff();
+  const double there = largest_squared_distance(x, other, triangles);
+  const double back = largest_squared_distance(other, x, triangles);
   const Eigen::VectorXd& area = input.level.vertex_area;
 
   MetricResult result;
