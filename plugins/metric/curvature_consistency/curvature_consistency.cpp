@@ -17,8 +17,7 @@ bool same(const Matrix& a, const Matrix& b) {
 }  // namespace
 
 std::shared_ptr<const RecentCurvatures::Curvatures> RecentCurvatures::of(const Positions& x,
-                                                                         const Level& level,
-                                                                         int rings) const {
+                                                                         const Level& level) const {
   const Triangles& triangles = level.rest.triangles;
   const std::lock_guard lock(mutex_);
   const auto known = std::find_if(states_.begin(), states_.end(), [&](const State& state) {
@@ -28,7 +27,7 @@ std::shared_ptr<const RecentCurvatures::Curvatures> RecentCurvatures::of(const P
     std::rotate(states_.begin(), known, known + 1);
   } else {
     states_.push_front({x, triangles,
-                        std::make_shared<Curvatures>(fit_curvatures(x, triangles, level.topology, rings),
+                        std::make_shared<Curvatures>(fit_curvatures(x, triangles, level.topology, rings_),
                                                      ddg_curvatures(x, triangles, level.topology))});
     if (states_.size() > most) states_.pop_back();
   }
@@ -84,8 +83,8 @@ MetricDeclaration CurvatureConsistency::declaration() const {
 }
 
 MetricResult CurvatureConsistency::measure(const MetricInput& input) const {
-  const auto of_x = curvatures_.of(input.x, input.level, parameters_.rings);
-  const auto of_other = curvatures_.of(*input.other, input.level, parameters_.rings);
+  const auto of_x = curvatures_.of(input.x, input.level);
+  const auto of_other = curvatures_.of(*input.other, input.level);
   const auto& [fit, ddg] = *of_x;
   const auto& [other_fit, other_ddg] = *of_other;
 

@@ -10,16 +10,19 @@
 
 namespace drape {
 
-/// The curvatures of the states that were asked for last. A run measures each of its states against two
-/// others, over and over the same ones. Safe from several threads.
+/// The curvatures of the states that were asked for last, since a run compares each of its states with the
+/// same two. Safe from several threads.
 class RecentCurvatures {
  public:
   struct Curvatures {
     VertexCurvatures fit, ddg;
   };
 
-  /// Of a state of a level: kept ones, or new ones by fits of so many rings.
-  std::shared_ptr<const Curvatures> of(const Positions& x, const Level& level, int rings) const;
+  /// Fits reach so many edges away from a vertex.
+  explicit RecentCurvatures(int rings) : rings_(rings) {}
+
+  /// Of a state of a level. Throws as fit_curvatures and ddg_curvatures.
+  std::shared_ptr<const Curvatures> of(const Positions& x, const Level& level) const;
 
  private:
   struct State {
@@ -27,9 +30,10 @@ class RecentCurvatures {
     Triangles triangles;
     std::shared_ptr<const Curvatures> curvatures;
   };
-  /// Both of the others, this state and, as it is used in between, the one before.
+  /// The least by which neither of the two is dropped: they, a state and the one before it.
   static constexpr std::size_t most = 4;
 
+  int rings_;
   mutable std::mutex mutex_;
   mutable std::deque<State> states_;  // the one that was used last comes first
 };
@@ -43,14 +47,13 @@ class CurvatureConsistency : public Metric {
     static void declare(Declaration<Parameters>& d);
   };
 
-  explicit CurvatureConsistency(const Parameters& parameters) : parameters_(parameters) {}
+  explicit CurvatureConsistency(const Parameters& parameters) : curvatures_(parameters.rings) {}
   MetricScope scope() const override { return MetricScope::pair; }
   MetricDeclaration declaration() const override;
 
  private:
   MetricResult measure(const MetricInput& input) const override;
 
-  Parameters parameters_;
   RecentCurvatures curvatures_;
 };
 

@@ -512,22 +512,22 @@ TEST_CASE("curvatures of states seen lately are kept, and belong to their own st
   Triangles turned_over = s.triangles;
   turned_over.col(1).swap(turned_over.col(2));
   const Level level = Level::of(0, {s.x, s.triangles}), other = Level::of(0, {s.x, turned_over});
-  const RecentCurvatures recent;
-  const auto first = recent.of(s.x, level, 2), reversed = recent.of(s.x, other, 2),
-             large = recent.of(2 * s.x, level, 2);
-  CHECK(recent.of(s.x, level, 2) == first);
-  CHECK(recent.of(s.x, other, 2) == reversed);
+  const RecentCurvatures recent(2);
+  const auto first = recent.of(s.x, level), reversed = recent.of(s.x, other),
+             large = recent.of(2 * s.x, level);
+  CHECK(recent.of(s.x, level) == first);
+  CHECK(recent.of(s.x, other) == reversed);
   CHECK((first->fit.mean + reversed->fit.mean).cwiseAbs().maxCoeff() < 1e-9);
   CHECK((first->fit.mean - 2 * large->fit.mean).cwiseAbs().maxCoeff() < 1e-9);
   // As a run uses them: two targets, and one state after the other.
   for (int k = 3; k < 8; ++k) {
-    const auto state = recent.of(k * s.x, level, 2);
+    const auto state = recent.of(k * s.x, level);
     for (const auto& target : {first, reversed}) {
-      CHECK(recent.of(s.x, target == first ? level : other, 2) == target);
-      CHECK(recent.of(k * s.x, level, 2) == state);
+      CHECK(recent.of(s.x, target == first ? level : other) == target);
+      CHECK(recent.of(k * s.x, level) == state);
     }
   }
-  CHECK(recent.of(2 * s.x, level, 2) != large);
+  CHECK(recent.of(2 * s.x, level) != large);
 }
 
 TEST_CASE("rings end with the mesh, however many are asked for", "[curvature_consistency]") {
