@@ -17,7 +17,10 @@ after(() => chrome.close());
 
 /// A run with a live view, once its address is known.
 async function startViewed(out, ...more) {
-  const command = start(folder, 'run', contactConfig, '--out', out, '--quiet', '--threads', '1', '--view', ...more);
+  return startViewedOf(contactConfig, out, ...more);
+}
+async function startViewedOf(experiment, out, ...more) {
+  const command = start(folder, 'run', experiment, '--out', out, '--quiet', '--threads', '1', '--view', ...more);
   const url = await until('the address', () => /^view: (\S+)\n/.exec(command.text.out)?.[1]);
   return {...command, url};
 }
@@ -70,6 +73,30 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.deepEqual(levels.map(level => level.status), ['refined_early_on_request', 'cancelled']);
   assert.match(levels[0].message, /^refined on request; force residual /);
   assert.equal(results('stopped').methods.cascadic, undefined);
+  await page.context().close();
+});
+
+test('an obstacle that the schedule moves is shown where it is', async () => {
+  fs.writeFileSync(path.join(folder, 'risen.yaml'), `name: risen
+cloth: {shape: square, side: 0.4, columns: 9, rows: 9}
+levels: 1
+start: {translate: [-0.2, -0.2, 0]}
+pins: [{region: ball, point: [0, 0, 0], radius: 0.01}]
+energies: [neo_hookean, hinge, gravity]
+contact: shapes
+obstacles: [{shape: sphere, radius: 0.05, translate: [0, 0, -0.1]}, {shape: sphere, radius: 0.05, translate: [1, 0, 0]}]
+schedule: {steps: 1000, equilibrate: true, keys: [
+  {parameter: obstacles.0.translate, times: [0, 1], values: [[0, 0, -0.1], [0, 0, 0.1]]}]}
+methods: {newton: {}}
+`);
+  const running = await startViewedOf('risen.yaml', 'risen');
+  const {page, heard, state} = await openPage(chrome, running.url);
+  const first = (await state()).panels[0].obstacles;
+  await until('it has risen', async () => (await state()).panels[0].obstacles[0] > first[0] + .01);
+  assert.equal((await state()).panels[0].obstacles[1], first[1]);
+  await page.locator('#live-stop').click();
+  await running.ended;
+  assert.deepEqual(heard.errors, []);
   await page.context().close();
 });
 

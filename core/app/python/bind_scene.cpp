@@ -34,10 +34,8 @@ py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int leve
 std::string page(const SceneHandle& s, const py::object& state, int level) {
   const int l = s.checked(level);
   const Positions x = positions_of(state, s.level(l).level->vertex_count(), "x");
-  std::vector<TriangleMesh> obstacles;
-  for (const auto& contact : s.scene->models[l]->contacts())
-    for (TriangleMesh& mesh : contact->obstacles()) obstacles.push_back(std::move(mesh));
-  return viewer_page(s.experiment->parameters.name, s.scene->hierarchy.levels[l], x, obstacles);
+  return viewer_page(s.experiment->parameters.name, s.scene->hierarchy.levels[l], x,
+                     obstacles_of(s.scene->models[l]->contacts()));
 }
 
 }  // namespace

@@ -102,14 +102,13 @@ Recorder::Names Recorder::write_scene() {
 Recorder::Names Recorder::write_obstacles() {
   Names written;
   results_["obstacles"] = Json::array();
-  for (const auto& contact : scene_.finest_model().contacts())
-    for (const TriangleMesh& obstacle : contact->obstacles()) {
-      const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
-      results_["obstacles"].push_back(name);
-      // A run that was killed after its last checkpoint may have moved them since: that is no damage.
-      const bool may_differ = scene_.schedule && std::filesystem::exists(folder_.file(name));
-      if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
-    }
+  for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
+    const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
+    results_["obstacles"].push_back(name);
+    // A run that was killed after its last checkpoint may have moved them since: that is no damage.
+    const bool may_differ = scene_.schedule && std::filesystem::exists(folder_.file(name));
+    if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
+  }
   return written;
 }
 

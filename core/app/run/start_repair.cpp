@@ -50,11 +50,10 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& p) {
 class StartProbe {
  public:
   explicit StartProbe(const Scene& scene)
-      : scene_(scene), components_(scene.hierarchy.levels[0].topology.components()) {
-    for (const auto& contact : scene.model(0).contacts())
-      for (TriangleMesh& mesh : contact->obstacles()) obstacles_.push_back(std::move(mesh));
-    diagonal_ = bounding_box_diagonal(scene.starts[0]);
-  }
+      : scene_(scene),
+        components_(scene.hierarchy.levels[0].topology.components()),
+        obstacles_(obstacles_of(scene.model(0).contacts())),
+        diagonal_(bounding_box_diagonal(scene.starts[0])) {}
 
   double diagonal() const { return diagonal_; }
 

@@ -16,22 +16,16 @@ constexpr double shortest_pause = 0.25;  // between two copies of the running st
 constexpr double share_of_time = 0.05;   // largest share of time for encoding
 constexpr double looked_lately = 5;      // since a page last asked [s]
 
-std::vector<TriangleMesh> obstacles_of(const Scene& scene) {
-  std::vector<TriangleMesh> all;
-  for (const auto& contact : scene.finest_model().contacts())
-    for (TriangleMesh& mesh : contact->obstacles()) all.push_back(std::move(mesh));
-  return all;
-}
-
 }  // namespace
 
 LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::vector<std::string>& methods,
                    int port)
-    : title_(experiment.parameters.name),
+    : scene_(scene),
+      title_(experiment.parameters.name),
       tolerance_(experiment.parameters.newton.force_tolerance),
       finest_(static_cast<int>(scene.models.size()) - 1),
-      obstacles_(obstacles_of(scene)),
-      document_(scene.hierarchy.levels, obstacles_, !scene.finest_model().contacts().empty(),
+      first_obstacles_(std::make_shared<const Obstacles>(obstacles_of(scene.finest_model().contacts()))),
+      document_(scene.hierarchy.levels, *first_obstacles_, !scene.finest_model().contacts().empty(),
                 [this](const std::string& name, std::string bytes) { keep(name, std::move(bytes)); }) {
   for (const auto& [name, solver] : experiment.methods)
     if (methods.empty() || std::find(methods.begin(), methods.end(), name) != methods.end())
@@ -63,23 +57,36 @@ void LiveView::iteration(const IterationRow& row, const Positions& x) {
     rows_.push_back({method_, row.level, row.seconds, row.force_residual});
   ++version_;
   const double now = clock_.seconds();
+  const double pause = std::max(shortest_pause, (seconds_to_encode_ + seconds_to_copy_) / share_of_time);
   Shown& shown = states_[{method_, row.level}];
   ++shown.iteration;
   shown.seconds = row.seconds;
   if (now - last_heard_ > looked_lately) return;
-  if (now - last_copy_ < std::max(shortest_pause, seconds_to_encode_ / share_of_time)) return;
+  if (now - last_copy_ < pause) return;
   last_copy_ = now;
+  copy_state(shown, x);
+}
+
+/// The schedule makes the finest level's model of a new load only now, if it is not the level that is being
+/// solved.
+void LiveView::copy_state(Shown& shown, const Positions& x) {
+  const Stopwatch watch;
+  if (scene_.schedule && scene_.schedule->state().values != load_) {
+    load_ = scene_.schedule->state().values;
+    obstacles_ = std::make_shared<const Obstacles>(obstacles_of(scene_.finest_model().contacts()));
+  }
   shown.x = x;
+  shown.obstacles = obstacles_;
   shown.fresh = true;
+  seconds_to_copy_ = watch.seconds();
 }
 
 void LiveView::level_finished(const LevelResult& result) {
   const std::lock_guard lock(mutex_);
   Shown& shown = states_[{method_, result.level}];
-  shown.x = result.x;
+  copy_state(shown, result.x);
   shown.status = to_string(result.outcome);
   shown.iteration = result.iterations;
-  shown.fresh = true;
   ++version_;
 }
 
@@ -130,15 +137,16 @@ void LiveView::encode_fresh() {
     const std::string name = "m" + std::to_string(found->first.first) + "l" + std::to_string(level) + "v" +
                              std::to_string(++encoded_);
     const Positions x = shown.x;
+    const std::shared_ptr<const Obstacles> obstacles = shown.obstacles;
     const int iteration = shown.iteration;
     const double seconds = shown.seconds;
     shown.fresh = false;
     lock.unlock();
 
     const Stopwatch watch;
-    const SurfaceFields fields = document_.fields(level, x);
+    const SurfaceFields fields = document_.fields(level, x, obstacles.get());
     document_.set_ranges({&fields});
-    Json entry = document_.state(name, x, fields);
+    Json entry = document_.state(name, x, fields, obstacles.get());
     entry["iteration"] = iteration;
     entry["seconds"] = seconds;
 

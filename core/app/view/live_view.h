@@ -36,8 +36,10 @@ class LiveView : public Observer {
 
  private:
   using Json = ViewDocument::Json;
+  using Obstacles = std::vector<TriangleMesh>;
   struct Shown {
     Positions x;
+    std::shared_ptr<const Obstacles> obstacles;  // under the load of x
     std::string status = "running";
     int iteration = 0;
     double seconds = 0;
@@ -46,6 +48,7 @@ class LiveView : public Observer {
     std::string name, before;  // of its blocks and the replaced ones, which a page may still request
   };
 
+  void copy_state(Shown& shown, const Positions& x);
   std::string page() const;
   std::string news(long version, std::size_t rows);
   std::string refine();
@@ -54,6 +57,7 @@ class LiveView : public Observer {
   std::shared_ptr<const std::string> block(const std::string& name);
   void forget_blocks(const std::string& state);
 
+  const Scene& scene_;
   const std::string title_;
   const double tolerance_;
   std::vector<std::string> methods_;
@@ -72,9 +76,14 @@ class LiveView : public Observer {
   std::map<std::string, std::shared_ptr<const std::string>> blocks_;
   Stopwatch clock_;
 
+  const std::shared_ptr<const Obstacles> first_obstacles_;
+  // Of the solver's thread alone: where the obstacles are, and the values of the schedule's keys there.
+  std::shared_ptr<const Obstacles> obstacles_ = first_obstacles_;
+  std::vector<double> load_;
+  double seconds_to_copy_ = 0;
+
   std::mutex encoding_;  // of what only the server's threads use; taken before mutex_
   long encoded_ = 0;
-  std::vector<TriangleMesh> obstacles_;
   ViewDocument document_;
   std::unique_ptr<LiveServer> server_;  // last: its threads use the rest
 };

@@ -20,8 +20,8 @@ const Eigen::VectorXd* find(const SurfaceFields& fields, const std::string& name
 
 }  // namespace
 
-ViewDocument::ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles,
-                           bool with_gaps, Keep keep, const std::vector<FieldKind>& further)
+ViewDocument::ViewDocument(const std::vector<Level>& levels, const Obstacles& obstacles, bool with_gaps,
+                           Keep keep, const std::vector<FieldKind>& further)
     : levels_(levels),
       with_gaps_(with_gaps),
       obstacles_(obstacles),
@@ -46,11 +46,12 @@ ViewDocument::ViewDocument(const std::vector<Level>& levels, const std::vector<T
   }
 }
 
-SurfaceFields ViewDocument::fields(int level, const Positions& x) const {
+SurfaceFields ViewDocument::fields(int level, const Positions& x, const Obstacles* moved) const {
   const Level& l = levels_[level];
   SurfaceFields all = {{"mean_curvature", mean_curvature(x, l.rest.triangles, l.hinges)},
                        {"stretch", largest_stretch(l, x)}};
-  if (with_gaps_) all.emplace_back("gap", contact_gap(l, x, obstacles_, shown_gap(levels_.front())));
+  if (with_gaps_)
+    all.emplace_back("gap", contact_gap(l, x, moved ? *moved : obstacles_, shown_gap(levels_.front())));
   return all;
 }
 
@@ -65,7 +66,7 @@ void ViewDocument::set_ranges(const std::vector<const SurfaceFields*>& states) {
 }
 
 ViewDocument::Json ViewDocument::state(const std::string& name, const Positions& x,
-                                       const SurfaceFields& fields) {
+                                       const SurfaceFields& fields, const Obstacles* moved) {
   keep_(name, encode_positions(x));
   rounding_ = std::max(rounding_, position_rounding(x));
   Json entry = {{"x", name}, {"fields", Json::object()}};
@@ -75,6 +76,12 @@ ViewDocument::Json ViewDocument::state(const std::string& name, const Positions&
     const std::string block = name + "-" + kinds_[k].name;
     keep_(block, encode_scalars(*values, ranges_[k].first, ranges_[k].second));
     entry["fields"][kinds_[k].name] = block;
+  }
+  for (std::size_t k = 0; moved && k < obstacles_.size(); ++k) {
+    if ((*moved)[k].vertices == obstacles_[k].vertices) continue;
+    const std::string block = name + "-obstacle" + std::to_string(k);
+    keep_(block, encode_positions((*moved)[k].vertices));
+    entry["obstacles"][std::to_string(k)] = block;
   }
   return entry;
 }

@@ -17,17 +17,22 @@ class ViewDocument {
   /// Receives a named block.
   using Keep = std::function<void(const std::string& name, std::string bytes)>;
 
+  using Obstacles = std::vector<TriangleMesh>;
+
   /// `levels`, coarse to fine, and `obstacles` must outlive the document; gaps are shown `with_gaps`. States
   /// may have the fields `further` beside the derived ones.
-  ViewDocument(const std::vector<Level>& levels, const std::vector<TriangleMesh>& obstacles, bool with_gaps,
-               Keep keep, const std::vector<FieldKind>& further = {});
+  ViewDocument(const std::vector<Level>& levels, const Obstacles& obstacles, bool with_gaps, Keep keep,
+               const std::vector<FieldKind>& further = {});
+
+  // `moved`: the obstacles where that state has them; null for where the document has them.
 
   /// The fields that depend on positions only.
-  SurfaceFields fields(int level, const Positions& x) const;
+  SurfaceFields fields(int level, const Positions& x, const Obstacles* moved = nullptr) const;
   /// Sets the colour ranges from typical states, usually the last of each level.
   void set_ranges(const std::vector<const SurfaceFields*>& states);
   /// Encodes a state; its blocks are named after `name`.
-  Json state(const std::string& name, const Positions& x, const SurfaceFields& fields);
+  Json state(const std::string& name, const Positions& x, const SurfaceFields& fields,
+             const Obstacles* moved = nullptr);
   /// Uncompressed size of a state of that level [bytes].
   std::size_t state_bytes(int level) const;
 
@@ -37,7 +42,7 @@ class ViewDocument {
  private:
   const std::vector<Level>& levels_;
   bool with_gaps_;
-  const std::vector<TriangleMesh>& obstacles_;
+  const Obstacles& obstacles_;
   Keep keep_;
   std::vector<FieldKind> kinds_;
   std::vector<std::pair<double, double>> ranges_;  // of kinds_

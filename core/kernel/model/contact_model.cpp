@@ -10,4 +10,11 @@ std::string to_string(const Intersection& intersection) {
          general_text(at.y(), 4) + ", " + general_text(at.z(), 4) + ")";
 }
 
+std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts) {
+  std::vector<TriangleMesh> all;
+  for (const auto& contact : contacts)
+    for (TriangleMesh& mesh : contact->obstacles()) all.push_back(std::move(mesh));
+  return all;
+}
+
 }  // namespace drape

@@ -80,6 +80,9 @@ class KinematicObstacles {
 /// The contacts of one level. Models of the level under different loads may share them.
 using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
 
+/// The obstacles of all contacts, as meshes for drawing.
+std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts);
+
 /// A kind of contact, made by name from its parameters.
 class ContactModel {
  public:

@@ -47,7 +47,7 @@ class Viewer {
   /// Drops the blocks of states that newer ones have replaced.
   forget() {
     const states = this.data.methods.flatMap(m => m.levels).flatMap(l => l.states);
-    const named = new Set(states.flatMap(s => [s.x, ...Object.values(s.fields)]));
+    const named = new Set(states.flatMap(s => [s.x, ...Object.values(s.fields), ...Object.values(s.obstacles || {})]));
     for (const key of this.blocks.keys()) {
       const [kind, name] = key.split(' ');
       if ((kind === 'x' && name[0] === 'm' || kind === 'scalars') && !named.has(name)) this.blocks.delete(key);
@@ -123,12 +123,12 @@ class Viewer {
 
   async panel(method, stop, field) {
     const found = this.stateAt(method, stop);
-    if (!found) return {method, shape: null};
+    if (!found) return {method, shape: null, obstacles: await this.obstaclesOf({})};
     const entry = this.data.levels[found.level.level], block = field && found.state.fields[field.name];
-    const [index, x, tints] = await Promise.all([this.index(entry),
+    const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
       this.block('x', found.state.x, bytes => ViewerData.positions(bytes, entry.vertices)),
       block ? this.block('scalars', block, ViewerData.scalars).then(s => ViewerColours.paint(s, field)) : null]);
-    return {method, found, shape: {index, x, tints}};
+    return {method, found, shape: {index, x, tints}, obstacles};
   }
 
   /// Shows a stop once its data are loaded; a later call supersedes it.
@@ -144,7 +144,6 @@ class Viewer {
     const methods = this.shown.map(name => this.data.methods.find(m => m.name === name));
     let panels;
     try {
-      await this.showObstacles();
       panels = await Promise.all(methods.map(method => this.panel(method, stop, this.field())));
     } catch (error) {
       if (this.ticket === ticket && !this.source.live) this.say('A state could not be read: ' + error.message);
@@ -154,6 +153,7 @@ class Viewer {
     if (!this.aimed) this.aim(panels);
     panels.forEach((panel, k) => {
       this.scene.setCloth(k, panel.shape);
+      this.scene.setObstacles(k, panel.obstacles);
       this.label(this.element.labels.children[k], panel);
     });
     scrubber.setAttribute('aria-valuetext', `level ${stop.level}, ${Math.round(100 * stop.share)} % of it`);
@@ -161,12 +161,13 @@ class Viewer {
     this.scene.draw();
   }
 
-  async showObstacles() {
-    this.obstacles = this.obstacles || Promise.all(this.data.obstacles.map(async o => {
-      const [index, x] = await Promise.all([this.index(o), this.block('x', o.x, b => ViewerData.positions(b, o.vertices))]);
-      this.scene.addObstacle(x, index);
+  /// The obstacles where a state has them; a state names those that have moved.
+  obstaclesOf(state) {
+    return Promise.all(this.data.obstacles.map(async (o, k) => {
+      const name = state.obstacles && state.obstacles[k] || o.x;
+      const [index, x] = await Promise.all([this.index(o), this.block('x', name, b => ViewerData.positions(b, o.vertices))]);
+      return {index, x};
     }));
-    await this.obstacles;
   }
 
   /// Points the camera at the cloth's bounding box.
@@ -240,10 +241,11 @@ class Viewer {
       level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.playing,
       field: this.element.field.value, renders: this.scene ? this.scene.renders : 0, webgl: !!this.scene,
       camera: this.scene && Object.assign({}, this.scene.view),
-      panels: this.panels.map(({method, found, shape}) => ({method: method.name, level: found ? found.level.level : -1,
+      panels: this.panels.map(({method, found, shape, obstacles}) => ({method: method.name, level: found ? found.level.level : -1,
         vertices: shape ? shape.x.length / 3 : 0, triangles: shape ? shape.index.count / 3 : 0,
         sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0,
-        tints: shape && shape.tints ? shape.tints.reduce((a, b) => a + b, 0) : null})),
+        tints: shape && shape.tints ? shape.tints.reduce((a, b) => a + b, 0) : null,
+        obstacles: obstacles.map(({x}) => x.reduce((a, b) => a + b, 0))})),
     };
   }
 }

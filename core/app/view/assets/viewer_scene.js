@@ -5,7 +5,7 @@ class ViewerScene {
   constructor(canvas, labels) {
     const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: true}), null);
     if (!context) throw new Error('no WebGL');
-    Object.assign(this, {canvas, labels, views: [], obstacles: [], renders: 0, waiting: false});
+    Object.assign(this, {canvas, labels, views: [], solids: new Map(), renders: 0, waiting: false});
     this.renderer = new THREE.WebGLRenderer({canvas, context, antialias: true});
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
@@ -75,20 +75,31 @@ class ViewerScene {
     return geometry;
   }
 
-  /// Sets the number of views and their obstacles.
+  /// Sets the number of views.
   setViews(count) {
-    while (this.views.length < count) {
-      const view = {scene: new THREE.Scene(), mesh: null};
-      this.obstacles.forEach(geometry => view.scene.add(this.fixed(new THREE.Mesh(geometry, this.solid))));
-      this.views.push(view);
-    }
+    while (this.views.length < count) this.views.push({scene: new THREE.Scene(), mesh: null, obstacles: []});
     this.views.length = count;
     this.layOut();
   }
-  addObstacle(x, index) {
-    const geometry = this.geometry(x, index);
-    this.obstacles.push(geometry);
-    this.views.forEach(view => view.scene.add(this.fixed(new THREE.Mesh(geometry, this.solid))));
+  /// Shows obstacles in a view. Views share the geometry of those that are in the same place.
+  setObstacles(k, shapes) {
+    const view = this.views[k];
+    if (view.obstacles.length === shapes.length && shapes.every(({x}, i) => view.obstacles[i].userData.x === x)) return;
+    view.obstacles.forEach(mesh => view.scene.remove(mesh));
+    view.obstacles = shapes.map(({x, index}) => {
+      if (!this.solids.has(x)) this.solids.set(x, this.geometry(x, index));
+      const mesh = this.fixed(new THREE.Mesh(this.solids.get(x), this.solid));
+      mesh.userData.x = x;
+      return mesh;
+    });
+    view.obstacles.forEach(mesh => view.scene.add(mesh));
+    const shown = new Set(this.views.flatMap(v => v.obstacles.map(mesh => mesh.userData.x)));
+    for (const [x, geometry] of this.solids) {
+      if (shown.has(x)) continue;
+      geometry.setIndex(null);
+      geometry.dispose();
+      this.solids.delete(x);
+    }
   }
   fixed(mesh) {
     mesh.frustumCulled = false;
