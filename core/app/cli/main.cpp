@@ -166,7 +166,8 @@ int main_checked(int argc, char** argv) {
   app.footer(exit_codes_help());
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_help_flag("-h,--help", "print this help and exit");
-  app.set_version_flag("--version", [] { return "drape " + version() + " (" + commit() + ")"; });
+  app.set_version_flag(
+      "--version", [] { return "drape " + version() + " (" + commit() + ")"; }, "print the version and exit");
   app.require_subcommand(1);
   app.failure_message([](const CLI::App* app, const CLI::Error& error) { return refusal(*app, error); });
 
@@ -206,7 +207,7 @@ int main_checked(int argc, char** argv) {
       "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass");
   show_example(*table_command, "drape table results/sphere --columns method,outcome,seconds,energy");
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
-  table_command->add_option("--format", format, "md, csv or json")
+  table_command->add_option("--format", format, "md (default), csv or json")
       ->type_name("NAME")
       ->check([](const std::string& name) {
         return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
@@ -218,7 +219,7 @@ int main_checked(int argc, char** argv) {
   const SweepCommand sweep(app);
   CLI::App* list_command = app.add_subcommand("list", "list plugins");
   show_example(*list_command, "drape list energy");
-  list_command->add_option("kind", kind, "only this kind");
+  list_command->add_option("kind", kind, "energy, refiner, contact, solver or metric (default: all)");
   CLI::App* describe_command =
       app.add_subcommand("describe", "show a plugin's parameters (or `experiment`'s, `sweep`'s)");
   show_example(*describe_command, "drape describe strain_limit");
@@ -226,7 +227,7 @@ int main_checked(int argc, char** argv) {
   CLI::App* schema_command =
       app.add_subcommand("schema", "print the JSON Schema of experiments (or sweeps), for editors");
   show_example(*schema_command, "drape schema > experiment.schema.json");
-  schema_command->add_option("kind", schema_kind, "experiment or sweep")
+  schema_command->add_option("kind", schema_kind, "experiment (default) or sweep")
       ->check(CLI::IsMember({"experiment", "sweep"}));
   CLI::App* help_command = app.add_subcommand("help", "show a command's options and an example");
   show_example(*help_command, "drape help run");

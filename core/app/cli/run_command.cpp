@@ -55,8 +55,8 @@ RunCommand::RunCommand(CLI::App& app) {
   command_
       ->add_option(
           "--resume", resumed_,
-          "results folder of an interrupted run to resume; with --set, --levels, --level or --method, and "
-          "--out: start another run in that folder from its state")
+          "results folder of an interrupted run to resume; with --set, --levels, --level or --method: start "
+          "another run from its state, in the folder of --out")
       ->type_name("FOLDER");
   command_
       ->add_option("--level", level_,

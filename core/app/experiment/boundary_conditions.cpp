@@ -37,8 +37,8 @@ void check_selection(const std::string& word, std::size_t number, const VertexSe
 /// equally stiff.
 class Handles final : public Energy {
  public:
-  Handles(const ExperimentParameters& p, const Level& coarsest)
-      : handles_(p.handles), start_(p.start), coarsest_(coarsest) {}
+  Handles(const ExperimentParameters& p, const Level& coarsest, const std::vector<Positions>& placed)
+      : handles_(p.handles), coarsest_(coarsest), placed_(placed) {}
 
   EnergyRole role() const override { return EnergyRole::position; }
 
@@ -54,7 +54,7 @@ class Handles final : public Energy {
         terms.push_back(
             {v,
              handle.has_transform() ? handle.target(level.rest.vertices.row(v))
-                                    : start_.transformed(level.rest.vertices.row(v)),
+                                    : Eigen::Vector3d(placed_[level.index].row(v)),
              stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
     }
     return std::make_unique<PositionPenalty>(std::move(terms));
@@ -62,8 +62,8 @@ class Handles final : public Energy {
 
  private:
   std::vector<HandleParameters> handles_;
-  StartParameters start_;
   const Level& coarsest_;
+  const std::vector<Positions>& placed_;
 };
 
 }  // namespace
@@ -121,13 +121,13 @@ void check_boundary_conditions(const Experiment& e, const std::vector<Level>& le
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
-                                                const Level& coarsest, const Positions& start) {
+                                                const Level& coarsest, const Positions& placed) {
   std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
   for (std::size_t k = 0; k < p.pins.size(); ++k)
     for (int v : selected_vertices(p.pins[k], level, coarsest))
       by_vertex[v] = {v,
                       p.pins[k].has_transform() ? p.pins[k].target(level.rest.vertices.row(v))
-                                                : Eigen::Vector3d(start.row(v)),
+                                                : Eigen::Vector3d(placed.row(v)),
                       static_cast<int>(k)};
   std::vector<DirichletVertex> dirichlet;
   for (const DirichletVertex& d : by_vertex)
@@ -135,8 +135,9 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
   return dirichlet;
 }
 
-std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest) {
-  return p.handles.empty() ? nullptr : std::make_shared<Handles>(p, coarsest);
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& p, const Level& coarsest,
+                                             const std::vector<Positions>& placed) {
+  return p.handles.empty() ? nullptr : std::make_shared<Handles>(p, coarsest, placed);
 }
 
 }  // namespace drape

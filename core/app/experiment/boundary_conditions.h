@@ -14,12 +14,13 @@ void check_boundary_conditions(const Experiment& experiment, const std::vector<L
                                ConfigErrors& errors);
 
 /// The Dirichlet vertices of a level with their targets [m]. The last pin that selects a vertex decides; a
-/// pin without a transform keeps it at its position in `start` (n×3).
+/// pin without a transform keeps it at its position in `placed` (n×3) [m].
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
-                                                const Level& coarsest, const Positions& start);
+                                                const Level& coarsest, const Positions& placed);
 
-/// The penalty energy of all handles, equally stiff on every level; null without a handle. `coarsest` must
-/// outlive it.
-std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& parameters, const Level& coarsest);
+/// The penalty energy of all handles, equally stiff on every level; null without a handle. A handle without a
+/// transform pulls to the positions in `placed`, n×3 [m] for each level. Both references must outlive it.
+std::shared_ptr<const Energy> handles_energy(const ExperimentParameters& parameters, const Level& coarsest,
+                                             const std::vector<Positions>& placed);
 
 }  // namespace drape

@@ -54,8 +54,9 @@ struct Scene {
   Hierarchy hierarchy;
   std::vector<NamedEnergy> energies;                      ///< of the models, handles included
   std::vector<std::shared_ptr<const LevelModel>> models;  ///< at the start, before any load stepping
-  std::vector<Positions> starts;
-  std::optional<Positions> reference;      ///< on the finest level, if the experiment names its file
+  std::vector<Positions> placed;       ///< the starts without noise, where pins and handles hold (n×3) [m]
+  std::vector<Positions> starts;       ///< with noise, and pinned vertices at their targets (n×3) [m]
+  std::optional<Positions> reference;  ///< on the finest level, if the experiment names its file
   std::unique_ptr<LoadStepping> schedule;  ///< null without one
 
   /// The model of a level under the load that it has reached; valid until the next load step.

@@ -81,7 +81,8 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .at_least(0)
       .at_most(bounds::largest_length)
       .description(
-          "amplitude of smooth noise normal to the pattern, equal on every level; pinned vertices have none");
+          "amplitude of smooth noise along z, added after `scale` and before `rotate`, so normal to a flat "
+          "pattern; a function of the rest shape's x and y, equal on every level; pinned vertices have none");
   d.add("perturbation_wavelength", &StartParameters::perturbation_wavelength)
       .unit("m")
       .at_least(bounds::smallest_length)
@@ -142,7 +143,7 @@ void declare_selection(Declaration<Condition>& d) {
       .at_most(bounds::largest_coordinate)
       .description(
           "translation from the rest position to the target, applied after `rotate`; without both, the "
-          "target is the start position");
+          "target is the position at the start, without its noise");
   d.add("rotate", member(&VertexSelection::rotate))
       .formerly("turn")
       .unit("degree")

@@ -30,7 +30,7 @@ void throw_first(const ConfigErrors& errors) {
 
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
     : hierarchy_(scene.hierarchy),
-      starts_(scene.starts),
+      placed_(scene.placed),
       keys_(e.parameters.schedule),
       increment_count_(e.parameters.schedule.steps),
       equilibrates_(e.parameters.schedule.equilibrate) {
@@ -153,7 +153,7 @@ std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, co
     throw_first(errors);
   }
   if (parameters) load->parameters = parameters;
-  if (new_handles) load->energies.back().energy = handles_energy(*parameters, hierarchy_.levels[0]);
+  if (new_handles) load->energies.back().energy = handles_energy(*parameters, hierarchy_.levels[0], placed_);
   load->values = std::move(values);
   return load;
 }
@@ -163,7 +163,7 @@ std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int
   const Level &own = hierarchy_.levels[level], &coarsest = hierarchy_.levels[0];
   return std::make_shared<const LevelModel>(
       own, load.parameters->material, load.energies,
-      dirichlet_vertices(*load.parameters, own, coarsest, starts_[level]), load.contacts, &before);
+      dirichlet_vertices(*load.parameters, own, coarsest, placed_[level]), load.contacts, &before);
 }
 
 }  // namespace drape

@@ -17,8 +17,8 @@ struct LoadState {
 };
 
 /// The loads of a scene as a function of its keyed parameters. Every key is resolved once, to the declared
-/// parameter that it names. Immutable; refers to the scene's levels and initial states, which must outlive
-/// it.
+/// parameter that it names. Immutable; refers to the scene's levels and initial positions, which must
+/// outlive it.
 class LoadSchedule {
  public:
   /// The experiment's schedule must have passed check_schedule.
@@ -75,7 +75,7 @@ class LoadSchedule {
   void write(const Section& section, const std::vector<double>& values, void* object) const;
 
   const Hierarchy& hierarchy_;
-  const std::vector<Positions>& starts_;
+  const std::vector<Positions>& placed_;
   KeyedValues keys_;
   int increment_count_;
   bool equilibrates_;

@@ -184,11 +184,14 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   const std::vector<Positions> shapes = start_shapes(e, scene->hierarchy, errors);
   if (!errors.empty()) return nullptr;
   scene->energies = e.energies;
-  if (auto handles = handles_energy(p, coarsest)) scene->energies.push_back({"handles", std::move(handles)});
+  for (const Level& level : scene->hierarchy.levels)
+    scene->placed.push_back(make_start(level.rest.vertices, shapes[level.index], p.start, 0));
+  if (auto handles = handles_energy(p, coarsest, scene->placed))
+    scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
     const Positions &rest = level.rest.vertices, &shape = shapes[level.index];
     std::vector<DirichletVertex> dirichlet =
-        dirichlet_vertices(p, level, coarsest, make_start(rest, shape, p.start, 0));
+        dirichlet_vertices(p, level, coarsest, scene->placed[level.index]);
     Positions start = make_start(rest, shape, p.start, p.start.perturbation);
     for (const DirichletVertex& d : dirichlet) start.row(d.vertex) = d.target.transpose();
     if (!check_start(e, level, start, errors)) return nullptr;

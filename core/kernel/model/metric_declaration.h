@@ -32,7 +32,7 @@ struct MetricColumn {
   int decimals = -1;       ///< shown after the point; -1 for three significant digits
   std::string best = {};   ///< what the best method does: "changes its curvature least"; may be empty
   std::string error = {};  ///< name of the value as an error, in errors.csv; empty if it is none
-  ErrorUse error_use = ErrorUse::plots;  ///< an error of a value of which higher is better is 1 − value
+  ErrorUse error_use = ErrorUse::plots;  ///< where higher is better the error is 1 − value
 };
 
 /// How a picture colours a field.

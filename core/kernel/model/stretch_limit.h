@@ -25,7 +25,8 @@ class StretchLimited {
   /// Triangles that violate the limit at x (σ₁ ≥ s, or NaN), by rising index.
   virtual std::vector<StretchedTriangle> violations(const Positions& x) const = 0;
   /// The same limit, also a StretchLimited and StepFilter, restricted to the triangles that `excluded` does
-  /// not flag (one entry a triangle of the level). Safe refinement starts with violating triangles.
+  /// not flag (one entry a triangle of the level). Safe refinement uses it as long as some triangles
+  /// violate the limit.
   virtual std::unique_ptr<BoundEnergy> restricted(const std::vector<char>& excluded) const = 0;
 };
 

@@ -47,8 +47,9 @@ void CageParameters::declare(Declaration<CageParameters>& d) {
       .at_least(5e-3)
       .below(1)
       .description(
-          "of the innermost cage's alpha wrap, over the diagonal of the mesh's bounding box: size of the "
-          "holes that are closed, and of triangles")
+          "alpha of the innermost cage's alpha wrap, relative to the diagonal of the mesh's bounding box; "
+          "sets "
+          "the size of the holes that are closed, and of triangles")
       .source("Portaneri et al. 2022");
   d.add("offset", &P::offset)
       .unit("1")

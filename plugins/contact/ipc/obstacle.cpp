@@ -76,7 +76,8 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
-      .description("of a sphere's icosahedron; the sphere has 20 · 4^subdivisions triangles");
+      .description(
+          "how often a sphere's icosahedron is subdivided; the sphere has 20 · 4^subdivisions triangles");
   d.add("animation", &P::animation)
       .path()
       .identifies_item()

@@ -84,7 +84,7 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
 }
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
-  declare_obstacles(d).description("solids that the cloth collides with").source("this project");
+  declare_obstacles(d).description("analytic shapes that the cloth collides with").source("this project");
   d.moved("shapes", "obstacles");
   declare_contact_parameters(d);
 }

@@ -31,8 +31,9 @@ class PcsSolver : public ResumableSolver {
           .at_least(0)
           .at_most(8)
           .description(
-              "levels from a coarse level up to the one whose energy it minimises, at most to the finest; 0 "
-              "for the finest")
+              "how many levels above a coarse level the energy is that it minimises, at most the finest; 0: "
+              "the "
+              "finest")
           .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
@@ -43,8 +44,9 @@ class PcsSolver : public ResumableSolver {
           .at_least(1)
           .at_most(8)
           .description(
-              "levels up to the model whose matrix the Galerkin product restricts, for energies that are "
-              "evaluated on the refiner's mesh; at most to the proxy's target");
+              "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
+              "most "
+              "the proxy's target; for energies that are evaluated on a finer level");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
           .description(
