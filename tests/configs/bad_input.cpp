@@ -462,6 +462,20 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
   CHECK(said("pins: [~]\n") == "error: e.yaml:5:8: an item of \"pins\" is empty; remove it\n");
 }
 
+TEST_CASE("two keys of a schedule may not set one parameter") {
+  const auto said = [](const std::string& first, const std::string& second) {
+    return said_of(replaced(small_experiment(), "gravity]", "{type: gravity, acceleration: [0, 0, -9.81]}]") +
+                   "schedule: {keys: [\n  {parameter: " + first + ", times: [0, 1], values: " +
+                   (first.ends_with("acceleration") ? "[[0, 0, -1], [0, 0, -2]]" : "[-1, -2]") +
+                   "},\n  {parameter: " + second + ", times: [0, 1], values: [-3, -4]}]}\n");
+  };
+  const std::string z = "energies.gravity.acceleration.2";
+  for (const std::string first : {"energies.2.acceleration.2", "energies.gravity.acceleration"})
+    CHECK(said(first, z) ==
+          "error: e.yaml:16:3: key \"" + z + "\" sets what key \"" + first + "\" sets; remove one of them\n");
+  CHECK_THAT(said("energies.gravity.acceleration.1", z), !Catch::Matchers::Contains("sets what key"));
+}
+
 TEST_CASE("a schedule may not change an integer, whose values between are none") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment() +

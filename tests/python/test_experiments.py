@@ -61,6 +61,18 @@ def test_set_is_the_commands(small_file, command, tmp_path):
     assert ours.levels[0].x.tobytes() == theirs.levels[0].x.tobytes()
 
 
+def test_the_methods_of_an_experiment(small_file):
+    assert drape.Experiment(small_file).methods == ["pcs", "cascadic", "newton"]
+
+
+def test_a_kind_and_a_number_of_threads_are_checked():
+    assert [name for name, _ in drape.plugins("refiner")] == ["loop", "midpoint"]
+    with pytest.raises(ValueError, match="no kind \"enrgy\""):
+        drape.plugins("enrgy")
+    with pytest.raises(ValueError, match="at least 0"):
+        drape.set_threads(-3)
+
+
 def test_every_fault_is_listed_with_its_place(tmp_path):
     file = tmp_path / "faulty.yaml"
     file.write_text("name: faulty\nlevls: 2\nmaterial: {density: -1}\nenergies: [gravity]\nmethods: {pcs: {}}\n")

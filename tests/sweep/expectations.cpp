@@ -46,6 +46,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   const Ended swept = drape_with("sweep s.yaml --out out", folder.path);
   CHECK(swept.exit_code == 1);
   CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
+  CHECK_THAT(swept.err, Contains("unheld, seed 1: refused, as expected, after") && Contains("; 1 failed"));
 
   const Ended ended = drape_with("table out --format json", folder.path);
   CHECK(ended.exit_code == 1);

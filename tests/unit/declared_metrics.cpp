@@ -60,6 +60,36 @@ TEST_CASE("what metrics declare goes through results.json unchanged") {
   }
 }
 
+TEST_CASE("values that have no place of their own in results.json are refused before a run") {
+  const auto refused = [](const std::vector<DeclaredMetric>& metrics) {
+    ConfigErrors errors;
+    check_declarations(metrics, {}, errors);
+    std::string text;
+    for (const ConfigError& error : errors) text += error.message + "\n";
+    return text;
+  };
+  const auto metric = [](const std::string& name, MetricScope scope, const std::vector<std::string>& values) {
+    DeclaredMetric declared{name, scope, {}};
+    for (const std::string& value : values) declared.declaration.columns.push_back({.name = value});
+    return declared;
+  };
+  const MetricScope state = MetricScope::state, pair = MetricScope::pair;
+  CHECK(refused({metric("a", state, {"tilt", "coarse"}), metric("b", pair, {"tilt", "energy"})}).empty());
+  CHECK(refused({metric("energy", state, {"energy", "energy_parts"})}).empty());
+  CHECK(refused({metric("a", state, {"energy"})}) ==
+        "metric a: the value \"energy\" needs another name: results.json has a key \"energy\" of its own\n");
+  CHECK_THAT(refused({metric("a", state, {"steps.x"})}), Contains("a key \"steps\" of its own"));
+  CHECK_THAT(refused({metric("a", pair, {"coarse"})}), Contains("a key \"coarse\" of its own"));
+  CHECK(refused({metric("a", state, {"tilt"}), metric("b", state, {"tilt"})}) ==
+        "metric b: the value \"tilt\" is declared by metric a too\n");
+  CHECK(refused({metric("a", state, {"tilt", "tilt"})}) ==
+        "metric a: the value \"tilt\" is declared twice\n");
+  CHECK(refused({metric("a", state, {""})}) == "metric a: a value needs a name\n");
+  DeclaredMetric drawn = metric("a", pair, {});
+  drawn.declaration.pictures.push_back({.name = std::string(longest_picture_name + 1, 'p')});
+  CHECK_THAT(refused({drawn}), Contains("is longer than 24 bytes"));
+}
+
 TEST_CASE("declarations that someone edited are read as far as they can be") {
   for (const char* text :
        {"null", "3", "[]", R"({"a": 1})", R"({"a": {"columns": 1, "pictures": [1, {"field": 2}]}})",

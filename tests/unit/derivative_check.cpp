@@ -44,7 +44,46 @@ const Positions state = [] {
   return x;
 }();
 
+/// A weight of 1 N a vertex, far below the origin.
+struct Weight : BoundEnergy {
+  double value(const Positions& x) const override { return x.col(2).sum(); }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g.col(2).array() += 1;
+    return value(x);
+  }
+  Stencils stencils() const override { return Stencils(0, 1); }
+  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+};
+
+/// A quartic whose add_gradient forgets what is in g, or returns another number.
+struct Careless : Quartic {
+  bool overwrites = false;
+  double excess = 0;
+  double add_gradient(const Positions& x, Positions& g) const override {
+    if (overwrites) g.setZero();
+    return Quartic::add_gradient(x, g) + excess;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("a linear energy passes, whose differences of forces are round-off") {
+  const DerivativeCheck check = check_derivatives(Weight(), state, 1e-4);
+  CHECK(check.gradient.error < 1e-9);
+  CHECK(check.hessian.error < 1e-6);
+}
+
+TEST_CASE("a gradient that is not added, and an energy that is another, are refused") {
+  Careless energy;
+  CHECK(check_derivatives(energy, state, 1e-3).gradient.error < 1e-9);
+  energy.excess = 1e-3;
+  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
+                    Catch::Matchers::StartsWith("add_gradient returns "));
+  energy = {};
+  energy.overwrites = true;
+  CHECK_THROWS_WITH(check_derivatives(energy, state, 1e-3),
+                    "add_gradient does not add to the numbers in g, but overwrites some");
+}
 
 TEST_CASE("correct derivatives have small errors") {
   const DerivativeCheck check = check_derivatives(Quartic(), state, 1e-3);

@@ -1,6 +1,7 @@
 #include "core/kernel/model/hierarchy.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
@@ -26,7 +27,48 @@ struct Shrinking : Refiner {
   }
 };
 
+/// The midpoint split with a fault.
+struct Faulty : Refiner {
+  explicit Faulty(void (*spoil)(Refinement&)) : spoil(spoil) {}
+  Refinement refine(const Level& coarse) const override {
+    Refinement refinement = midpoint_refinement(coarse);
+    spoil(refinement);
+    return refinement;
+  }
+  void (*spoil)(Refinement&);
+};
+
 }  // namespace
+
+TEST_CASE("what a faulty refiner returns is refused before anything is computed from it", "[hierarchy]") {
+  const auto refusal = [](void (*spoil)(Refinement&)) -> std::string {
+    try {
+      Hierarchy::of(grid({2, 1}, 4, 3, Diagonals::criss_cross), Faulty(spoil), 2);
+      return "";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  const std::string of_level = "the refiner's result for level 0: ";
+  CHECK(refusal([](Refinement&) {}).empty());
+  CHECK_THAT(
+      refusal([](Refinement& r) { r.weights.conservativeResize(r.weights.rows() - 1, r.weights.cols()); }),
+      Catch::Matchers::StartsWith(of_level + "weights of 34 × 12, not 35 × 12"));
+  CHECK_THAT(refusal([](Refinement& r) { r.weights.conservativeResize(r.weights.rows(), 20); }),
+             Catch::Matchers::StartsWith(of_level + "weights of 35 × 20"));
+  CHECK_THAT(refusal([](Refinement& r) { r.weights *= 1.01; }),
+             Catch::Matchers::StartsWith(of_level + "row 0 of its weights sums to 1.01"));
+  CHECK_THAT(refusal([](Refinement& r) { r.weights.coeffRef(5, 5) = std::nan(""); }),
+             Catch::Matchers::StartsWith(of_level + "row 5"));
+  CHECK_THAT(refusal([](Refinement& r) { r.triangles.conservativeResize(12, 3); }),
+             Catch::Matchers::StartsWith(of_level + "12 triangles, not 48"));
+  CHECK_THAT(refusal([](Refinement& r) { r.triangles.row(0).swap(r.triangles.row(40)); }),
+             Catch::Matchers::Contains("neither a corner nor on an edge of triangle 0"));
+  CHECK_THAT(refusal([](Refinement& r) { r.triangles(7, 1) = 1000; }),
+             Catch::Matchers::Contains("triangle 7 has vertex 1000"));
+  CHECK(refusal([](Refinement&) { throw std::runtime_error("cannot refine"); }) ==
+        "the refiner: cannot refine");
+}
 
 TEST_CASE("children follow the contract of Refinement", "[hierarchy]") {
   const Level coarse = Level::of(0, grid({2, 1}, 4, 3, Diagonals::criss_cross));

@@ -85,7 +85,46 @@ class Traced : public ContactModel, public Rebindable {
   }
 };
 
+/// Binds to this, or throws without it.
+struct Binding : Energy {
+  std::unique_ptr<BoundEnergy> (*make)();
+  explicit Binding(std::unique_ptr<BoundEnergy> (*make)()) : make(make) {}
+  EnergyRole role() const override { return EnergyRole::external; }
+  std::unique_ptr<BoundEnergy> bind(const Level&, const Material&) const override { return make(); }
+};
+
+/// ½ Σ z², which is not linear, without elements.
+struct NotLinear : BoundEnergy {
+  double value(const Positions& x) const override { return 0.5 * x.col(2).squaredNorm(); }
+  double add_gradient(const Positions& x, Positions& g) const override {
+    g.col(2) += x.col(2);
+    return value(x);
+  }
+  Stencils stencils() const override { return Stencils(0, 1); }
+  void add_hessian(const Positions&, Projection, BlockSink&) const override {}
+};
+
 }  // namespace
+
+TEST_CASE("an energy that cannot be bound, or is not what it says, is refused by name", "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const auto refusal = [&](std::unique_ptr<BoundEnergy> (*make)()) -> std::string {
+    try {
+      const LevelModel model(
+          level, Material(),
+          {{"slope", std::make_shared<Slope>(2, 0)}, {"wind", std::make_shared<Binding>(make)}}, {});
+      return "";
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { return nullptr; }) ==
+        "energy wind: bind returned null; return an object, which may have no elements");
+  CHECK(refusal([]() -> std::unique_ptr<BoundEnergy> { throw std::runtime_error("cannot bind"); }) ==
+        "energy wind: cannot bind");
+  CHECK_THAT(refusal([]() -> std::unique_ptr<BoundEnergy> { return std::make_unique<NotLinear>(); }),
+             Catch::Matchers::StartsWith("energy wind has no elements, so it counts as linear, but"));
+}
 
 TEST_CASE("linear energies are evaluated together, and limits apart", "[level_model]") {
   const Level level = Level::of(0, grid({2, 1}, 150, 100, Diagonals::one_way));

@@ -110,6 +110,55 @@ TEST_CASE("a name can be registered once") {
                     " rename it or take one of them out of the search path");
 }
 
+namespace {
+
+/// A refiner with one parameter, declared with or without a fault.
+template <int fault>
+struct Declared final : Refiner {
+  struct Parameters {
+    int size = 1;
+    std::string word = "some";
+    std::vector<double> list = {1, 2, 3};
+    static void declare(Declaration<Parameters>& d) {
+      d.add("size", &Parameters::size).at_least(fault == 1 ? 5 : 0);
+      auto word = d.add(fault == 2 ? "my word" : fault == 3 ? "type" : "word", &Parameters::word);
+      if (fault == 4) word.choices({"none", "all"});
+      auto list = d.add("list", &Parameters::list);
+      if (fault == 5) list.size(2);
+    }
+  };
+  explicit Declared(const Parameters&) {}
+  Refinement refine(const Level&) const override { return {}; }
+};
+
+template <int fault>
+std::string refusal(const std::string& name = "declared") {
+  Registry registry;
+  registry.current_library = "lib.so";
+  try {
+    registry.add<Refiner, Declared<fault>>(name, "One sentence.");
+    return "";
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a declaration whose saved config could not be read again is refused") {
+  const std::string who = "lib.so: refiner declared: ";
+  CHECK(refusal<0>().empty());
+  CHECK(refusal<1>() ==
+        who + "the default of parameter \"size\" is refused: \"size\" must be at least 5, not 1");
+  CHECK_THAT(refusal<2>(), Catch::Matchers::StartsWith(who + "parameter \"my word\" needs another name"));
+  CHECK_THAT(refusal<3>(), Catch::Matchers::StartsWith(who + "parameter \"type\" needs another name"));
+  CHECK_THAT(refusal<4>(), Catch::Matchers::StartsWith(who + "the default of parameter \"word\" is refused"));
+  CHECK_THAT(refusal<5>(), Catch::Matchers::StartsWith(who + "the default of parameter \"list\" is refused"));
+  for (const char* name : {"my refiner", "my.refiner", "Mine"})
+    CHECK(refusal<0>(name) == "lib.so: the name of refiner \"" + std::string(name) +
+                                  "\" must be lower case, digits and underscores");
+}
+
 TEST_CASE("a node makes the object it names, with its parameters") {
   const Registry registry = filled();
   ConfigErrors errors;
@@ -133,7 +182,9 @@ TEST_CASE("a node makes the object it names, with its parameters") {
 TEST_CASE("faults of a node are reported with their location") {
   CHECK(refiner_fault("lopo") ==
         "a.yaml:1:4: unknown refiner \"lopo\"; did you mean \"loop\"? known: linear, loop");
-  CHECK(refiner_fault("butterfly") == "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop");
+  CHECK(refiner_fault("butterfly") ==
+        "a.yaml:1:4: unknown refiner \"butterfly\"; known: linear, loop; a plugin of your own is "
+        "found by DRAPE_PLUGIN_PATH");
   CHECK(refiner_fault("{corner_angle: 3}") ==
         "a.yaml:1:4: expected the name of a plugin of kind refiner, or a map with its name as \"type\"");
   CHECK(refiner_fault("[loop]") ==
@@ -152,7 +203,9 @@ TEST_CASE("faults of a node are reported with their location") {
   ConfigErrors errors;
   CHECK_FALSE(make_from<Refiner>(Registry(), node_of("loop"), errors));
   REQUIRE(errors.size() == 1);
-  CHECK(errors[0].text() == "a.yaml:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded");
+  CHECK(errors[0].text() ==
+        "a.yaml:1:4: unknown refiner \"loop\"; no plugin of that kind is loaded; a plugin of your own "
+        "is found by DRAPE_PLUGIN_PATH");
 }
 
 TEST_CASE("an entry describes itself for the terminal and for the reference page") {

@@ -60,6 +60,7 @@ std::string fault(const std::vector<NamedEnergy>& energies, const Positions& sta
   Observer observer;
   const LevelResult r = minimise(objective, start, NewtonParameters(), {Stopwatch(), observer});
   CHECK(r.outcome == Outcome::infeasible);
+  CHECK_FALSE(std::isfinite(r.force_residual));
   const std::string first = "energy or forces at the start are not finite: ";
   REQUIRE(r.message.starts_with(first));
   return r.message.substr(first.size());

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/app/files/json_file.h"
@@ -115,6 +117,60 @@ std::vector<DeclaredMetric> declared_metrics(
   for (const auto& [name, metric] : metrics)
     add_new(declared, {DeclaredMetric{name, metric->scope(), metric->declaration()}});
   return declared;
+}
+
+void check_declarations(const std::vector<DeclaredMetric>& metrics, const Location& where,
+                        ConfigErrors& errors) {
+  // Keys of a level and of a pair of levels. The metric `energy` measures what the first has under its names.
+  static const std::set<std::string> of_level = {"level",
+                                                 "vertices",
+                                                 "triangles",
+                                                 "status",
+                                                 "message",
+                                                 "steps",
+                                                 "newton_iterations",
+                                                 "from_initial_state",
+                                                 "factorisations",
+                                                 "flops",
+                                                 "analyses",
+                                                 "seconds",
+                                                 "seconds_by_phase",
+                                                 "energy",
+                                                 "energy_parts",
+                                                 "energy_on_finest",
+                                                 "decrement",
+                                                 "force_residual",
+                                                 "intersections",
+                                                 "smallest_gap",
+                                                 "mesh",
+                                                 "mesh_checksum",
+                                                 "snapshots",
+                                                 "not_measured"};
+  static const std::set<std::string> of_pair = {"coarse",          "fine",     "fields",
+                                                "fields_checksum", "of_start", "not_measured"};
+  std::map<std::pair<MetricScope, std::string>, std::string> owners;
+  for (const DeclaredMetric& metric : metrics) {
+    const auto refuse = [&](const std::string& what) {
+      errors.push_back({where, "metric " + metric.name + ": " + what});
+    };
+    const std::set<std::string>& taken = metric.scope == MetricScope::state ? of_level : of_pair;
+    for (const MetricColumn& column : metric.declaration.columns) {
+      const std::string value = "the value \"" + column.name + "\"",
+                        first = column.name.substr(0, column.name.find('.'));
+      const auto [owner, is_new] = owners.insert({{metric.scope, column.name}, metric.name});
+      if (column.name.empty())
+        refuse("a value needs a name");
+      else if (taken.contains(first) && metric.name != "energy")
+        refuse(value + " needs another name: results.json has a key \"" + first + "\" of its own");
+      else if (!is_new)
+        refuse(value + (owner->second == metric.name ? " is declared twice"
+                                                     : " is declared by metric " + owner->second + " too"));
+    }
+    for (const MetricPicture& picture : metric.declaration.pictures)
+      if (picture.name.size() > longest_picture_name)
+        refuse("the name of picture \"" + picture.name + "\" is longer than " +
+               std::to_string(longest_picture_name) + " bytes");
+  }
 }
 
 Json json_of(const std::vector<DeclaredMetric>& metrics) {

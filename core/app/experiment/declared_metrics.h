@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/kernel/model/metric.h"
+#include "core/kernel/plugin/config_node.h"
 
 namespace drape {
 
@@ -20,6 +21,11 @@ struct DeclaredMetric {
 /// The declarations of an experiment's metrics. Of two metrics with one name, the first counts.
 std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics);
+
+/// Appends an error for every value of a metric whose name is empty, declared by two metrics or taken by
+/// results.json itself, and for every picture whose name is too long.
+void check_declarations(const std::vector<DeclaredMetric>& metrics, const Location& where,
+                        ConfigErrors& errors);
 
 /// The declarations for results.json: an object by the metrics' names.
 nlohmann::ordered_json json_of(const std::vector<DeclaredMetric>& metrics);

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/app/experiment/contact_configs.h"
+#include "core/app/experiment/declared_metrics.h"
 #include "core/app/experiment/method_choice.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
@@ -57,11 +58,21 @@ class PluginMaker {
         e_.parameters.metrics.push_back(scalar_node(entry->name));
     for (const ConfigNode& node : e_.parameters.metrics)
       if (auto metric = make<Metric>(node, metrics)) e_.metrics.emplace_back(name_of(node), metric);
+    check_metrics();
     set("metrics", metrics);
     make_methods();
   }
 
  private:
+  void check_metrics() {
+    const Location where = e_.location_of("metrics");
+    try {
+      check_declarations(declared_metrics(e_.metrics), where, errors_);
+    } catch (const std::exception& error) {
+      errors_.push_back({where, "a metric's declaration: " + reason_of(error)});
+    }
+  }
+
   static std::string name_of(const ConfigNode& node) {
     const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
     return type ? type->scalar : "";

@@ -76,6 +76,40 @@ void check_plugins(const Experiment& e, const ExperimentParameters& changed, Con
     make_from<ContactModel>(*e.registry, contacts[k].node, errors, nullptr, e.contacts[k].get());
 }
 
+/// A key's path with indices in place of names, so that paths of one parameter are equal.
+std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
+  std::vector<std::string> words = words_of(path);
+  const ConfigNode* node = &config;
+  for (std::string& word : words) {
+    if (!node) break;
+    if (node->kind == NodeKind::list) {
+      const auto index = node->index_of(word);
+      if (index) word = std::to_string(*index);
+      node = index ? &node->items[*index] : nullptr;
+    } else {
+      node = node->find(word);
+    }
+  }
+  return words;
+}
+
+/// Appends an error for every key that sets what an earlier one sets.
+void refuse_repeated_keys(const Experiment& e, ConfigErrors& errors) {
+  const std::vector<KeyParameters>& keys = e.parameters.schedule.keys;
+  std::vector<std::vector<std::string>> paths;
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    paths.push_back(indexed_path(e.resolved, keys[k].parameter));
+    for (std::size_t j = 0; j < k; ++j)
+      if (std::equal(
+              paths[j].begin(),
+              paths[j].begin() + static_cast<std::ptrdiff_t>(std::min(paths[j].size(), paths[k].size())),
+              paths[k].begin()))
+        errors.push_back({e.source.find("schedule")->find("keys")->items[k].where,
+                          "key \"" + excerpt(keys[k].parameter) + "\" sets what key \"" +
+                              excerpt(keys[j].parameter) + "\" sets; remove one of them"});
+  }
+}
+
 /// The values of a key, and one between each two that differ: increments set such values too, also where a
 /// step of a key has to be made in parts. None is a round fraction, which an integer might take.
 std::vector<ConfigNode> with_values_between(const KeyParameters& key) {
@@ -177,6 +211,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
           break;
         }
   }
+  if (errors.empty()) refuse_repeated_keys(e, errors);
   if (!errors.empty() || p.keys.empty()) return;
   static const Schema schema = schema_of<ExperimentParameters>();
   // Every keyed value, and one between each two, as its parameter would take it from the file.

@@ -130,8 +130,7 @@ void bind_experiment(py::module_& m) {
            py::arg("source"))
       .def("set", &ExperimentHandle::set, py::arg("key"), py::arg("value"),
            "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises "
-           "ConfigError "
-           "if the path does not exist. The value itself is checked by `check` and `run`.")
+           "ConfigError for a path that is none. The key and the value are checked by `check` and `run`.")
       .def(
           "check", [](const ExperimentHandle& e, bool allow_memory) { e.scene(allow_memory); },
           py::arg("allow_memory") = false,
@@ -144,7 +143,8 @@ void bind_experiment(py::module_& m) {
       .def_property_readonly("methods",
                              [](const ExperimentHandle& e) {
                                std::vector<std::string> names;
-                               for (const auto& [name, solver] : e.read()->methods) names.push_back(name);
+                               const auto experiment = e.read();  // which lives through the loop
+                               for (const auto& [name, solver] : experiment->methods) names.push_back(name);
                                return names;
                              })
       .def("scene", &ExperimentHandle::scene, py::arg("allow_memory") = false,

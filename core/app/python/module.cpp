@@ -4,6 +4,8 @@
 
 #include <pybind11/stl.h>
 
+#include <set>
+
 #include "core/app/python/registry.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/plugin/abi.h"
@@ -27,12 +29,21 @@ PYBIND11_MODULE(_core, m) {
   require_fitting_library();
   m.attr("__version__") = version();
   m.attr("__commit__") = commit();
-  m.def("set_threads", &set_thread_count, pybind11::arg("count"),
-        "Set the number of threads of the process; 0 means one for each core.");
+  m.def(
+      "set_threads",
+      [](int count) {
+        if (count < 0) throw pybind11::value_error("the number of threads must be at least 0");
+        set_thread_count(count);
+      },
+      pybind11::arg("count"), "Set the number of threads of the process; 0 means one for each core.");
   m.def(
       "plugins",
       [](const std::string& kind) {
         std::vector<std::pair<std::string, std::string>> names;
+        const std::set<std::string> kinds = {"energy", "refiner", "contact", "solver", "metric"};
+        if (!kinds.contains(kind))
+          throw pybind11::value_error("there is no kind \"" + kind +
+                                      "\"; the kinds are energy, refiner, contact, solver and metric");
         for (const RegistryEntry* entry : python::registry().of_kind(kind))
           names.emplace_back(entry->name, entry->summary);
         return names;

@@ -131,4 +131,10 @@ void Progress::method_failed(int level, const std::string& cause) {
                printable(cause).c_str());
 }
 
+void Progress::not_measured(const std::string& metric, const std::string& cause) {
+  if (verbosity_ == Verbosity::quiet) return;
+  clear_line();
+  std::fprintf(stderr, "metric %s was not measured: %s\n", metric.c_str(), printable(cause).c_str());
+}
+
 }  // namespace drape

@@ -27,6 +27,7 @@ class Progress : public Observer {
   void iteration(const IterationRow& row, const Positions& x) override;
   void level_finished(const LevelResult& result) override;
   void method_failed(int level, const std::string& cause);
+  void not_measured(const std::string& metric, const std::string& cause);
 
   /// The line with the bar after an iteration.
   std::string line(const IterationRow& row) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -76,6 +77,8 @@ class Recorder : public Observer {
 
   /// Whether no checked state had an intersection.
   bool intersection_free() const { return intersection_free_; }
+  /// The metrics that have thrown, with the first cause of each.
+  const std::map<std::string, std::string>& not_measured() const { return not_measured_; }
 
  private:
   using Json = nlohmann::ordered_json;
@@ -122,6 +125,7 @@ class Recorder : public Observer {
   std::ofstream steps_, log_;
   Json results_;
   std::string method_;
+  std::map<std::string, std::string> not_measured_;
   bool intersection_free_ = true, method_intersection_free_ = true;
   std::vector<RecordedState> states_;  // all levels so far
   std::vector<std::string> restored_;

@@ -31,13 +31,18 @@ std::string Recorder::fields_bytes(int level, const Positions& x, const VertexFi
 
 MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
                                Json& entry) {
+  std::string cause;
   try {
     return metric.evaluate(input);
   } catch (const std::exception& error) {
-    entry["not_measured"][name] = error.what();
-    log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", error.what()}});
-    return {};
+    cause = error.what();
+  } catch (...) {
+    cause = "an exception that is no std::exception";
   }
+  not_measured_.emplace(name, cause);
+  entry["not_measured"][name] = cause;
+  log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", cause}});
+  return {};
 }
 
 Recorder::Json Recorder::compare(int level, const Positions& x, const Positions& other,
@@ -47,7 +52,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
         measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
-    for (const MetricValue& v : result.values) row[v.name] = finite_or_null(v.value);
+    for (const MetricValue& v : result.values) at_dotted(row, v.name) = finite_or_null(v.value);
     if (!fields) continue;
     for (const MetricField& f : result.fields) fields->push_back({f.name, f.values});
   }

@@ -228,6 +228,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   }
   UnrecordedObserver unrecorded(progress, observer);
   const bool measured = recorder.measure_errors(unrecorded, cancelled);
+  for (const auto& [metric, cause] : recorder.not_measured()) progress.not_measured(metric, cause);
   const bool complete = !cancelled && measured;
   recorder.run_finished(complete);
   if (complete) remove_checkpoints(folder.path());

@@ -98,24 +98,27 @@ class LocalEngine {
       running_.erase(r++);
       if (status.has_results()) memory_.learn(run, folder_.files(run.folder));
       ++ended_;
-      failed_ += status.state == RunState::failed;
+      failed_ += status.state == RunState::failed && !refused_as_expected(run, status);
       folder_.refresh();
       tell(run, status);
     }
   }
 
   void tell(const SweepRun& run, const RunStatus& status) const {
-    if (options_.quiet && status.state != RunState::failed) return;
+    const bool expected = refused_as_expected(run, status),
+               failed = status.state == RunState::failed && !expected;
+    if (options_.quiet && !failed) return;
     std::string line = "[" + std::to_string(had_ + ended_) + "/" + std::to_string(sweep_.runs.size()) + "] " +
-                       run.name + ", seed " + std::to_string(run.seed) + ": " + to_string(status.state) +
-                       " after " + duration_text(status.seconds);
+                       run.name + ", seed " + std::to_string(run.seed) + ": " +
+                       (expected ? "refused, as expected," : to_string(status.state)) + " after " +
+                       duration_text(status.seconds);
     if (failed_) line += "; " + std::to_string(failed_) + " failed";
     const std::size_t rest = to_run_ - ended_;
     if (rest > 0 && !stopping_)
       line += "; " + std::to_string(rest) + " to go, about " +
               duration_text(clock_.seconds() / double(ended_) * double(rest));
     std::fprintf(stderr, "%s\n", line.c_str());
-    if (status.state == RunState::failed) std::fprintf(stderr, "%s\n", status.error.c_str());
+    if (failed) std::fprintf(stderr, "%s\n", status.error.c_str());
   }
 
   const Sweep& sweep_;

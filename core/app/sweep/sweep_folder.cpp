@@ -120,6 +120,7 @@ std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_fai
   std::vector<std::size_t> indices;
   for (std::size_t k = 0; k < sweep.runs.size(); ++k) {
     const RunStatus status = read_status(files(sweep.runs[k].folder));
+    if (refused_as_expected(sweep.runs[k], status)) continue;
     if (!status.has_results() && (retry_failed || status.state != RunState::failed)) indices.push_back(k);
   }
   return indices;

@@ -21,7 +21,7 @@ class SweepFolder {
   /// and sweep.json. Throws std::runtime_error for a folder with other contents, with runs of a different
   /// experiment or number of threads. Only under a FolderLock.
   void prepare(const Sweep& sweep, int threads) const;
-  /// Indices of the runs without results; failed ones only with `retry_failed`.
+  /// Indices of the runs without results; failed ones only with `retry_failed`, expected refusals never.
   std::vector<std::size_t> missing(const Sweep& sweep, bool retry_failed) const;
   /// Writes sweep.json again with every run's status, and returns it.
   nlohmann::ordered_json refresh() const;
@@ -34,6 +34,11 @@ class SweepFolder {
   void refuse_other_runs(const Sweep& sweep, int threads) const;
   std::filesystem::path path_;
 };
+
+/// Whether a run was refused before any computation, as its sweep expects.
+inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
+  return status.refused() && run.expect.outcome == "refused";
+}
 
 /// Locks a sweep's folder for one process and its runs.
 class FolderLock {

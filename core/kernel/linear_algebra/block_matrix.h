@@ -69,7 +69,8 @@ class BlockSink {
     return part;
   }
 
-  /// Adds `h` (row-major 3×3, element rows of local vertex a, columns of b) for the pair a ≤ b.
+  /// Adds the element's 3×3 block h, row-major, whose rows belong to its vertex a and whose columns belong to
+  /// its vertex b. Only pairs a ≤ b are given: the other half follows by symmetry. Nothing is checked.
   void add(int element, int a, int b, const double* h) {
     const int slot = slots_[static_cast<std::size_t>(element) * pairs_ + b * (b + 1) / 2 + a];
     if (slot >= 0) {

@@ -2,13 +2,27 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 namespace drape {
 
+namespace {
+
+template <class T>
+std::unique_ptr<T> required(std::unique_ptr<T> made, const char* by) {
+  if (!made)
+    throw std::runtime_error(std::string("a contact model's ") + by +
+                             " returned null; return an object, which may have no contacts");
+  return made;
+}
+
+}  // namespace
+
 void ActiveContacts::build_candidates(const Positions& x0, const Positions& x1) {
   candidates_.clear();
-  for (const auto& model : models_) candidates_.push_back(model->build_candidates(x0, x1));
+  for (const auto& model : models_)
+    candidates_.push_back(required(model->build_candidates(x0, x1), "build_candidates"));
   candidates_motion_ = std::make_shared<const PositionPair>(PositionPair{x0, x1});
 }
 
@@ -17,7 +31,8 @@ void ActiveContacts::build_collisions(const Positions& x) {
   if (candidates_.empty()) build_candidates(x, x);
   const Stopwatch watch;
   collisions_.clear();
-  for (const auto& candidates : candidates_) collisions_.push_back(candidates->build_collisions(x));
+  for (const auto& candidates : candidates_)
+    collisions_.push_back(required(candidates->build_collisions(x), "build_collisions"));
   seconds_building_ += watch.seconds();
   state_ = x;
   collisions_motion_ = candidates_motion_;

@@ -19,7 +19,7 @@ struct DerivativeCheck {
 
 /// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
 /// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not
-/// finite near x.
+/// finite near x, if add_gradient does not add, or if it returns another number than value().
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
 
 }  // namespace drape

@@ -100,7 +100,8 @@ class Energy {
   virtual EnergyRole role() const = 0;
   /// Factor on the energy if every triangle, at rest and deformed, is split into four at its edge midpoints:
   /// 1 for energies of the surface itself; 2 for folds at edges, because each half edge has a quarter of the
-  /// adjacent area. None if no factor holds for all states.
+  /// adjacent area. None if no factor holds for all states: PCS then evaluates all energies of this role on
+  /// the finest mesh while it solves a coarse level.
   virtual std::optional<double> midpoint_factor() const { return std::nullopt; }
   /// Copies what it needs: level and material need not outlive the result.
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;

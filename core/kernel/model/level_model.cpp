@@ -21,6 +21,17 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
   return std::sqrt(sum);
 }
 
+/// What `bind` returns; an exception's message begins with the name of what was bound.
+template <class Bind>
+auto bound(const std::string& name, const Bind& bind)
+    -> std::shared_ptr<const typename decltype(bind())::element_type> {
+  try {
+    return bind();
+  } catch (const std::exception& error) {
+    throw std::runtime_error(name + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
@@ -60,7 +71,11 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
     if (old && old->kind == e.energy && before->material_ == material_) {
       terms_.push_back(*old);
     } else {
-      Term term{unused_name(e.name), e.energy->role(), e.energy, e.energy->bind(*level_, material_), nullptr};
+      Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
+      term.energy = bound("energy " + term.name, [&] { return e.energy->bind(*level_, material_); });
+      if (!term.energy)
+        throw std::runtime_error("energy " + term.name +
+                                 ": bind returned null; return an object, which may have no elements");
       Stencils own = term.energy->stencils();
       if (old && own != old->energy->stencils())
         throw std::runtime_error("energy " + term.name +
@@ -88,12 +103,17 @@ void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>&
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const BoundContact* old = before ? before->bound_.at(k).get() : nullptr;
     const auto* rebindable = old ? dynamic_cast<const Rebindable*>(contacts[k].get()) : nullptr;
+    const std::string name = "contact model " + std::to_string(k);
     if (before && before->contact_kinds_[k] == contacts[k] && before->material_ == material_)
       bound_.push_back(before->bound_[k]);
     else if (rebindable)
-      bound_.push_back(rebindable->rebind(*level_, material_, *old));
+      bound_.push_back(bound(name, [&] { return rebindable->rebind(*level_, material_, *old); }));
     else
-      bound_.push_back(contacts[k]->bind(*level_, material_));
+      bound_.push_back(bound(name, [&] { return contacts[k]->bind(*level_, material_); }));
+    if (before && (old == nullptr) != (bound_.back() == nullptr))
+      throw std::runtime_error(name +
+                               " has contacts under one load of the schedule and none under another; it "
+                               "must bind to an object under all, which may be far from the cloth");
     if (bound_.back()) contacts_.push_back(bound_.back());
   }
 }
@@ -112,7 +132,21 @@ void LevelModel::add_up_linear_energies() {
             ": its forces are too large to be computed with; are its parameters and the density in SI units? "
             "(An energy without elements is linear, and must be finite where all vertices are at the "
             "origin.)");
+      require_constant_forces(term.name, *term.energy);
     }
+}
+
+/// An energy without elements counts as linear: its forces are evaluated once.
+void LevelModel::require_constant_forces(const std::string& name, const BoundEnergy& energy) const {
+  Positions at_origin = Positions::Zero(level_->vertex_count(), 3), elsewhere = at_origin;
+  energy.add_gradient(elsewhere, at_origin);
+  const Positions x = (1.1 * level_->rest.vertices).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0.3);
+  energy.add_gradient(x, elsewhere);
+  const double scale = at_origin.cwiseAbs().maxCoeff();
+  if (!((elsewhere - at_origin).cwiseAbs().maxCoeff() <= 1e-9 * scale))
+    throw std::runtime_error("energy " + name +
+                             " has no elements, so it counts as linear, but its forces depend on the "
+                             "positions; return its elements from stencils()");
 }
 
 double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {

@@ -117,6 +117,7 @@ class LevelModel {
   double external_force_norm(const Positions& x) const;
   double barrier(const Positions& x) const;  // of the contacts [J]
   void add_up_linear_energies();
+  void require_constant_forces(const std::string& name, const BoundEnergy& energy) const;
   /// The value of the linear energies of these roles [J]. Overwrites g, unless it is null, with their
   /// gradient.
   double linear_value(const Positions& x, Positions* g, Roles roles) const;

@@ -18,9 +18,10 @@ struct MetricValue {
   double value = 0;
 };
 
-/// One scalar for each vertex of the fine level, for pictures.
+/// One scalar for each vertex of the level. Those of pairs are written to fields/, for pictures; those of
+/// states are for callers of the library.
 struct MetricField {
-  std::string name;
+  std::string name;  ///< letters, digits and underscores, other than x, y and z
   Eigen::VectorXd values;
   std::string unit;
 };
@@ -51,8 +52,9 @@ class Metric {
   virtual MetricScope scope() const = 0;
   /// How reports show the values and fields.
   virtual MetricDeclaration declaration() const = 0;
-  /// Checks the states, then measures them. Throws std::runtime_error if a pair's second state is missing, or
-  /// if a state has another number of vertices than the level or is not finite.
+  /// Checks the states, measures them and checks the result. Throws std::runtime_error if a pair's second
+  /// state is missing, if a state has another number of vertices than the level or is not finite, or if a
+  /// value is not declared, two values have one name, or a field has another length than the level.
   MetricResult evaluate(const MetricInput& input) const;
 
  private:

@@ -23,6 +23,32 @@ Schema section_schema(const RegistryEntry& entry) {
   return schema;
 }
 
+namespace {
+
+bool is_name(const std::string& name) {
+  constexpr const char* letters = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  return !name.empty() && name[0] >= 'a' && name[0] <= 'z' &&
+         name.find_first_not_of(letters) == std::string::npos;
+}
+
+/// The fault of a declaration with which a saved config could not be read again; empty if there is none.
+std::string fault_of(const Schema& schema) {
+  const std::shared_ptr<void> defaults = schema.fresh(), read = schema.fresh();
+  for (const Parameter& p : schema.parameters) {
+    if (!is_name(p.name) || p.name == "type")
+      return "parameter \"" + p.name +
+             "\" needs another name: lower case, digits and underscores, and not type";
+    if (p.required) continue;
+    ConfigErrors errors;
+    read_parameter(p, read.get(), p.write(defaults.get()), errors);
+    if (!errors.empty())
+      return "the default of parameter \"" + p.name + "\" is refused: " + errors[0].message;
+  }
+  return "";
+}
+
+}  // namespace
+
 const RegistryEntry* Registry::find(const std::string& kind, const std::string& name) const {
   for (const auto& entry : entries_)
     if (entry->kind == kind && entry->name == name) return entry.get();
@@ -41,6 +67,11 @@ void Registry::add_entry(std::unique_ptr<RegistryEntry> entry) {
   if (entry->name.empty())
     throw std::runtime_error(entry->library + ": registers a " + entry->kind +
                              " without a name; give it one");
+  if (!is_name(entry->name))
+    throw std::runtime_error(entry->library + ": the name of " + entry->kind + " \"" + entry->name +
+                             "\" must be lower case, digits and underscores");
+  if (const std::string fault = fault_of(entry->schema); !fault.empty())
+    throw std::runtime_error(entry->library + ": " + entry->kind + " " + entry->name + ": " + fault);
   if (const RegistryEntry* other = find(entry->kind, entry->name))
     throw std::runtime_error(entry->kind + " \"" + entry->name + "\" of " + entry->library +
                              " is already registered by " + other->library +
@@ -73,7 +104,8 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
   errors.push_back(
       {type->where, "unknown " + kind + " \"" + excerpt(type->scalar) + "\"; " +
                         (nearest.empty() ? "" : "did you mean \"" + nearest + "\"? ") +
-                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names))});
+                        (names.empty() ? "no plugin of that kind is loaded" : "known: " + joined(names)) +
+                        (nearest.empty() ? "; a plugin of your own is found by DRAPE_PLUGIN_PATH" : "")});
   return nullptr;
 }
 

@@ -1,6 +1,7 @@
 #include "core/kernel/solve/newton.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/kernel/files/message_text.h"
@@ -82,8 +83,11 @@ class Newton {
   bool begin() {
     f_.contacts().begin_step(iterate_.x());
     iterate_.evaluate();
-    if (std::isfinite(iterate_.energy())) iterate_.update_residual();
-    if (!std::isfinite(iterate_.energy()) || !std::isfinite(iterate_.force_residual())) return false;
+    if (std::isfinite(iterate_.energy()))
+      iterate_.update_residual();
+    else
+      result_.force_residual = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(iterate_.force_residual())) return false;
     predictor_.enforce();
     check_.restart_drift();  // what pins carry along has not drifted
     return true;

@@ -3,7 +3,7 @@
 
 namespace {
 
-/// How high and how low a state reaches, and the height at each vertex for a picture.
+/// How high and how low a state reaches.
 class Height : public drape::Metric {
  public:
   struct Parameters {
@@ -24,7 +24,7 @@ class Height : public drape::Metric {
  private:
   drape::MetricResult measure(const drape::MetricInput& input) const override {
     const auto z = input.x.col(2);
-    return {{{"lowest", z.minCoeff()}, {"highest", z.maxCoeff()}}, {{"height", z, "m"}}};
+    return {{{"lowest", z.minCoeff()}, {"highest", z.maxCoeff()}}, {}};
   }
 };
 
