@@ -229,25 +229,26 @@ TEST_CASE("values out of range or of the wrong type") {
 }
 
 TEST_CASE("unknown plugins of every kind") {
+  const std::string own = "; a plugin of your own is found by DRAPE_PLUGIN_PATH\n",
+                    energies =
+                        "known: constant_load, gravity, hinge, midedge_bending, neo_hookean, pressure, "
+                        "quadratic_bending, strain_limit, stvk";
   CHECK(said_of_edit("hinge,", "springs,") ==
-        "error: e.yaml:8:25: unknown energy \"springs\"; known: constant_load, gravity, hinge, "
-        "midedge_bending, "
-        "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n");
-  CHECK(
-      said_of_edit("hinge,", "hinje,") ==
-      "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, gravity, "
-      "hinge, midedge_bending, neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n");
+        "error: e.yaml:8:25: unknown energy \"springs\"; " + energies + own);
+  CHECK(said_of_edit("hinge,", "hinje,") ==
+        "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? " + energies + "\n");
   CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
-        "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint\n");
+        "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own);
   CHECK(said_of_edit("levels: 2", "contact: glue") ==
-        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, none, shapes\n");
+        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, none, shapes" + own);
   CHECK(said_of_edit("levels: 2", "contact: [ipc, glue]") ==
-        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, none, shapes\n");
+        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, none, shapes" + own);
   CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
         "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
-        "energy_above_end, residuals, silhouette, stretch\n");
+        "energy_above_end, residuals, silhouette, stretch" +
+            own);
   CHECK(said_of_edit("  cascadic: {}", "  fast: {type: multigrid}") ==
-        "error: e.yaml:12:16: unknown solver \"multigrid\"; known: cascadic, newton, pcs\n");
+        "error: e.yaml:12:16: unknown solver \"multigrid\"; known: cascadic, newton, pcs" + own);
   CHECK(said_of_edit("  cascadic: {}", "  psc: {depth: 2}") ==
         "error: e.yaml:12:8: unknown solver \"psc\"; did you mean \"pcs\"? known: cascadic, newton, pcs\n");
   CHECK(said_of_edit("hinge,", "{acceleration: 1},") ==
@@ -472,8 +473,7 @@ TEST_CASE("two keys of a schedule may not set one parameter") {
   const std::string z = "energies.gravity.acceleration.2";
   for (const std::string first : {"energies.2.acceleration.2", "energies.gravity.acceleration"})
     CHECK(said(first, z) ==
-          "error: e.yaml:16:3: key \"" + z + "\" sets what key \"" + first + "\" sets; remove one of them\n");
-  CHECK_THAT(said("energies.gravity.acceleration.1", z), !Catch::Matchers::Contains("sets what key"));
+          "error: e.yaml:17:3: key \"" + z + "\" sets what key \"" + first + "\" sets; remove one of them\n");
 }
 
 TEST_CASE("a schedule may not change an integer, whose values between are none") {

@@ -256,3 +256,35 @@ methods: {newton: {}}
              Catch::Contains("cannot be completed") && Catch::Contains("lid: box"));
   CHECK(closing_increments.intersections == 0);
 }
+
+TEST_CASE("An obstacle whose target touches held cloth is named, and soon") {
+  for (const std::string plate : {"shape: box, size", "meshed_shape: box, size"}) {
+    INFO(plate);
+    Solved s = scene_from(R"(name: touched
+cloth: {shape: square, side: 0.2, columns: 8, rows: 8}
+levels: 1
+energies: [neo_hookean, hinge, gravity]
+pins:
+  - {region: nearest, point: [0, 0, 0]}
+  - {region: nearest, point: [0.2, 0, 0]}
+  - {region: nearest, point: [0, 0.2, 0]}
+  - {region: nearest, point: [0.2, 0.2, 0]}
+contact: [{type: ipc, self_contact: false}, shapes]
+obstacles: [{name: plate, )" +
+                          plate + R"(: [1, 1, 0.1], translate: [0, 0, -0.2]}]
+methods: {newton: {newton: {max_steps: 500}}}
+schedule:
+  steps: 4
+  equilibrate: true
+  keys: [{parameter: obstacles.plate.translate, times: [0, 1], values: [[0, 0, -0.2], [0, 0, -0.05]]}]
+)");
+    Increments increments(s);
+    run(s, increments);
+    CHECK(s.levels[0].outcome == Outcome::infeasible);
+    CHECK_THAT(s.levels[0].message,
+               Catch::Contains("the increment to pseudo-time 1 cannot be completed") &&
+                   Catch::Contains("plate") &&
+                   Catch::EndsWith(" m: at its target the obstacle touches or crosses the cloth"));
+    CHECK(increments.intersections == 0);
+  }
+}

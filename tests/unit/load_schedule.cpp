@@ -1,6 +1,7 @@
 #include "core/app/experiment/load_schedule.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/app/experiment/schedule_stepping.h"
 #include "tests/support/solve.h"
@@ -148,6 +149,25 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
   CHECK(stepping.increment() == 3);
   CHECK(figures_of(*stepping.model(0)) == at_third);
   CHECK(figures_of(*stepping.model(1)) == expected(3, 1));
+}
+
+TEST_CASE("A fraction of an increment that no number expresses counts as none") {
+  const Solved s = scene_from(two_levels);
+  LoadStepping& stepping = *s.scene->schedule;
+  stepping.begin(0, true);
+  REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
+  LoadSteppingState near = stepping.state();
+  near.increment = 2;
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  near.values = schedule.values(2);
+  double& last = near.values.back();  // the ball's height
+  last = std::nextafter(last, -1);
+  stepping.restore(0, near);
+  CHECK_FALSE(stepping.complete());
+  CHECK_FALSE(stepping.advance_by(0.25, 0, s.scene->starts[0]));
+  CHECK(stepping.state().values == near.values);
+  CHECK(stepping.advance_by(1, 0, s.scene->starts[0]));
+  CHECK(stepping.complete());
 }
 
 TEST_CASE("A key is refused before the run if a parameter refuses what increments set between its values") {

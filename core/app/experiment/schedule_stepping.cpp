@@ -78,7 +78,7 @@ StepLimit ScheduleStepping::advance(int level, const Positions& x) {
       limit.fraction = part;
       return limit;
     }
-    limit.by = std::move(allowed.by);
+    if (!allowed.by.empty()) limit.by = std::move(allowed.by);
     part *= allowed.fraction;
   }
   limit.fraction = 0;
@@ -94,6 +94,7 @@ StepLimit ScheduleStepping::try_fraction(double fraction, int level, const Posit
   if (fraction < 1)
     for (std::size_t c = 0; c < values.size(); ++c)
       values[c] = load_->values[c] + fraction * (values[c] - load_->values[c]);
+  if (fraction < 1 && values == load_->values) return {0, {}};  // less than the numbers can express
   const std::shared_ptr<const LoadState> next = load_at(std::move(values));
   const std::shared_ptr<const LevelModel> now = model(level);
   std::shared_ptr<const LevelModel> then = schedule_.model(*next, level, *now);

@@ -148,7 +148,8 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_within_dhat(pair, motion)) return false;
       pair.weight = weight;
-      pair.friction = obstacles.friction_at(other.triangles(t, 0), friction);
+      pair.obstacle = obstacles.body_of(other.triangles(t, 0));
+      pair.friction = obstacles.friction_of(pair.obstacle, friction);
       list.pairs.push_back(pair);
       return true;
     };

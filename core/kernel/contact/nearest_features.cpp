@@ -83,7 +83,7 @@ void FeatureSearch::append(const Vector3d& p, const VertexTriangleCandidate* beg
 
 NearestFeature FeatureSearch::feature(const Vector3d& p, const Term& term) const {
   const Surface& surface = obstacles_.surface;
-  NearestFeature f{{-1, -1, -1}, Vector3d::UnitX(), {}, Vector3d::Zero(), 0, term.coefficient, 0};
+  NearestFeature f{{-1, -1, -1}, Vector3d::UnitX(), {}, Vector3d::Zero(), 0, term.coefficient, 0, 0};
   if (term.kind == Kind::face) {
     for (int k = 0; k < 3; ++k) f.vertices[k] = surface.triangles(term.index, k);
     const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]), c = position(f.vertices[2]);
@@ -113,7 +113,8 @@ NearestFeature FeatureSearch::feature(const Vector3d& p, const Term& term) const
     f.distance = r.norm();
     f.normal = r / f.distance;
   }
-  f.friction = obstacles_.friction_at(f.vertices[0], friction_);
+  f.body = obstacles_.body_of(f.vertices[0]);
+  f.friction = obstacles_.friction_of(f.body, friction_);
   return f;
 }
 

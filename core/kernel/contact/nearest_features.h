@@ -23,6 +23,7 @@ struct NearestFeature {
   double distance;              ///< [m]
   double coefficient;           ///< sum of the coefficients with their nearest point here, never 0
   double friction;              ///< μ
+  int body;                     ///< the obstacle
 
   bool is_face() const { return vertices[2] >= 0; }
 };

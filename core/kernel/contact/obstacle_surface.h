@@ -21,10 +21,8 @@ struct ObstacleSurface {
     const auto next = std::upper_bound(first_vertex.begin(), first_vertex.end(), vertex);
     return static_cast<int>(next - first_vertex.begin()) - 1;
   }
-  /// μ at a vertex: its body's, or the contact model's.
-  double friction_at(int vertex, double of_model) const {
-    return body_friction[body_of(vertex)].value_or(of_model);
-  }
+  /// μ of a body: its own, or the contact model's.
+  double friction_of(int body, double of_model) const { return body_friction[body].value_or(of_model); }
 };
 
 }  // namespace drape

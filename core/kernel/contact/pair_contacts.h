@@ -18,6 +18,7 @@ enum class PairKind : char { point_triangle, edge_edge, point_plane };
 struct ContactPair {
   std::array<int, 4> vertices;
   PairKind kind = PairKind::point_triangle;
+  int obstacle = -1;     ///< index in the contact model; -1 for two primitives of the cloth
   double weight = 0;     ///< area weight of the pair's energy [m²]
   double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
   double mollifier = 0;  ///< edge_edge: ε of the mollifier, |u × v|² [m⁴]

@@ -90,7 +90,8 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
                                {contact.vertex, -1, -1, -1},
                                {1, 0, 0, 0},
                                f.normal,
-                               force});
+                               force,
+                               {f.body, f.vertices, f.weights}});
       }
     }
   }

@@ -74,7 +74,8 @@ class VertexCollisions final : public Collisions, public FrictionalCollisions, p
                              {c.vertex, -1, -1, -1},
                              {1, 0, 0, 0},
                              c.nearest.normal,
-                             c.friction * force(i)});
+                             c.friction * force(i),
+                             {c.obstacle, {-1, -1, -1}, Vector3d::Zero(), c.touched}});
   }
   double friction_smoothing_distance() const override { return p_.friction_smoothing_distance; }
 

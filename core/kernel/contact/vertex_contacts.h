@@ -16,6 +16,7 @@ struct VertexContact {
   double weight;    ///< the vertex's rest area [m²]
   double friction;  ///< μ
   SignedDistance nearest;
+  Eigen::Vector3d touched = Eigen::Vector3d::Zero();  ///< the obstacle's nearest point, if obstacles move [m]
 };
 
 /// The barrier potential κ d̂ Σ weight b(distance / d̂) of these contacts, and their friction. The eigenvectors

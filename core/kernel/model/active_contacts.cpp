@@ -55,15 +55,23 @@ void ActiveContacts::reset() {
   advected_ = false;
 }
 
-void ActiveContacts::store_tangential_displacements(const Positions& x,
-                                                    const std::vector<Positions>* obstacle_motions) {
+ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::size_t model) const {
+  const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[model].get());
+  if (!kinematic || models_[model] == before[model])
+    return [](const ObstaclePoint&) { return Eigen::Vector3d(0, 0, 0); };
+  return [kinematic, &from = *before[model]](const ObstaclePoint& point) {
+    return kinematic->displacement(from, point);
+  };
+}
+
+void ActiveContacts::store_tangential_displacements(const Positions& x, const BoundContacts* before) {
   tangential_displacements_.resize(models_.size());
   for (TangentialDisplacements& displacements : tangential_displacements_) displacements.clear();
   for (std::size_t k = 0; k < friction_.size(); ++k) {
     if (!friction_[k]) continue;
     tangential_displacements_[k] =
-        obstacle_motions ? friction_[k]->advected_tangential_displacements(x, (*obstacle_motions)[k])
-                         : friction_[k]->tangential_displacements(x);
+        before ? friction_[k]->advected_tangential_displacements(x, motion_since(*before, k))
+               : friction_[k]->tangential_displacements(x);
   }
   reference_ = x;
 }
@@ -76,19 +84,14 @@ bool ActiveContacts::has_friction() const {
 void ActiveContacts::update_obstacles(const BoundContacts& models, const Positions& from,
                                       const Positions& x) {
   if (models_ == models) return;
-  if (!advected_ && has_friction()) {
+  if (!advected_ && friction_enabled_) {  // contacts may have formed since friction was lagged
     store_tangential_displacements(from);
     update_lagging(from);
   }
-  // advect() needs the old models, and candidates and collisions may refer to them until they are cleared.
+  // displacement() needs the old models, and candidates and collisions may refer to them until they are
+  // cleared.
   const BoundContacts before = std::exchange(models_, models);
-  // One for each model: a table stays where it is while the plate of another model moves.
-  std::vector<Positions> obstacle_motions(models_.size(), Positions::Zero(x.rows(), 3));
-  for (std::size_t k = 0; k < models_.size(); ++k)
-    if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[k].get());
-        kinematic && models_[k] != before[k])
-      kinematic->advect(*before[k], from, obstacle_motions[k]);
-  store_tangential_displacements(x, &obstacle_motions);
+  store_tangential_displacements(x, &before);
   reset();
   advected_ = true;
   build_collisions(x);

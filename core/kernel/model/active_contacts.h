@@ -71,10 +71,10 @@ class ActiveContacts {
   void build_candidates(const Positions& x0, const Positions& x1);
   void build_collisions(const Positions& x);
   void lag_friction();
-  /// Stores the tangential displacements at x and makes x their reference. With `obstacle_motions`, one for
-  /// each model, they are advected and not limited.
-  void store_tangential_displacements(const Positions& x,
-                                      const std::vector<Positions>* obstacle_motions = nullptr);
+  /// Stores the tangential displacements at x and makes x their reference. With the models `before` obstacles
+  /// moved, they are advected and not limited.
+  void store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);
+  ObstacleMotion motion_since(const BoundContacts& before, std::size_t model) const;
 
   BoundContacts models_;
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;

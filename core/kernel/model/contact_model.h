@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/kernel/model/energy.h"
+#include "core/kernel/model/friction.h"
 #include "core/kernel/model/level.h"
 #include "core/kernel/model/material.h"
 
@@ -72,9 +73,9 @@ class KinematicObstacles {
   /// not changed, and for obstacles whose parameters a caller has interpolated by a fraction that an earlier
   /// call returned. Throws std::runtime_error naming an obstacle whose topology changed.
   virtual StepLimit max_step(const BoundContact& before, const Positions& x) const = 0;
-  /// Advects the rows of `reference` (n×3) [m]: each vertex in frictional contact with obstacles at x is
-  /// displaced by their motion since `before`.
-  virtual void advect(const BoundContact& before, const Positions& x, Positions& reference) const = 0;
+  /// The displacement of an obstacle's material point from `before`, whose contacts touch it there, to here
+  /// [m].
+  virtual Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const = 0;
 };
 
 /// The contacts of one level. Models of the level under different loads may share them.

@@ -1,6 +1,7 @@
 #include "core/kernel/model/friction.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/kernel/linear_algebra/parallel.h"
@@ -21,15 +22,42 @@ Vector3d position(const FrictionContact& contact, const Positions& x) {
   return sum;
 }
 
-/// A contact of the cloth with itself has four cloth vertices.
-bool is_with_obstacle(const FrictionContact& contact) {
-  return std::ranges::find(contact.vertices, -1) != contact.vertices.end();
+/// Of a contact with an obstacle: 1 if Σ c_k x_k is the position of the cloth relative to the obstacle, -1 if
+/// it is that of the obstacle relative to the cloth.
+double side_of_cloth(const FrictionContact& contact) {
+  double sum = 0;
+  for (int k = 0; k < 4; ++k)
+    if (contact.vertices[k] >= 0) sum += contact.c[k];
+  return sum > 0 ? 1 : -1;
 }
 
-/// The stored displacement of a contact, zero for a new one.
-Vector3d displacement_of(const ContactKey& key, const TangentialDisplacements& displacements) {
+/// The key of a cloth vertex's mean displacement on an obstacle; contacts have other second numbers.
+ContactKey key_of_mean(int vertex, int obstacle) { return {vertex, -3, obstacle, 0, 0}; }
+
+const Vector3d* find(const ContactKey& key, const TangentialDisplacements& displacements) {
   const auto found = std::ranges::lower_bound(displacements, key, {}, &TangentialDisplacement::contact);
-  return found != displacements.end() && found->contact == key ? found->displacement : Vector3d::Zero();
+  return found != displacements.end() && found->contact == key ? &found->displacement : nullptr;
+}
+
+/// The stored displacement of a contact; for a new one that of its vertices on its obstacle, or zero.
+Vector3d displacement_of(const FrictionContact& contact, const TangentialDisplacements& displacements) {
+  if (const Vector3d* own = find(contact.key, displacements)) return *own;
+  Vector3d sum = Vector3d::Zero();
+  double weights = 0;
+  if (contact.touched.obstacle < 0) return sum;
+  for (int k = 0; k < 4; ++k) {
+    if (contact.vertices[k] < 0) continue;
+    const Vector3d* mean = find(key_of_mean(contact.vertices[k], contact.touched.obstacle), displacements);
+    if (!mean) continue;
+    sum += std::abs(contact.c[k]) * *mean;
+    weights += std::abs(contact.c[k]);
+  }
+  return weights > 0 ? Vector3d(side_of_cloth(contact) * sum / weights) : sum;
+}
+
+TangentialDisplacements sorted(TangentialDisplacements displacements) {
+  std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
+  return displacements;
 }
 
 }  // namespace
@@ -48,7 +76,7 @@ LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& referen
   origin_.resize(contacts_.size());
   parallel_for(size(), contacts_per_task, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i].key, displacements);
+      origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i], displacements);
   });
 }
 
@@ -100,24 +128,54 @@ TangentialDisplacements LaggedFriction::collect(const DisplacementOf& displaceme
   TangentialDisplacements all;
   all.reserve(contacts_.size());
   for (int i = 0; i < size(); ++i) all.push_back({contacts_[i].key, displacement_of_contact(i)});
-  std::ranges::sort(all, {}, &TangentialDisplacement::contact);
   return all;
 }
 
 TangentialDisplacements LaggedFriction::tangential_displacements(const Positions& x) const {
-  return collect([&](int i) {
+  return sorted(collect([&](int i) {
     const Vector3d u = displacement(i, x);
     return Vector3d(std::min(1.0, epsilon_ / u.norm()) * u);
-  });
+  }));
 }
 
 TangentialDisplacements LaggedFriction::advected_tangential_displacements(
-    const Positions& x, const Positions& obstacle_motion) const {
-  return collect([&](int i) {
+    const Positions& x, const ObstacleMotion& motion) const {
+  TangentialDisplacements all = collect([&](int i) {
     Vector3d u = displacement(i, x);
-    if (is_with_obstacle(contacts_[i])) u -= tangential(i, position(contacts_[i], obstacle_motion));
+    if (const FrictionContact& contact = contacts_[i]; contact.touched.obstacle >= 0)
+      u -= side_of_cloth(contact) * tangential(i, motion(contact.touched));
     return u;
   });
+  append_means(all);
+  return sorted(std::move(all));
+}
+
+/// Means of the cloth's displacements relative to the obstacle, weighted by friction force.
+void LaggedFriction::append_means(TangentialDisplacements& of_contacts) const {
+  struct Part {
+    ContactKey mean;
+    double weight;
+    Vector3d displacement;
+  };
+  std::vector<Part> parts;
+  for (int i = 0; i < size(); ++i) {
+    const FrictionContact& contact = contacts_[i];
+    for (int k = 0; k < 4 && contact.touched.obstacle >= 0; ++k)
+      if (const double weight = std::abs(contact.c[k]) * contact.force;
+          contact.vertices[k] >= 0 && weight > 0)
+        parts.push_back({key_of_mean(contact.vertices[k], contact.touched.obstacle), weight,
+                         side_of_cloth(contact) * of_contacts[i].displacement});
+  }
+  std::ranges::stable_sort(parts, {}, &Part::mean);
+  for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
+    Vector3d sum = Vector3d::Zero();
+    double weights = 0;
+    for (; last < parts.size() && parts[last].mean == parts[first].mean; ++last) {
+      sum += parts[last].weight * parts[last].displacement;
+      weights += parts[last].weight;
+    }
+    of_contacts.push_back({parts[first].mean, sum / weights});
+  }
 }
 
 Vector3d LaggedFriction::tangential(int i, const Vector3d& u) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -19,8 +20,21 @@ struct TangentialDisplacement {
   Eigen::Vector3d displacement;  ///< of one side relative to the other, in the tangent plane [m]
 };
 
-/// Ascending by contact, without duplicates.
+/// Ascending by contact, without duplicates. After an obstacle has moved, the cloth may touch other features
+/// of it: there are entries for each cloth vertex and obstacle then, too, with the mean over the vertex's
+/// contacts.
 using TangentialDisplacements = std::vector<TangentialDisplacement>;
+
+/// The point of an obstacle that a contact touches: Σ weights_k vertex_k + offset.
+struct ObstaclePoint {
+  int obstacle = -1;                           ///< index in the contact model; -1: the contact has none
+  std::array<int, 3> vertices = {-1, -1, -1};  ///< of the model's obstacles, padded with -1
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// The displacement of a touched point since the obstacles were where the contact was found [m].
+using ObstacleMotion = std::function<Eigen::Vector3d(const ObstaclePoint& point)>;
 
 /// A collision as friction needs it. Σ c_k x_k is the position of one side relative to the other.
 struct FrictionContact {
@@ -29,6 +43,7 @@ struct FrictionContact {
   Eigen::Vector4d c = Eigen::Vector4d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit length
   double force = 0;                                  ///< μ times the normal force [N]
+  ObstaclePoint touched = {};                        ///< none where the cloth touches itself
 };
 
 /// Friction contacts in groups whose energies are summed apart: one for each part of the collisions.
@@ -67,15 +82,17 @@ class LaggedFriction final : public BoundEnergy {
   /// Each contact's tangential displacement at x. Its length is limited to the friction smoothing distance:
   /// the next step then starts with the same friction forces.
   TangentialDisplacements tangential_displacements(const Positions& x) const;
-  /// The same without the limit, relative to obstacles that have moved: contacts with obstacles subtract the
-  /// tangential part of `obstacle_motion` (n×3) [m], the obstacle's motion at each vertex.
+  /// The same without the limit, relative to obstacles that have moved: every contact subtracts the
+  /// tangential part of the motion of the point that it touches. With entries for vertices.
   TangentialDisplacements advected_tangential_displacements(const Positions& x,
-                                                            const Positions& obstacle_motion) const;
+                                                            const ObstacleMotion& motion) const;
 
  private:
   int size() const { return static_cast<int>(contacts_.size()); }
+  /// The entries of all contacts, in their order.
   template <class DisplacementOf>
   TangentialDisplacements collect(const DisplacementOf& displacement_of_contact) const;
+  void append_means(TangentialDisplacements& of_contacts) const;
   Eigen::Vector3d tangential(int i, const Eigen::Vector3d& u) const;
   Eigen::Vector3d displacement(int i, const Positions& x) const;
   double potential(int i, double y) const;

@@ -28,7 +28,9 @@ auto bound(const std::string& name, const Bind& bind)
   try {
     return bind();
   } catch (const std::exception& error) {
-    throw std::runtime_error(name + ": " + error.what());
+    const std::string message = error.what();
+    const bool named = message.starts_with(name.substr(name.find(' ') + 1));
+    throw std::runtime_error(named ? message : name + ": " + message);
   }
 }
 

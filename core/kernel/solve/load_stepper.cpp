@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kernel/files/message_text.h"
+
 namespace drape {
 
 namespace {
@@ -56,7 +58,8 @@ void LoadStepper::advance(bool at_equilibrium) {
   double applied = at_equilibrium && !begins ? extrapolate() : 0;
   Positions predicted = iterate_.x();
   // If the predictor gains no more than the last time, the obstacles advance without it.
-  if (applied < 1 && applied * (1 - s_.response.fraction) <= s_.response.fraction) {
+  if ((begins || !load_stepping_->complete()) && applied < 1 &&
+      applied * (1 - s_.response.fraction) <= s_.response.fraction) {
     const StepLimit limit = load_stepping_->advance(result.level, iterate_.x());
     iterate_.set_limited_by(limit.by);
     limit_text_ = iterate_.limit_text();  // the pins' move that follows has a limit of its own
@@ -71,6 +74,9 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
+  if (closed && blocked())
+    limit_text_ += "; the gap is " + three_digits(iterate_.objective().contacts().smallest_gap()) +
+                   " m: at its target the obstacle touches or crosses the cloth";
 }
 
 /// Gives the iterate and the enforcer the model of the load that was reached. The cloth was at `from` when

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/kernel/contact/averaged_contact_displacement.h"
 #include "core/kernel/contact/contact_kernel.h"
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
@@ -234,38 +233,13 @@ StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) con
   return ObstacleTrajectory(from, *obstacles_).max_step(cloth_, x, barrier_.dhat, broad_phase_);
 }
 
-void BoundIpc::advect(const BoundContact& before, const Positions& x, Positions& reference) const {
-  const BoundIpc& old = as_ipc(before);
-  if (old.obstacles_ == obstacles_) return;
-  BroadPhasePairs found;
-  {
-    Counts counts;
-    const std::lock_guard lock(old.busy_);
-    old.search(x, x, {unlimited, unlimited}, found, counts);
-  }
-  AveragedContactDisplacement mean(x.rows());
-  const Positions obstacle_motion = obstacles_->vertices - old.obstacles_->vertices;
-  const auto surface =
-      SurfaceContacts::of(x, *old.obstacles_, old.obstacle_tree_->coefficients, found.vertex_triangles,
-                          old.cloth_.vertex_area, old.friction_, old.barrier_.dhat);
-  for (const SurfaceContact& contact : surface.contacts) {
-    const std::vector<double> pressures = surface.pressures(contact, old.barrier_.dhat);
-    for (int i = contact.first; i < contact.last; ++i) {
-      const NearestFeature& f = surface.features[i];
-      Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
-      for (int k = 0; k < 3; ++k)
-        if (f.vertices[k] >= 0) displacement += f.weights[k] * obstacle_motion.row(f.vertices[k]).transpose();
-      mean.add(contact.vertex, displacement, f.friction * pressures[i - contact.first]);
-    }
-  }
-  mean.add_pairs(found.pairs, x, old.obstacles_->vertices, old.barrier_.dhat,
-                 [&](const Contact& contact, const PairPositions& at) -> Eigen::Vector3d {
-                   // The columns of cloth vertices are zero.
-                   const PairPositions displacement =
-                       positions_of(contact.pair, x, obstacles_->vertices) - at;
-                   return displacement * contact.closest.c.cwiseAbs();
-                 });
-  mean.add_to(reference);
+Eigen::Vector3d BoundIpc::displacement(const BoundContact& before, const ObstaclePoint& point) const {
+  const Positions &from = as_ipc(before).obstacles_->vertices, &to = obstacles_->vertices;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int k = 0; k < 3; ++k)
+    if (const int v = point.vertices[k]; v >= 0)
+      sum += point.weights[k] * (to.row(v) - from.row(v)).transpose();
+  return sum;
 }
 
 std::vector<Intersection> BoundIpc::intersections(const Positions& x) const {

@@ -58,7 +58,7 @@ class BoundIpc final : public BoundContact, public KinematicObstacles, public Sm
 
   SmallestGap smallest_gap(const Positions& x) const override;
   StepLimit max_step(const BoundContact& before, const Positions& x) const override;
-  void advect(const BoundContact& before, const Positions& x, Positions& reference) const override;
+  Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override;
 
  private:
   /// Numbers of pairs: of triangles with overlapping boxes, and of primitives that may come within d̂.

@@ -5,6 +5,7 @@
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/model/active_contacts.h"
 #include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
@@ -321,7 +322,7 @@ TEST_CASE("ipc: an obstacle whose triangles change is refused by name") {
                     Catch::Contains("\"ball\"") && Catch::Contains("320 triangles instead of 80"));
 }
 
-TEST_CASE("ipc: the reference of tangential displacements is advected by obstacles") {
+TEST_CASE("ipc: touched points move with their obstacle") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -330,37 +331,107 @@ TEST_CASE("ipc: the reference of tangential displacements is advected by obstacl
   to[0].translate += Vector(0.01, 0.003, 0);
   to[0].rotate.z() = 5;
   const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
-  Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-  const Positions start = reference;
-  dynamic_cast<const KinematicObstacles&>(*after).advect(*before, x, reference);
   const Eigen::Matrix3d turn = obstacle_of(to[0]).geometry.pose.linear();
-  int advected = 0;
-  for (int v = 0; v < x.rows(); ++v) {
-    const Vector own = Vector(x(v, 0), x(v, 1), 0) - from[0].translate;
-    const Vector moved = turn * own + to[0].translate - (own + from[0].translate);
-    CAPTURE(v);
-    if (x(v, 0) > 1e-9) {
-      ++advected;
-      CHECK((Vector(reference.row(v) - start.row(v)) - moved).norm() < 1e-12);
-    } else if (x(v, 0) < -1e-9) {  // those above the box's edge have contacts of reduced weight
-      CHECK((reference.row(v) - start.row(v)).norm() < 0.02);
+  const auto collisions = before->build_candidates(x, x)->build_collisions(x);
+  FrictionContacts groups;
+  dynamic_cast<const FrictionalCollisions&>(*collisions).append_friction_contacts(groups);
+  int above = 0;
+  for (const auto& group : groups)
+    for (const FrictionContact& contact : group) {
+      if (contact.vertices[1] >= 0 || x(contact.vertices[0], 0) < 1e-9) continue;
+      ++above;
+      const int v = contact.vertices[0];
+      const Vector own = Vector(x(v, 0), x(v, 1), 0) - from[0].translate;
+      const Vector moved = turn * own + to[0].translate - (own + from[0].translate);
+      CAPTURE(v);
+      CHECK(contact.touched.obstacle == 0);
+      CHECK((dynamic_cast<const KinematicObstacles&>(*after).displacement(*before, contact.touched) - moved)
+                .norm() < 1e-12);
+    }
+  CHECK(above >= 10);
+}
+
+namespace {
+
+/// Force along x on a cloth with friction, less its barrier's [N].
+double drag(ActiveContacts& contacts, const BoundContacts& models, const Positions& x) {
+  Positions push = Positions::Zero(x.rows(), 3), all = push;
+  for (const auto& model : models) model->build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
+  contacts.add_gradient(x, all);
+  return -(all.col(0) - push.col(0)).sum();
+}
+
+/// Sum of the magnitudes of a model's forces along z [N].
+double normal_force(const BoundContact& model, const Positions& x) {
+  Positions push = Positions::Zero(x.rows(), 3);
+  model.build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
+  return push.col(2).cwiseAbs().sum();
+}
+
+}  // namespace
+
+TEST_CASE(
+    "ipc: a plate that slides below a cloth drags it with μ times the normal force, however finely it is "
+    "meshed") {
+  const Level level = square(9, 0.2);
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  const Scratch folder;
+  for (const int columns : {2, 11, 41, 81}) {
+    TriangleMesh plate = grid({0.8, 0.8}, columns, columns, Diagonals::criss_cross);
+    plate.vertices.rowwise() -= Eigen::RowVector3d(0.403, 0.407, 0);
+    write_mesh(folder / "plate.ply", plate);
+    const auto at = [&](double shift) {
+      ObstacleParameters p;
+      p.mesh = (folder / "plate.ply").string();
+      p.translate.x() = shift;
+      return std::shared_ptr<const BoundContact>(bound({p}, level, 0.3));
+    };
+    for (const double shift : {1e-3, 1e-2, 0.1}) {
+      CAPTURE(columns, shift);
+      const BoundContacts before = {at(0)}, after = {at(shift)};
+      ActiveContacts contacts(before);
+      contacts.begin_step(x);
+      contacts.update_obstacles(after, x, x);
+      contacts.begin_step(x);
+      CHECK(drag(contacts, after, x) == Approx(0.3 * normal_force(*after[0], x)).epsilon(1e-6));
     }
   }
-  CHECK(advected >= 10);
-  // A plate that slides below the cloth drags it with μ times the normal force.
-  to = from;
-  to[0].translate.x() += 0.01;
-  reference = x;
-  const auto displaced = bound(to, level, 0.3);
-  dynamic_cast<const KinematicObstacles&>(*displaced).advect(*before, x, reference);
-  const auto collisions = displaced->build_candidates(x, x)->build_collisions(x);
-  Positions push = Positions::Zero(x.rows(), 3), drag = push;
-  collisions->add_gradient(x, push);
-  lagged_friction(*collisions, reference, {})->add_gradient(x, drag);
-  CHECK(-push.col(2).sum() > 0);
-  CHECK(-drag.col(0).sum() == Approx(0.3 * -push.col(2).sum()).epsilon(1e-9));
-  // Without friction nothing is advected.
-  reference = x;
-  dynamic_cast<const KinematicObstacles&>(*bound(to, level)).advect(*bound(from, level), x, reference);
-  CHECK(reference == x);
+}
+
+TEST_CASE("ipc: of two obstacles that a cloth lies between, the static one does not drag it along") {
+  const Level level = square(9, 0.2);
+  Positions x = level.rest.vertices;
+  x.col(2).setConstant(4e-4);
+  const auto between = [&](double shift) {
+    Bodies all = {box({1, 1, 1}, {0, 0, -0.5}), box({1, 1, 1}, {shift, 0, 0.5 + 8e-4})};
+    all[0].friction = 1;
+    all[1].friction = 0.1;
+    return std::shared_ptr<const BoundContact>(bound(all, level, 0.3));
+  };
+  const BoundContacts before = {between(0)}, after = {between(0.01)};
+  ActiveContacts contacts(before);
+  contacts.begin_step(x);
+  contacts.update_obstacles(after, x, x);
+  contacts.begin_step(x);
+  const auto lower = bound({box({1, 1, 1}, {0, 0, -0.5})}, level);
+  CHECK(drag(contacts, after, x) == Approx(0.1 * normal_force(*lower, x)).epsilon(1e-6));
+}
+
+TEST_CASE("ipc: contacts that form in a step have friction when the obstacle moves next") {
+  const Level level = square(9, 0.2);
+  Positions apart = level.rest.vertices, x = apart;
+  apart.col(2).setConstant(2e-3);
+  x.col(2).setConstant(4e-4);
+  const auto at = [&](double shift) {
+    return std::shared_ptr<const BoundContact>(bound({box({1, 1, 1}, {shift, 0, -0.5})}, level, 0.3));
+  };
+  const BoundContacts before = {at(0)}, after = {at(0.01)};
+  ActiveContacts contacts(before);
+  contacts.begin_step(apart);
+  contacts.max_step(apart, x);
+  contacts.barrier(x);
+  contacts.update_obstacles(after, x, x);
+  contacts.begin_step(x);
+  CHECK(drag(contacts, after, x) == Approx(0.3 * normal_force(*after[0], x)).epsilon(1e-6));
 }

@@ -60,8 +60,12 @@ class ShapesCandidates final : public CollisionCandidates {
                             scene_->solids[pairs[i].solid].friction,
                             {}});
     parallel_for(static_cast<int>(contacts.size()), 1024, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i)
-        contacts[i].nearest = scene_->solids[contacts[i].obstacle].nearest(x.row(contacts[i].vertex));
+      for (int i = begin; i < end; ++i) {
+        VertexContact& contact = contacts[i];
+        const Eigen::Vector3d p = x.row(contact.vertex);
+        contact.nearest = scene_->solids[contact.obstacle].nearest(p);
+        contact.touched = p - contact.nearest.distance * contact.nearest.normal;
+      }
     });
     return contacts;
   }
@@ -134,8 +138,13 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
         [&](double min_gap, int iterations) { return advance(trajectories, x, min_gap, iterations); });
   }
 
-  void advect(const BoundContact& before, const Positions& x, Positions& reference) const override {
-    advect_with_solids(scene_of(before), scene_->solids, x, reference);
+  Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override {
+    const ShapeScene& from = scene_of(before);
+    Eigen::Vector3d p = point.offset;
+    for (int k = 0; k < 3; ++k)
+      if (point.vertices[k] >= 0)
+        p += point.weights[k] * from.obstacle_points.row(point.vertices[k]).transpose();
+    return displacement_with(from.solids[point.obstacle], scene_->solids[point.obstacle], p);
   }
 
  private:

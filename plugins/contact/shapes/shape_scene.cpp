@@ -37,7 +37,12 @@ Ball ball_of(const int* vertices, int count, const Positions& x0, const Position
 class Finder {
  public:
   Finder(const ShapeScene& scene, int solid, const Positions& x0, const Positions& x1)
-      : scene_(scene), solid_(scene.solids[solid]), features_(scene.features[solid]), x0_(x0), x1_(x1) {}
+      : scene_(scene),
+        solid_index_(solid),
+        solid_(scene.solids[solid]),
+        features_(scene.features[solid]),
+        x0_(x0),
+        x1_(x1) {}
 
   /// Those of the triangles, ascending, that may come within d̂.
   std::vector<int> triangles_near(const std::vector<int>& among) const {
@@ -73,6 +78,7 @@ class Finder {
       ContactPair pair;
       pair.kind = PairKind::point_triangle;
       pair.offset = features_.offset;
+      pair.obstacle = solid_index_;
       pair.friction = solid_.friction;
       pair.weight =
           share * scene_.cloth.triangle_area[i] * side_fraction(std::sqrt(2 * scene_.cloth.triangle_area[i]));
@@ -94,6 +100,7 @@ class Finder {
       ContactPair pair;
       pair.kind = PairKind::edge_edge;
       pair.offset = features_.offset;
+      pair.obstacle = solid_index_;
       pair.friction = solid_.friction;
       const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);
       pair.weight = half * scene_.cloth.edge_area[i] * side_fraction(length);
@@ -132,6 +139,7 @@ class Finder {
   }
 
   const ShapeScene& scene_;
+  int solid_index_;
   const Solid& solid_;
   const Features& features_;
   const Positions &x0_, &x1_;

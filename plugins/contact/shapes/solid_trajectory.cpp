@@ -4,8 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/kernel/contact/averaged_contact_displacement.h"
-#include "core/kernel/contact/contact_kernel.h"
 #include "core/kernel/contact/nonlinear_ccd.h"
 
 namespace drape::shapes {
@@ -115,33 +113,14 @@ std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from,
   return trajectories;
 }
 
-void advect_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
-                        Positions& reference) {
-  AveragedContactDisplacement mean(x.rows());
-  const auto displacement_of = [&](int solid, const Vector3d& touched) -> Vector3d {
-    return to[solid].to_world(scene.solids[solid].to_local(touched)) - touched;
-  };
-  const CandidatePairs candidates = find_candidates(scene, find_triangles(scene, x, x), x, x);
-  const double dhat = scene.barrier.dhat;
-  for (const VertexSolidPair& pair : candidates.vertices) {
-    const Vector3d p = x.row(pair.vertex);
-    const Solid& solid = scene.solids[pair.solid];
-    const SignedDistance nearest = solid.nearest(p);
-    if (nearest.distance < dhat && solid.friction > 0)
-      mean.add(pair.vertex, displacement_of(pair.solid, p - nearest.distance * nearest.normal),
-               -scene.vertex_area[pair.vertex] * solid.friction * barrier(nearest.distance / dhat).first);
-  }
-  const int n = static_cast<int>(x.rows());
-  mean.add_pairs(candidates.pairs, x, scene.obstacle_points, dhat,
-                 [&](const Contact& contact, const PairPositions& at) {
-                   const auto& v = contact.pair.vertices;
-                   const bool first_is_cloth = v[0] < n;
-                   Vector3d touched = (first_is_cloth ? 1 : -1) * contact.pair.offset * contact.normal;
-                   for (int k = 0; k < 4; ++k)
-                     if (v[k] >= n) touched += std::abs(contact.closest.c[k]) * at.col(k);
-                   return displacement_of(scene.solid_of_point[v[first_is_cloth ? 3 : 0] - n], touched);
-                 });
-  mean.add_to(reference);
+Vector3d displacement_with(const Solid& from, const Solid& to, const Vector3d& p) {
+  if (from.kind != SolidKind::half_space) return to.to_world(from.to_local(p)) - p;
+  // Axes from the normal alone would turn about it, without end where it points down.
+  const Vector3d a = from.axes.col(2), b = to.axes.col(2), arm = p - from.centre, v = a.cross(b);
+  const double cosine = a.dot(b);
+  if (cosine < -1 + 1e-12) return to.centre - from.centre;  // turned over: there is no smallest angle
+  const Vector3d turned = arm + v.cross(arm) + v.cross(v.cross(arm)) / (1 + cosine);
+  return to.centre + turned - p;
 }
 
 }  // namespace drape::shapes

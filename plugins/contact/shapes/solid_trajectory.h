@@ -34,9 +34,8 @@ class SolidTrajectory {
 /// The trajectory of each solid. Throws std::runtime_error if number or kinds differ.
 std::vector<SolidTrajectory> solid_trajectories(const std::vector<Solid>& from, const std::vector<Solid>& to);
 
-/// Advects the rows of `reference` [m] of vertices in frictional contact with the scene's solids at x: each
-/// moves with the touched points of the solids, rigidly, from the scene to `to`.
-void advect_with_solids(const ShapeScene& scene, const std::vector<Solid>& to, const Positions& x,
-                        Positions& reference);
+/// The displacement [m] of a solid's point p as the solid moves rigidly from one placement to the other. A
+/// half-space turns by the smallest angle between its normals.
+Eigen::Vector3d displacement_with(const Solid& from, const Solid& to, const Eigen::Vector3d& p);
 
 }  // namespace drape::shapes

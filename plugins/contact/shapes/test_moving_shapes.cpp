@@ -2,6 +2,7 @@
 #include <random>
 
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/active_contacts.h"
 #include "core/kernel/model/friction.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
@@ -183,7 +184,24 @@ TEST_CASE("shapes: a solid whose kind changes is refused by name") {
       Catch::StartsWith("thing: sphere cannot replace thing: box") && Catch::EndsWith(" during a run"));
 }
 
-TEST_CASE("shapes: the reference of tangential displacements is advected by solids") {
+namespace {
+
+std::vector<FrictionContact> friction_contacts(const BoundContact& contact, const Positions& x) {
+  const auto collisions = contact.build_candidates(x, x)->build_collisions(x);
+  FrictionContacts groups;
+  dynamic_cast<const FrictionalCollisions&>(*collisions).append_friction_contacts(groups);
+  std::vector<FrictionContact> all;
+  for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+Vector3d displacement(const BoundContact& from, const BoundContact& to, const ObstaclePoint& point) {
+  return dynamic_cast<const KinematicObstacles&>(to).displacement(from, point);
+}
+
+}  // namespace
+
+TEST_CASE("shapes: touched points move with their solid") {
   const Level level = square(5, 0.2);
   Positions x = level.rest.vertices;
   x.col(2).setConstant(4e-4);
@@ -191,28 +209,99 @@ TEST_CASE("shapes: the reference of tangential displacements is advected by soli
     const ShapeParameters from = level_with(kind, 0);
     ShapeParameters to = from;
     to.translate += Vector3d(0.01, 0.003, 0);
-    const auto before = bound(from, level, 0.3);
-    Positions reference = x.rowwise() + Eigen::RowVector3d(1e-5, 0, 0);
-    const Positions start = reference;
-    dynamic_cast<const KinematicObstacles&>(*bound(to, level, 0.3)).advect(*before, x, reference);
+    const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
     INFO(to_string(kind));
-    int advected = 0;
-    for (int v = 0; v < x.rows(); ++v) {
-      const Eigen::RowVector3d moved = reference.row(v) - start.row(v);
-      if (moved.isZero(0)) continue;
-      ++advected;
-      CHECK((moved - Eigen::RowVector3d(0.01, 0.003, 0)).norm() < 1e-15);
+    const std::vector<FrictionContact> contacts = friction_contacts(*before, x);
+    CHECK(contacts.size() >= 1);
+    for (const FrictionContact& contact : contacts) {
+      CHECK(contact.touched.obstacle == 0);
+      CHECK((displacement(*before, *after, contact.touched) - Vector3d(0.01, 0.003, 0)).norm() < 1e-15);
     }
-    CHECK(advected >= 1);
   }
-  // A ball that turns about a horizontal axis advects what lies on it, with a static centre.
+  // A ball that turns about a horizontal axis moves what lies on it, with a static centre.
   const ShapeParameters from = level_with(SolidKind::sphere, 0);
   ShapeParameters to = from;
   to.rotate = {0, 1, 0};
-  Positions reference = x;
-  dynamic_cast<const KinematicObstacles&>(*bound(to, level, 0.3))
-      .advect(*bound(from, level, 0.3), x, reference);
-  CHECK((reference - x).col(0).maxCoeff() == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+  const auto before = bound(from, level, 0.3), after = bound(to, level, 0.3);
+  double farthest = 0;
+  for (const FrictionContact& contact : friction_contacts(*before, x))
+    farthest = std::max(farthest, displacement(*before, *after, contact.touched).x());
+  CHECK(farthest == Approx(0.1 * M_PI / 180).epsilon(1e-3));
+}
+
+TEST_CASE("shapes: a half-space turns by the angle between its normals, wherever they point") {
+  const Level level = square(5, 0.2);
+  for (const double up : {-1.0, 1.0}) {
+    const auto facing = [&](double x, double y) {
+      ShapeParameters p = level_with(SolidKind::half_space, 0);
+      p.normal = {x, y, up};
+      return bound(p, level, 0.3);
+    };
+    ObstaclePoint point{0};
+    point.offset = {1, 0.5, 0};
+    const double angle = std::sqrt(2) * 1e-4, distance = point.offset.norm();
+    const Vector3d moved = displacement(*facing(1e-4, 0), *facing(0, 1e-4), point);
+    CHECK(moved.norm() < 1.01 * angle * distance);
+    CHECK(moved.norm() > 0);
+  }
+}
+
+TEST_CASE("shapes: friction goes on while a solid turns below the cloth, and while another one grows") {
+  const Level level = square(9, 0.1);
+  const auto roll = [&](double y, double radius, double turned) {
+    ShapeParameters p = level_with(SolidKind::cylinder, y);
+    p.radius = radius;
+    p.height = 1;
+    p.rotate = {90, 0, 0};
+    p.translate = {0, y, -0.1};
+    if (turned != 0) p.rotate = {90, turned, 0};  // about the cylinder's axis
+    return p;
+  };
+  // Draped over the roll: a strip of 0.1 m of its circumference.
+  Positions x = level.rest.vertices;
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    const double angle = x(i, 0) / 0.1, radius = 0.1 + 4e-4;
+    x.row(i) << radius * std::sin(angle), x(i, 1), radius * std::cos(angle) - 0.1;
+  }
+  const auto torque = [&](ActiveContacts& contacts, const BoundContact& own) {
+    Positions push = Positions::Zero(x.rows(), 3), all = push;
+    own.build_candidates(x, x)->build_collisions(x)->add_gradient(x, push);
+    contacts.add_gradient(x, all);
+    double sum = 0, normal = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+      const Vector3d out = Vector3d(x(i, 0), 0, x(i, 2) + 0.1).normalized(), along(out.z(), 0, -out.x());
+      sum -= (all.row(i) - push.row(i)).dot(along);
+      normal -= push.row(i).dot(out);
+    }
+    return sum / (0.3 * normal);
+  };
+  for (const double turned : {1.0, 10.0, 40.0}) {
+    INFO(turned);
+    const std::shared_ptr<const BoundContact> before = bound(roll(0, 0.1, 0), level, 0.3),
+                                              after = bound(roll(0, 0.1, turned), level, 0.3);
+    ActiveContacts contacts({before});
+    contacts.begin_step(x);
+    contacts.update_obstacles({after}, x, x);
+    contacts.begin_step(x);
+    CHECK(std::abs(torque(contacts, *after)) == Approx(1).epsilon(0.02));
+  }
+  // Another cylinder that is listed first grows by many sides.
+  const auto both = [&](double radius) {
+    ShapeParameters far = roll(0, radius, 0);
+    far.translate.x() = 5;
+    return std::shared_ptr<const BoundContact>(bound({far, roll(0, 0.1, 0)}, level, 0.3));
+  };
+  const auto before = both(0.1), after = both(0.11);
+  ActiveContacts contacts({before});
+  contacts.begin_step(x);
+  Positions moved = x;
+  moved.col(1).array() += 3e-5;  // it sticks
+  contacts.max_step(x, moved);
+  const double stuck = contacts.friction(moved);
+  REQUIRE(stuck > 0);
+  contacts.begin_step(moved);
+  contacts.update_obstacles({after}, moved, moved);
+  CHECK(contacts.friction(moved) == Approx(stuck).epsilon(1e-6));
 }
 
 TEST_CASE("shapes: contacts keep their keys while another cylinder grows") {
