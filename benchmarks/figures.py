@@ -94,10 +94,11 @@ def table1():
                 for rows_of, counts in re.findall(r"Best on the (\d+) rows of [^:]*:([^.]*)\.", section)]
         first = next(iter(methods.values()))
         rows.append([scene, str(first["vertices_by_level"][-1]), *best,
-                     " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values())])
+                     " / ".join(str(r["iterations_by_level"][-1]) for r in methods.values()),
+                     " / ".join(figure(r["tflop"] / methods["newton"]["tflop"], 2) for r in methods.values())])
     names = " / ".join(methods)
     return table(["scene", "vertices", f"best on rows of curvature: {names}", "of distance and silhouette", "of energy",
-                  "iterations on the finest level"], rows, [], "lr")[1:]
+                  "iterations on the finest level", "total flops, relative to direct"], rows, [], "lr")[1:]
 
 
 def remedies():
@@ -316,11 +317,18 @@ BLOCKS = {
     "studies": studies,
 }
 
+def flops_in_table1(method):
+    """The range of a method's flops relative to the direct solve's over the scenes of Table 1 that have run."""
+    shares = sorted(entry["methods"][method]["tflop"] / entry["methods"]["newton"]["tflop"] for entry in read("table1.json").values())
+    return f"{figure(shares[0], 2)} to {figure(shares[-1], 2)}"
+
+
 VALUES = {
     **{f"conditions of {name}": lambda name=name: conditions(name) for _, name in STUDIES},
     **{f"{method}'s preview of the sphere [s]": lambda method=method: seconds_text(
         [r["seconds_of_preview"] for r in runs("sphere", method)]) for method in METHODS},
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
+    **{f"flops of {method} in table 1": lambda method=method: flops_in_table1(method) for method in ("pcs", "cascadic")},
     "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
     "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),

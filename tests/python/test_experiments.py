@@ -40,6 +40,8 @@ def test_a_run_has_the_bits_of_the_command(small_file, command, tmp_path):
             assert own.metrics == other.metrics
     assert numpy.array_equal(ours.iterations["energy"], theirs.iterations["energy"])
     assert len(seen) == ours.iterations.row_count > 10
+    assert list(ours.iterations["step"][:3]) == [0, 1, 2]
+    assert list(ours.iterations["iteration"][:3]) == [0, 0, 0]
 
 
 def test_a_dict_is_the_same_experiment_as_its_file(small, small_file):

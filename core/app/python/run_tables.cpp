@@ -85,6 +85,8 @@ py::dict iterations_table(const RunData& run) {
       table.begin_row();
       table.add("method", series.method);
       table.add("level", series.level);
+      table.add("step", row.step);
+      table.add("iteration", row.iteration);
       table.add("seconds", row.seconds);
       table.add("energy", row.energy);
       table.add("proxy_energy", row.proxy_energy);

@@ -138,7 +138,7 @@ std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
     series_of(all, csv.text(k, "method"), level_of(csv, k, path))
         .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
                          cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
-                         cell("smallest_gap"), cell("intersections")});
+                         cell("smallest_gap"), cell("intersections"), cell("step"), cell("iteration")});
   }
   return all;
 }

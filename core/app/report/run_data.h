@@ -72,6 +72,7 @@ struct MethodRecord {
 struct StepRow {
   OptionalNumber seconds, energy, decrement, force_residual, step_length, proxy_energy, step_size;
   OptionalNumber contacts, smallest_gap, intersections;
+  OptionalNumber step, iteration;
 };
 
 /// All rows of one level of one method, in order.
