@@ -57,7 +57,7 @@ void require_subdivision(const Level& coarse, const Refinement& finer) {
 Refinement refined(const Level& coarse, const Refiner& refiner) {
   try {
     return refiner.refine(coarse);
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error(std::string("the refiner: ") + error.what());
   }
 }

@@ -21,13 +21,14 @@ double norm_where(const Positions& g, const std::vector<char>& flags, char flag)
   return std::sqrt(sum);
 }
 
-/// What `bind` returns; an exception's message begins with the name of what was bound.
+/// What `bind` returns. The message of a runtime_error begins with the name of what was bound; other
+/// exceptions, as of memory or of Python, pass.
 template <class Bind>
 auto bound(const std::string& name, const Bind& bind)
     -> std::shared_ptr<const typename decltype(bind())::element_type> {
   try {
     return bind();
-  } catch (const std::exception& error) {
+  } catch (const std::runtime_error& error) {
     const std::string message = error.what();
     const bool named = message.starts_with(name.substr(name.find(' ') + 1));
     throw std::runtime_error(named ? message : name + ": " + message);
@@ -140,8 +141,9 @@ void LevelModel::add_up_linear_energies() {
 
 /// An energy without elements counts as linear: its forces are evaluated once.
 void LevelModel::require_constant_forces(const std::string& name, const BoundEnergy& energy) const {
-  Positions at_origin = Positions::Zero(level_->vertex_count(), 3), elsewhere = at_origin;
-  energy.add_gradient(elsewhere, at_origin);
+  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
+  Positions at_origin = origin, elsewhere = origin;
+  energy.add_gradient(origin, at_origin);
   const Positions x = (1.1 * level_->rest.vertices).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0.3);
   energy.add_gradient(x, elsewhere);
   const double scale = at_origin.cwiseAbs().maxCoeff();
