@@ -19,7 +19,7 @@
 # make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
 # make format   check the layout of the sources;  make fix-format  rewrites them
-# make lint     static analysis of core and plugins (LINT= a regular expression of folders)
+# make lint     static analysis of core and plugins (LINT= a regular expression of folders), each source compiled by itself
 # make clean    remove what was built
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
@@ -128,9 +128,11 @@ fix-format: setup
 	@clang-format -i $(SOURCES)
 
 lint: setup
+	@cmake --preset single-files --log-level=ERROR >/dev/null
+	@cmake --build build-single-files -j $(JOBS) --target drape_cli drape_plugins
 	@cmake --preset lint --log-level=ERROR >/dev/null
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument \
 	  -extra-arg=-Wno-unused-command-line-argument '$(LINT)'
 
 clean:
-	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz
+	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files

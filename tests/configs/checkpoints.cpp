@@ -8,6 +8,7 @@
 #include "core/app/run/runner.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/string_utils.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"
@@ -60,11 +61,10 @@ std::string without_column(const std::string& text, const std::string& name) {
   std::string kept;
   int column = -1;
   for (std::string line; std::getline(lines, line); kept += "\n") {
-    std::istringstream cells(line);
-    int k = 0;
-    for (std::string cell; std::getline(cells, cell, ','); ++k) {
-      if (cell == name && column < 0) column = k;
-      if (k != column) kept += cell + ",";
+    const std::vector<std::string> cells = split(line, ',');
+    for (int k = 0; k < int(cells.size()); ++k) {
+      if (cells[k] == name && column < 0) column = k;
+      if (k != column) kept += cells[k] + ",";
     }
   }
   return kept;

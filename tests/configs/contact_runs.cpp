@@ -5,6 +5,7 @@
 
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/string_utils.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 
@@ -31,7 +32,7 @@ std::string said_of_contact(const std::string& experiment, const std::string& ar
 std::vector<std::vector<std::string>> csv_rows_of(const fs::path& csv) {
   std::vector<std::vector<std::string>> rows;
   std::istringstream lines(text_of(csv));
-  for (std::string line; std::getline(lines, line);) rows.push_back(cells_of(line));
+  for (std::string line; std::getline(lines, line);) rows.push_back(drape::split(line, ','));
   rows.erase(rows.begin());
   return rows;
 }

@@ -2,6 +2,7 @@
 // ever.
 
 #include <cmath>
+#include <string>
 
 #include "core/app/experiment/experiment.h"
 #include "core/app/sweep/sweep.h"

@@ -157,14 +157,6 @@ inline std::string refused_by(const std::string& arguments, const std::filesyste
   return ended.err;
 }
 
-/// The cells of a line of a CSV file.
-inline std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream rest(line + ",");
-  for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 /// The text with its one occurrence of `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

@@ -34,6 +34,13 @@ TEST_CASE("a quantity is shown with three digits, whatever its size") {
   CHECK(three_digits(2) == "2");
 }
 
+TEST_CASE("a text is split at every separator") {
+  using Parts = std::vector<std::string>;
+  CHECK(split("obstacles.0.center", '.') == Parts{"obstacles", "0", "center"});
+  CHECK(split("a,,b,", ',') == Parts{"a", "", "b", ""});
+  CHECK(split("", ',') == Parts{""});
+}
+
 TEST_CASE("columns are padded by characters, not by bytes") {
   CHECK(display_width("") == 0);
   CHECK(display_width("kg/m³ µ") == 7);

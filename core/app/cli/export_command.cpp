@@ -3,7 +3,6 @@
 #include <cmath>
 #include <iostream>
 #include <optional>
-#include <sstream>
 
 #include "core/app/cli/config_arguments.h"
 #include "core/app/cli/help.h"
@@ -11,6 +10,7 @@
 #include "core/app/report/picture_scene.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 
@@ -18,9 +18,8 @@ namespace {
 
 /// The vector that "X,Y,Z" spells; nothing for another text, and for a vector whose length says no direction.
 std::optional<Eigen::Vector3d> direction_of(const std::string& text) {
-  std::istringstream parts(text);
   std::vector<double> numbers;
-  for (std::string part; std::getline(parts, part, ',');) {
+  for (const std::string& part : split(text, ',')) {
     const std::optional<double> number = parse_number(part);
     if (!number || !std::isfinite(*number)) return {};
     numbers.push_back(*number);

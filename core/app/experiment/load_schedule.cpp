@@ -1,21 +1,14 @@
 #include "core/app/experiment/load_schedule.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/app/experiment/boundary_conditions.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 
 namespace {
-
-std::vector<std::string> words_of(const std::string& path) {
-  std::vector<std::string> words;
-  std::istringstream text(path);
-  for (std::string word; std::getline(text, word, '.');) words.push_back(word);
-  return words;
-}
 
 const Schema& experiment_schema() {
   static const Schema schema = schema_of<ExperimentParameters>();
@@ -43,7 +36,7 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
   std::size_t first = 0;
   for (std::size_t k = 0; k < e.parameters.schedule.keys.size(); ++k) {
     const std::string& name = e.parameters.schedule.keys[k].parameter;
-    for (const Target& target : targets_of(e, contacts, words_of(name))) {
+    for (const Target& target : targets_of(e, contacts, split(name, '.'))) {
       Section& section = section_of(e, contacts, target);
       const bool of_plugin = section.plugin.entry != nullptr;
       const auto path =

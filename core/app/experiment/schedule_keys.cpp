@@ -78,7 +78,7 @@ void check_plugins(const Experiment& e, const ExperimentParameters& changed, Con
 
 /// A key's path with indices in place of names, so that paths of one parameter are equal.
 std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
-  std::vector<std::string> words = words_of(path);
+  std::vector<std::string> words = split(path, '.');
   const ConfigNode* node = &config;
   for (std::string& word : words) {
     if (!node) break;

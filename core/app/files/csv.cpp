@@ -6,6 +6,7 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 
@@ -18,9 +19,7 @@ Csv::Csv(const std::filesystem::path& path) {
     if (cut_short > 0)
       throw std::runtime_error(path.string() + ":" + std::to_string(cut_short) +
                                ": fewer cells than the header has; run the experiment again");
-    std::vector<std::string> cells;
-    std::istringstream rest(line + ",");
-    for (std::string cell; std::getline(rest, cell, ',');) cells.push_back(cell);
+    std::vector<std::string> cells = split(line, ',');
     if (!cells.empty() && !cells.back().empty() && cells.back().back() == '\r') cells.back().pop_back();
     if (columns_.empty()) {
       for (std::size_t k = 0; k < cells.size(); ++k) columns_[cells[k]] = k;

@@ -9,6 +9,7 @@
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -223,8 +224,7 @@ bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const
     errors.push_back({where, "the path has an empty name"});
     return false;
   }
-  std::istringstream words(path);
-  for (std::string word; std::getline(words, word, '.');) {
+  for (const std::string& word : split(path, '.')) {
     const size_t size = node->items.size();
     node = step(*node, word, where);
     if (!node) {

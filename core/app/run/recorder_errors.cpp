@@ -6,6 +6,7 @@
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/reference.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/mesh/io.h"
 
 namespace drape {

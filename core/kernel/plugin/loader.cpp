@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/kernel/plugin/abi.h"
 #include "core/kernel/plugin/shared_library.h"
+#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 namespace {
@@ -81,8 +81,7 @@ std::vector<fs::path> search_path(const fs::path& beside) {
   std::vector<fs::path> directories;
   if (fs::is_directory(beside)) directories.push_back(beside);
   const char* variable = std::getenv("DRAPE_PLUGIN_PATH");
-  std::istringstream list(variable ? variable : "");
-  for (std::string directory; std::getline(list, directory, ':');) {
+  for (const std::string& directory : split(variable ? variable : "", ':')) {
     if (directory.empty()) continue;
     if (!fs::is_directory(directory))
       throw std::runtime_error("DRAPE_PLUGIN_PATH names " + directory + ", which is not a folder");
