@@ -40,8 +40,9 @@ methods: {newton: {}}
           if (name == "handles") return energy;
         return -1.0;
       };
-      CHECK(of_handles(x) == 0);
-      CHECK(of_handles(model.level().rest.vertices) > 0);
+      const double far = of_handles(model.level().rest.vertices);
+      CHECK(far > 0);
+      CHECK(of_handles(x) <= 1e-28 * far);  // the target may be a rounding away from x
     }
   }
 }
