@@ -65,6 +65,8 @@ def conditions(name):
         parts.append(stamp.get("note", "build not recorded"))
     if stamp.get("runs_at_a_time", 1) > 1:
         parts.append(f"{stamp['runs_at_a_time']} runs at a time")
+        if stamp["load_after"] >= own_load(stamp) + 0.5:
+            parts.append(f"beside other work (load {figure(stamp['load_after'], 2)} after)")
     elif stamp.get("load_before") is not None and not idle(stamp):
         parts.append(f"beside other work (load {figure(stamp['load_before'], 2)} before)")
     elif stamp.get("busy"):
@@ -80,6 +82,10 @@ def record_files():
     return sorted(found - {"stamps.json"})
 
 
+def own_load(stamp):
+    return stamp["threads"] * stamp.get("runs_at_a_time", 1)
+
+
 def idle(stamp):
     """Nothing else ran before, nor, but for the study's own threads, at its end."""
-    return stamp["load_before"] < 0.3 and stamp["load_after"] < stamp["threads"] + 0.5
+    return stamp["load_before"] < 0.3 and stamp["load_after"] < own_load(stamp) + 0.5
