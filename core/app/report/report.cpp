@@ -20,6 +20,7 @@ namespace {
 using html::escape;
 using html::number_text;
 
+constexpr std::size_t most_columns = 4;
 constexpr std::size_t most_picture_bytes =
     11'000'000;  // as PNG; a third more in the page, beside the 3D data
 
@@ -64,8 +65,11 @@ std::string label(const MethodRecord& method, int level) {
   return "<b>" + escape(method.name) + "</b>, level " + std::to_string(level);
 }
 
+/// A column for each method; the levels of a single method stand in rows.
 std::string state_grid(const RunData& run, const Gallery& gallery) {
-  std::string text = grid_open(run.methods.size()) + grid_head(run);
+  const bool single = run.methods.size() == 1;
+  std::string text = single ? grid_open(std::clamp<std::size_t>(run.level_indices().size(), 1, most_columns))
+                            : grid_open(run.methods.size()) + grid_head(run);
   for (const int level : run.level_indices()) {
     for (const MethodRecord& method : run.methods) {
       const LevelRecord* r = method.level(level);
