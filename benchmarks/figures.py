@@ -4,7 +4,7 @@ A function of a record that is not stored raises FileNotFoundError; fill_figures
 
 import re
 
-from records import RESULTS, conditions, figure, median, read, seconds_text, with_range
+from records import RESULTS, WITHOUT_CONTACT, conditions, figure, median, read, seconds_text, with_range
 
 METHODS = ["pcs", "cascadic", "newton"]
 
@@ -69,7 +69,7 @@ def scenes(study, columns):
         if len(cells) != len(head) or cells[0] == "method":
             break
         rows.append([cells[0]] + [cells[head.index(c)] for c in columns])
-    right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", "final energy, pcs minus cascadic [J]") else "l" for c in columns)
+    right = "l" + "".join("r" if c in ("preview's flops, relative to cascadic", TOP[-1]) else "l" for c in columns)
     return table(["scene"] + columns, rows, [f"{study}.md"], right)
 
 
@@ -271,8 +271,8 @@ def studies():
 
 
 def solves(*names):
-    """Number of solves of studies, and of those with an intersection."""
-    records = [r for name in names for r in read(f"{name}.json")]
+    """Number of solves with contact of studies, and of those with an intersection."""
+    records = [r for name in names for r in read(f"{name}.json") if r["scene"] not in WITHOUT_CONTACT]
     return len(records), sum(r["intersections"] > 0 for r in records)
 
 
@@ -290,7 +290,7 @@ def row_count(name):
 
 
 TOP = ["preview, RMS: pcs / cascadic", "overlap", "finest level, iterations: pcs / cascadic / direct",
-       "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic [J]"]
+       "total flops, relative to direct: pcs / cascadic", "final energy, pcs minus cascadic, start by start [J]"]
 
 BLOCKS = {
     "sphere": lambda: sphere(["iterations", "preview [s]", "total [s]", "flops, relative to direct", "final energy [J]",

@@ -9,6 +9,8 @@ RESULTS = ROOT / "benchmarks/results"
 CONVERGED = ["converged", "converged_to_rounding"]
 # One experiment under two names: the second is not run again, and shares the first one's record.
 TWINS = {"triangulation_1": "materials_2", "materials_3": "sphere_fine"}
+# No contact model looks for their intersections.
+WITHOUT_CONTACT = ["pinned_square", "pinned_square_interior"]
 
 
 def figure(value, digits=3):
