@@ -257,7 +257,6 @@ STUDIES = [
     ("[Table 1](table1.md)", "table1.md"),
     ("[scenes](scenes.md)", "scenes.md"),
     ("[scenes, three levels](scenes.md)", "scenes_levels_3.md"),
-    ("the paper's settings", "papers_settings.md"),
     ("[the dragon, by decrements, four levels](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements_levels_4.md"),
     ("the dragon, by decrements", "dragon_decrements.md"),
 ]

@@ -57,7 +57,6 @@ STUDIES = {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
-    "papers_settings": previews("papers_settings", "PCS against direct, the paper's settings and ours", 3),
     "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
     "interpolation": previews("interpolation", "the choice of interpolation", 3),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
