@@ -455,6 +455,31 @@ TEST_CASE("keys that the shape or the region does not read, and empty items, are
         "error: e.yaml:5:15: \"file\" in cloth needs \"shape: file\"; here \"shape\" is square\n");
   CHECK(said("cloth: {shape: disc, side: 3}\n") ==
         "error: e.yaml:5:28: \"side\" in cloth needs \"shape: square\"; here \"shape\" is disc\n");
+  CHECK(said("cloth: {shape: disc, triangulation: criss_cross, columns: 4}\n") ==
+        "error: e.yaml:5:37: \"triangulation\" in cloth needs \"shape: square or shape: rectangle\"; here "
+        "\"shape\" "
+        "is disc\n"
+        "error: e.yaml:5:59: \"columns\" in cloth needs \"shape: square or shape: rectangle\"; here "
+        "\"shape\" is "
+        "disc\n");
+  CHECK(said("cloth: {vertices: 400, columns: 9, rows: 9}\n") ==
+        "error: e.yaml:5:19: \"vertices\" in cloth is not read beside \"columns\" and \"rows\"; leave it "
+        "out, or "
+        "set them to 0\n");
+  CHECK(
+      said("cloth: {triangulation: random, rows: 9}\n") ==
+      "error: e.yaml:5:38: \"rows\" in cloth is not read with \"triangulation: random\"; \"vertices\" counts "
+      "them\n");
+  CHECK(
+      said("contact: shapes\nobstacles: [{shape: half_space, rotate: [10, 0, 0]}]\n") ==
+      "error: e.yaml:6:41: \"rotate\" in obstacles needs \"shape: sphere or shape: box or shape: capsule or "
+      "shape: cylinder\"; here \"shape\" is half_space\n");
+  CHECK(said("contact: shapes\nobstacles: [{shape: sphere, size: [1, 1, 1]}]\n") ==
+        "error: e.yaml:6:35: \"size\" in obstacles needs \"shape: box\"; here \"shape\" is sphere\n");
+  CHECK(said("contact: ipc\nobstacles: [{mesh: ball.ply, radius: 0.3}]\n") ==
+        "error: e.yaml:6:38: \"radius\" in obstacles needs \"meshed_shape: sphere\"; here \"meshed_shape\" "
+        "is not "
+        "given\n");
   CHECK(said("pins: [{point: [1, 1, 1], radius: 1}]\n") ==
         "error: e.yaml:5:35: \"radius\" in pins needs \"region: ball\"; here \"region\" is nearest\n");
   CHECK(said("pins: [{region: border, point: [1, 0, 0]}]\n") ==

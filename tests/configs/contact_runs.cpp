@@ -52,6 +52,10 @@ TEST_CASE("a start that touches an obstacle is refused, with the pairs and the l
       "[{name: table, meshed_shape: box, size: [0.01, 0.01, 0.2], translate: [0.135, 0.12, 0.02]}]";
   CHECK_THAT(said_of_contact(text, "--set start.perturbation=0 --set 'obstacles=" + table + "'"),
              Catch::StartsWith(place + "cloth triangle 108 and table triangle 4 at (0.135, 0.115, 0.11)\n"));
+  CHECK_THAT(
+      said_of_contact(text, "--set 'pins=[{point: [0.2, 0.2, 0], translate: [-0.2, -0.2, 0]}]'"),
+      Catch::StartsWith("error: e.yaml:4:8: the start of level 0 touches (pinned vertices begin at their "
+                        "targets): cloth triangle "));
 }
 
 TEST_CASE("a start is checked on every level") {

@@ -48,7 +48,7 @@ std::string made_small(const std::string& command) {
   if (!command.starts_with("build/bin/drape run ") || command.find("--resume") != std::string::npos)
     return command;
   return std::regex_replace(command, std::regex(" --levels[ =][0-9]+"), "") +
-         " --overwrite --set levels=1 --set cloth.columns=8 --set cloth.rows=8 --set cloth.vertices=64"
+         " --overwrite --set levels=1 --set cloth.columns=0 --set cloth.rows=0 --set cloth.vertices=64"
          " --set newton.force_tolerance=1e-2";
 }
 

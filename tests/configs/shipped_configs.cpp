@@ -50,7 +50,7 @@ std::string shrunk(const fs::path& config) {
   const bool from_file = shape && shape->scalar == "file";
   const std::string tolerance = " --set newton.force_tolerance=1e-2";
   if (from_file) return tolerance + " --set levels=1";
-  return tolerance + " --set levels=2 --set cloth.columns=16 --set cloth.rows=16 --set cloth.vertices=256";
+  return tolerance + " --set levels=2 --set cloth.columns=0 --set cloth.rows=0 --set cloth.vertices=256";
 }
 
 }  // namespace

@@ -569,6 +569,16 @@ methods: {newton: {}}
   CHECK(s.levels.back().message ==
         "energy or forces at the start are not finite: triangle 0, stretched to 1.2 (limit 1.1) and 7 more; "
         "start nearer to the rest shape, or raise the limit");
+  const Solved pinned = solve_yaml(R"(
+name: pulled
+cloth: {shape: square, side: 0.1, columns: 3, rows: 3}
+levels: 1
+pins: [{point: [0, 0, 0], translate: [-0.1, 0, 0]}]
+energies: [neo_hookean, {type: strain_limit, limit: 1.1}, gravity]
+methods: {newton: {}}
+)");
+  CHECK_THAT(pinned.levels.back().message,
+             Catch::EndsWith("; pinned vertices begin at their targets: a schedule moves pins far"));
 }
 
 TEST_CASE("Restored contacts have the same candidates and tangential displacements") {

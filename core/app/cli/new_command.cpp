@@ -19,7 +19,7 @@ namespace {
 /// The experiment, less its name.
 constexpr const char* first_experiment = R"yaml(
 # The coarsest mesh: a flat pattern (square, rectangle, disc, polygon), or `shape: file` with `file: mesh.obj`.
-cloth: {shape: square, side: 1, columns: 30, rows: 30}
+cloth: {shape: square, side: 1, vertices: 900}
 
 # Every level has four times the triangles of the one before: 900, 3.5K and 14K vertices here.
 levels: 3

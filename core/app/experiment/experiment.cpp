@@ -13,6 +13,29 @@
 
 namespace drape {
 
+namespace {
+
+/// `vertices`, and `columns` with `rows`, count the same. The one that would not be read is refused, unless
+/// it is the default, which a saved config has.
+void check_vertex_counts(const Experiment& e, ConfigErrors& errors) {
+  const ClothParameters& c = e.parameters.cloth;
+  const ConfigNode* cloth = e.source.find("cloth");
+  if (!cloth || (c.shape != "square" && c.shape != "rectangle")) return;
+  const auto refuse = [&](const std::string& key, const std::string& why) {
+    if (const ConfigNode* written = cloth->find(key))
+      errors.push_back({written->where, "\"" + key + "\" in cloth is not read " + why});
+  };
+  if (c.triangulation == "random") {
+    const std::string why = "with \"triangulation: random\"; \"vertices\" counts them";
+    if (c.columns > 0) refuse("columns", why);
+    if (c.rows > 0) refuse("rows", why);
+  } else if (c.columns > 0 && c.rows > 0 && c.vertices != ClothParameters().vertices) {
+    refuse("vertices", "beside \"columns\" and \"rows\"; leave it out, or set them to 0");
+  }
+}
+
+}  // namespace
+
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors) {
   const bool usable =
@@ -46,6 +69,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.resolved = schema.write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
+  check_vertex_counts(e, errors);
   make_plugins(registry, errors, e);
   check_schedule(e, errors);
   // The common newton section is read once for itself and once in each method: report each fault once.

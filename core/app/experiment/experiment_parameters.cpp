@@ -46,18 +46,22 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .description("mesh of the rest shape (OBJ, OFF or PLY), relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
+      .only_with("shape", {"square", "rectangle"})
       .description("triangulation of a square or rectangle; discs and polygons are Delaunay meshes");
   d.add("vertices", &ClothParameters::vertices)
       .at_least(3)
       .at_most(bounds::most_vertices)
-      .description("approximate number of vertices of the coarsest level");
+      .only_with("shape", {"square", "rectangle", "disc", "polygon"})
+      .description("approximate number of vertices of the coarsest level; not beside `columns` and `rows`");
   d.add("columns", &ClothParameters::columns)
       .at_least(0)
       .at_most(bounds::most_vertices)
+      .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the width of a grid; 0 derives it from `vertices`");
   d.add("rows", &ClothParameters::rows)
       .at_least(0)
       .at_most(bounds::most_vertices)
+      .only_with("shape", {"square", "rectangle"})
       .description("number of vertices along the height of a grid; 0 derives it from `vertices`");
   d.add("seed", &ClothParameters::seed)
       .at_least(0)

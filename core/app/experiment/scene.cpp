@@ -130,11 +130,15 @@ bool check_start(const Experiment& e, const Level& level, const Positions& x, Co
 void refuse_intersecting_start(const Experiment& e, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors) {
   constexpr std::size_t max_listed = 3;  // of each contact model
+  const auto& pins = e.parameters.pins;
+  const bool moved =
+      std::any_of(pins.begin(), pins.end(), [](const auto& pin) { return pin.has_transform(); });
+  const std::string remark = moved ? " (pinned vertices begin at their targets)" : "";
   for (const auto& contact : model.contacts()) {
     const std::vector<Intersection> found = contact->intersections(start);
     for (std::size_t k = 0; k < std::min(found.size(), max_listed); ++k)
       errors.push_back({e.location_of("start"), "the start of level " + std::to_string(model.level().index) +
-                                                    " touches: " + to_string(found[k])});
+                                                    " touches" + remark + ": " + to_string(found[k])});
     if (found.size() > max_listed)
       errors.push_back({e.location_of("start"), "… and " + std::to_string(found.size() - max_listed) +
                                                     " more pairs; move the start and the obstacle apart"});

@@ -49,8 +49,9 @@ void bind_level_record(py::module_& m) {
       .def_property_readonly("iterations", count_of_level(&LevelRecord::newton_iterations))
       .def_property_readonly("seconds", of_level(&LevelRecord::seconds))
       .def_property_readonly("energy", of_level(&LevelRecord::energy), "[J]")
-      .def_property_readonly("energy_on_finest", of_level(&LevelRecord::energy_on_finest),
-                             "Energy of the finest model at the prolonged state [J].")
+      .def_property_readonly(
+          "energy_on_finest", of_level(&LevelRecord::energy_on_finest),
+          "The finest level's energy, without contact and strain limits, at the prolonged state [J].")
       .def_property_readonly("force_residual", of_level(&LevelRecord::force_residual), "[1]")
       .def_property_readonly("intersections", count_of_level(&LevelRecord::intersections))
       .def_property_readonly("smallest_gap", of_level(&LevelRecord::smallest_gap), "[m]")

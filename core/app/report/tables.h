@@ -22,7 +22,7 @@ std::optional<Verdict> intersection_verdict(const RunData& run);
 /// HTML list of the messages of levels that did not converge; empty without any.
 std::string troubles(const RunData& run);
 
-/// The energy of the finest model in the last state of a method [J].
+/// The finest level's energy, without contact and strain limits, in the last state of a method [J].
 OptionalNumber final_energy(const RunData& run, const MethodRecord& method);
 
 /// A method compared with the others that converged, in a few words.

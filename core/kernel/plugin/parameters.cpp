@@ -207,7 +207,7 @@ void refuse_unread(const Schema& schema, const Parameter& p, const void* object,
   for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
   errors.push_back({written->where, "\"" + p.name + "\"" + (schema.name.empty() ? "" : " in " + schema.name) +
                                         " needs \"" + needed + "\"; here \"" + p.selector + "\" is " +
-                                        chosen});
+                                        (chosen.empty() ? "not given" : chosen)});
 }
 
 /// "did you mean …?" or the known keys, for an unknown one.

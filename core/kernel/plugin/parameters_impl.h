@@ -201,6 +201,14 @@ class Declaration {
     return add(name, member);
   }
 
+  /// A parameter that is declared already, as by a function that several structs call. Valid until the next
+  /// one is added, as every handle. Throws std::runtime_error if there is none of this name.
+  ParameterHandle declared(const std::string& name) {
+    for (Parameter& p : schema.parameters)
+      if (p.name == name) return ParameterHandle(p);
+    throw std::runtime_error("parameter \"" + name + "\" is not declared");
+  }
+
   /// A key of an earlier version whose parameter is now at `path`, counted from the top of the file.
   void moved(const std::string& key, const std::string& path) { schema.moved[key] = path; }
 

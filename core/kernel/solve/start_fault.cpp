@@ -38,7 +38,10 @@ std::string degenerate_triangle(const Triangles& triangles, const Positions& x) 
 std::string fault_at_start(const Objective& objective, const Positions& x, const Positions& gradient) {
   const LevelModel& model = objective.model();
   if (const std::string violation = strain_limit_violations(model.limits(), x, 1); !violation.empty())
-    return violation + "; start nearer to the rest shape, or raise the limit";
+    return violation + "; start nearer to the rest shape, or raise the limit" +
+           (std::count(model.fixed().begin(), model.fixed().end(), 0) < std::ssize(model.fixed())
+                ? "; pinned vertices begin at their targets: a schedule moves pins far"
+                : "");
   if (const auto v = first_row_not_finite(x))
     return "vertex " + std::to_string(*v) + " has no finite position; change the start";
   std::string what;

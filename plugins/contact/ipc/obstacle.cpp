@@ -67,15 +67,18 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
+      .only_with("meshed_shape", {"box"})
       .description("edge lengths of a box");
   d.add("radius", &P::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
+      .only_with("meshed_shape", {"sphere"})
       .description("radius of a sphere");
   d.add("subdivisions", &P::subdivisions)
       .at_least(0)
       .at_most(8)
+      .only_with("meshed_shape", {"sphere"})
       .description(
           "how often a sphere's icosahedron is subdivided; the sphere has 20 · 4^subdivisions triangles");
   d.add("animation", &P::animation)

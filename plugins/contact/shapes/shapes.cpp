@@ -58,28 +58,33 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
           "centred at the origin; capsule: all points within radius of a segment; half_space: all points "
           "behind a plane")
       .source("this project");
+  d.declared("rotate").only_with("shape", {"sphere", "box", "capsule", "cylinder"});
   d.add("radius", &ShapeParameters::radius)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"sphere", "capsule", "cylinder"})
       .description("radius of a sphere, capsule or cylinder")
       .source("this project");
   d.add("size", &ShapeParameters::size)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"box"})
       .description("edge lengths of a box")
       .source("this project");
   d.add("height", &ShapeParameters::height)
       .unit("m")
       .at_least(bounds::smallest_length)
       .at_most(bounds::largest_length)
+      .only_with("shape", {"capsule", "cylinder"})
       .description("length along the local z axis of a cylinder, or of a capsule without its hemispheres")
       .source("this project");
   d.add("normal", &ShapeParameters::normal)
       .at_least(-1e6)
       .at_most(1e6)
-      .description("outward normal of a half_space, of any length; a half_space has no `rotate`")
+      .only_with("shape", {"half_space"})
+      .description("outward normal of a half_space, of any length, in place of `rotate`")
       .source("this project");
 }
 
