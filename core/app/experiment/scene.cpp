@@ -9,10 +9,10 @@
 #include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape {
 
@@ -81,7 +81,7 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
     for (const std::string& fault : check_coordinates(mesh.vertices))
       errors.push_back({e.location_of("start"), file + ": " + fault});
     if (mesh.vertices.rows() == coarsest.vertex_count() &&
-        same_triangles(mesh.triangles, coarsest.rest.triangles))
+        same_entries(mesh.triangles, coarsest.rest.triangles))
       return mesh.vertices;
     errors.push_back(
         {e.location_of("start"), "\"start\": " + file +

@@ -8,8 +8,8 @@
 #include "core/kernel/contact/nonlinear_ccd.h"
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/rotation.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape::ipc {
 namespace {
@@ -155,7 +155,7 @@ ObstacleTrajectory::ObstacleTrajectory(const Obstacles& before, const Obstacles&
     throw std::runtime_error("obstacles cannot appear or vanish during a run");
   for (std::size_t i = 0; i < after.bodies.size(); ++i) {
     const Obstacle &from = before.bodies[i], &to = after.bodies[i];
-    if (!same_triangles(from.mesh.triangles, to.mesh.triangles))
+    if (!same_entries(from.mesh.triangles, to.mesh.triangles))
       throw std::runtime_error("obstacle \"" + to.name + "\": its mesh changed: it has " +
                                std::to_string(to.mesh.triangles.rows()) + " triangles instead of " +
                                std::to_string(from.mesh.triangles.rows()) +
