@@ -6,6 +6,7 @@
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/reference_file.h"
+#include "core/app/experiment/schedule_check.h"
 #include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/files/message_text.h"
@@ -207,6 +208,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
+  check_schedule_on_levels(e, *scene, errors);
+  if (!errors.empty()) return nullptr;
   if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;
