@@ -171,6 +171,29 @@ TEST_CASE("A pin that is dragged into an obstacle stops there and is named", "[p
   CHECK(increments.intersections == 0);
 }
 
+TEST_CASE("A pin that stopped short of its target is named where the level ends without equilibrium too",
+          "[physics]") {
+  const std::string scene = dragged_onto_a_ball(
+      1,
+      "{steps: 1, keys: [{parameter: pins.0.translate, times: [0, 1], values: [[-0.25, -0.25, 0.22], [-0.25, "
+      "-0.25, 0.1]]}]}");
+  // Short steps approach the equilibrium slowly, after the target has been found infeasible.
+  const std::string newton = "newton: {step_size: 0.02, step_growth: 1, force_tolerance: 1e-6, max_steps: ";
+  Solved whole = scene_from(scene + newton + "5000}\n");
+  Increments increments(whole);
+  run(whole, increments);
+  REQUIRE(whole.levels[0].outcome == Outcome::infeasible);
+  REQUIRE(!increments.rows.empty());
+  Solved cut = scene_from(scene + newton + std::to_string(increments.rows.back().steps - 1) + "}\n");
+  Increments others(cut);
+  run(cut, others);
+  CHECK(cut.levels[0].outcome == Outcome::max_steps_reached);
+  CHECK_THAT(cut.levels[0].message,
+             Catch::StartsWith("no equilibrium within max_steps = ") &&
+                 Catch::Contains("; pin 0 stopped 0.0") &&
+                 Catch::Contains(" short of its target (vertex 44), blocked by cloth triangle "));
+}
+
 TEST_CASE("A target that an earlier increment did not reach stays in the level's message", "[physics]") {
   Solved s = scene_from(
       dragged_onto_a_ball(1,

@@ -87,6 +87,7 @@ TEST_CASE("Where no blend works, multiples of the masses are added") {
       CHECK(r.shifts[0] == 0);
       CHECK(r.shifts[1] == Approx(1e-3));
       CHECK(r.shifts[3] == Approx(1e-1));
+      CHECK(r.assembled.size() == 1);
       CHECK(r.assembled.back().kind == kind);
       CHECK(r.assembled.back().blend == 1);
       CHECK(modification.state().blend == HessianModification::blend_count - 1);

@@ -188,3 +188,31 @@ TEST_CASE("A model shares with another what is equal, and binds contacts from th
   CHECK(heavy.limits() != next.limits());
   CHECK(from(heavy, 0) == next.contacts()[0].get());
 }
+
+TEST_CASE("A model refuses an energy whose stencils differ from those of the model before", "[level_model]") {
+  using Make = std::unique_ptr<BoundEnergy> (*)();
+  struct Stenciled : OriginSprings {
+    explicit Stenciled(Stencils own) : OriginSprings(EnergyRole::membrane, 0), own(std::move(own)) {}
+    Stencils stencils() const override { return own; }
+    Stencils own;
+  };
+  const Make two = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {1}})); };
+  const Make four = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {1}, {2}, {3}})); };
+  const Make pairs = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0, 1}, {2, 3}})); };
+  const Make other = [] { return std::unique_ptr<BoundEnergy>(new Stenciled(Stencils{{0}, {2}})); };
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const auto model = [&](Make make, const LevelModel* before) {
+    return LevelModel(level, Material(), {{"springs", std::make_shared<Binding>(make)}}, {}, {}, before);
+  };
+  const std::vector<Make> kinds = {two, four, pairs, other};
+  for (std::size_t i = 0; i < kinds.size(); ++i)
+    for (std::size_t j = 0; j < kinds.size(); ++j) {
+      CAPTURE(i, j);
+      const LevelModel before = model(kinds[i], nullptr);
+      if (i == j)
+        CHECK_NOTHROW(model(kinds[j], &before));
+      else
+        CHECK_THROWS_WITH(model(kinds[j], &before),
+                          Catch::StartsWith("energy springs changes its stencils with a parameter"));
+    }
+}

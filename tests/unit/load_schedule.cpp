@@ -183,3 +183,74 @@ schedule: {steps: 4, keys: [{parameter: obstacles.0.subdivisions, times: [0, 2],
 )"),
       Catch::Contains("key \"obstacles.0.subdivisions\": \"subdivisions\" must be an integer, not 1.38"));
 }
+
+namespace {
+
+/// A sheet with two pins and a handle, and a schedule with these keys.
+std::string with_keys(const std::string& keys) {
+  return R"(name: regions
+cloth: {shape: square, side: 0.4, triangulation: one_way, columns: 5, rows: 5}
+levels: 2
+pins:
+  - {region: box, lower: [-0.05, -0.05, -1], upper: [0.05, 0.05, 1]}
+  - {region: ball, point: [0.4, 0, 0], radius: 0.15}
+handles: [{region: box, lower: [-1, 0.35, -1], upper: [1, 1, 1]}]
+energies: [neo_hookean, {type: midedge_bending, correction_tolerance: 1}, gravity]
+methods: {newton: {}}
+schedule:
+  steps: 4
+  keys: [)" +
+         keys + "]\n";
+}
+
+}  // namespace
+
+TEST_CASE("A key is refused before the run if a pin or handle has no vertex at one of its times") {
+  CHECK_THROWS_WITH(
+      scene_from(with_keys("{parameter: pins.1.point, times: [0, 1, 2], values: [[0.4, 0, 0], [0.4, 9, 0], "
+                           "[0.4, 0, 0]]}")),
+      Catch::Contains("key \"pins.1.point\" at pseudo-time 1: pin 1 (ball) selects no vertex of the coarsest "
+                      "level; widen its region"));
+  CHECK_THROWS_WITH(
+      scene_from(with_keys("{parameter: handles.0.upper, times: [0, 1, 2], values: [[1, 1, 1], [1, 0.3, 1], "
+                           "[1, 1, 1]]}")),
+      Catch::Contains("key \"handles.0.upper\" at pseudo-time 1: handle 0 (box) selects no vertex"));
+  // Each key is checked with the values of the others at that time: the bounds of this box move together.
+  CHECK_NOTHROW(scene_from(
+      with_keys("{parameter: pins.0.lower.0, times: [0, 1], values: [-0.05, 0.15]}, {parameter: "
+                "pins.0.upper.0, times: [0, 1], values: [0.05, 0.25]}, {parameter: pins.1.radius, times: [0, "
+                "1], values: [0.15, 0.25]}")));
+  // The key of another pin is not to blame.
+  CHECK_THROWS_WITH(
+      scene_from(with_keys("{parameter: pins.1.radius, times: [0, 1], values: [0.15, 0.2]}, "
+                           "{parameter: pins.0.lower.0, times: [0, 1], values: [-0.05, 0.02]}")),
+      Catch::Contains("key \"pins.0.lower.0\" at pseudo-time 1: pin 0 (box)") &&
+          !Catch::Contains("pins.1.radius"));
+}
+
+TEST_CASE("A key is refused before the run if it changes the stencils of an energy") {
+  CHECK_THROWS_WITH(
+      scene_from(with_keys("{parameter: handles.0.lower, times: [0, 2], values: [[-1, 0.35, -1], [-1, 0.1, "
+                           "-1]]}")),
+      Catch::Contains("key \"handles.0.lower\" at pseudo-time 2: energy handles changes its stencils"));
+  std::string random = with_keys(
+      "{parameter: energies.midedge_bending.correction_tolerance, times: [0, 1, 2], values: [1, 0, 1]}");
+  random.replace(random.find("triangulation: one_way, columns: 5, rows: 5"), 43,
+                 "triangulation: random, vertices: 40");
+  CHECK_THROWS_WITH(scene_from(random),
+                    Catch::Contains("key \"energies.midedge_bending.correction_tolerance\" at pseudo-time 1: "
+                                    "energy midedge_bending changes its stencils"));
+}
+
+TEST_CASE("A load at which a pin has no vertex is refused between the keys' times too") {
+  // The box passes between two vertices of the border.
+  const Solved s = scene_from(with_keys(
+      "{parameter: pins.0.lower.0, times: [0, 1], values: [-0.02, 0.08]}, {parameter: pins.0.upper.0, times: "
+      "[0, 1], values: [0.02, 0.12]}"));
+  const LoadSchedule schedule(s.experiment, *s.scene);
+  const auto model = [&](double time) {
+    return schedule.model(*schedule.at(schedule.values_at(time)), 0, *s.scene->models[0]);
+  };
+  CHECK(model(0)->dirichlet().size() == model(1)->dirichlet().size());
+  CHECK_THROWS_WITH(model(0.5), "pin 0 selects no vertex of level 0");
+}

@@ -420,3 +420,21 @@ TEST_CASE("a contact's friction is at most μ times its force and opposes the mo
   }
   CHECK(checked == 90);
 }
+
+TEST_CASE("pair contacts without friction give friction no group of contacts") {
+  PairPositions at;
+  at.col(0) << 0.3, 0.3, 0.1;
+  at.col(1) << 0, 0, 0;
+  at.col(2) << 1, 0, 0;
+  at.col(3) << 0, 1, 0;
+  OnePair c(PairKind::point_triangle, at);
+  c.with_gap_part(0.5);
+  for (const double mu : {0.0, 0.3}) {
+    c.pair.friction = mu;
+    FrictionContacts groups;
+    const auto set = c.set();
+    REQUIRE(set->contact_count() == 1);
+    dynamic_cast<const FrictionalCollisions&>(*set).append_friction_contacts(groups);
+    CHECK(groups.size() == (mu > 0 ? 1 : 0));
+  }
+}

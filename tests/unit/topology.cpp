@@ -5,8 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 using namespace drape;
 
@@ -41,10 +41,10 @@ TEST_CASE("the topology of two triangles", "[topology]") {
 
 TEST_CASE("meshes with another number of triangles have other triangles", "[topology]") {
   const Triangles two = grid({1, 1}, 2, 2, Diagonals::one_way).triangles, one = two.topRows(1);
-  CHECK(same_triangles(two, Triangles(two)));
-  CHECK_FALSE(same_triangles(one, two));
-  CHECK_FALSE(same_triangles(two, one));
-  CHECK_FALSE(same_triangles(two, two.colwise().reverse()));
+  CHECK(same_entries(two, Triangles(two)));
+  CHECK_FALSE(same_entries(one, two));
+  CHECK_FALSE(same_entries(two, one));
+  CHECK_FALSE(same_entries(two, two.colwise().reverse()));
 }
 
 TEST_CASE("hinges keep the mesh's orientation", "[topology]") {

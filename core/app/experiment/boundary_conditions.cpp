@@ -1,5 +1,7 @@
 #include "core/app/experiment/boundary_conditions.h"
 
+#include <stdexcept>
+
 #include "core/kernel/mesh/rotation.h"
 #include "core/kernel/model/position_penalty.h"
 
@@ -32,6 +34,13 @@ void check_selection(const std::string& word, std::size_t number, const VertexSe
                                    std::to_string(coarsest.vertex_count() - 1)});
 }
 
+/// Throws std::runtime_error if a pin or handle has no vertex on a level: check_pin and check_handle look at
+/// the loads of the keys' times, but an increment between them may end at such a load.
+void require_vertices(const std::vector<int>& selected, const std::string& name, const Level& level) {
+  if (selected.empty())
+    throw std::runtime_error(name + " selects no vertex of level " + std::to_string(level.index));
+}
+
 /// Soft positions: κ_B/2 Σ m_k ‖x_k − x̃_k‖² (supplement, section 4). Departure: the masses of each handle are
 /// scaled to their sum on the coarsest level, where one vertex stands for many. All levels are therefore
 /// equally stiff.
@@ -44,8 +53,10 @@ class Handles final : public Energy {
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     std::vector<PositionPenalty::Term> terms;
-    for (const HandleParameters& handle : handles_) {
+    for (std::size_t k = 0; k < handles_.size(); ++k) {
+      const HandleParameters& handle = handles_[k];
       const std::vector<int> own = selected_vertices(handle, level, coarsest_);
+      require_vertices(own, "handle " + std::to_string(k), level);
       double own_area = 0, coarse_area = 0;
       for (int v : own) own_area += level.vertex_area[v];
       for (int v : selected_vertices(handle, coarsest_, coarsest_)) coarse_area += coarsest_.vertex_area[v];
@@ -114,21 +125,33 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
 void check_boundary_conditions(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
   const ExperimentParameters& p = e.parameters;
   const auto location = [&](const char* key, std::size_t k) { return e.source.find(key)->items[k].where; };
-  for (std::size_t k = 0; k < p.pins.size(); ++k)
-    check_selection("pin", k, p.pins[k], location("pins", k), levels, errors);
+  for (std::size_t k = 0; k < p.pins.size(); ++k) check_pin(p, k, location("pins", k), levels, errors);
   for (std::size_t k = 0; k < p.handles.size(); ++k)
-    check_selection("handle", k, p.handles[k], location("handles", k), levels, errors);
+    check_handle(p, k, location("handles", k), levels, errors);
+}
+
+void check_pin(const ExperimentParameters& p, std::size_t k, const Location& where,
+               const std::vector<Level>& levels, ConfigErrors& errors) {
+  check_selection("pin", k, p.pins[k], where, levels, errors);
+}
+
+void check_handle(const ExperimentParameters& p, std::size_t k, const Location& where,
+                  const std::vector<Level>& levels, ConfigErrors& errors) {
+  check_selection("handle", k, p.handles[k], where, levels, errors);
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,
                                                 const Level& coarsest, const Positions& placed) {
   std::vector<DirichletVertex> by_vertex(level.vertex_count(), {-1, {}, 0});
-  for (std::size_t k = 0; k < p.pins.size(); ++k)
-    for (int v : selected_vertices(p.pins[k], level, coarsest))
+  for (std::size_t k = 0; k < p.pins.size(); ++k) {
+    const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
+    require_vertices(selected, "pin " + std::to_string(k), level);
+    for (const int v : selected)
       by_vertex[v] = {v,
                       p.pins[k].has_transform() ? p.pins[k].target(level.rest.vertices.row(v))
                                                 : Eigen::Vector3d(placed.row(v)),
                       static_cast<int>(k)};
+  }
   std::vector<DirichletVertex> dirichlet;
   for (const DirichletVertex& d : by_vertex)
     if (d.vertex >= 0) dirichlet.push_back(d);

@@ -13,8 +13,15 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
 void check_boundary_conditions(const Experiment& experiment, const std::vector<Level>& levels,
                                ConfigErrors& errors);
 
+/// The same for pin k alone, or handle k, with `where` as the errors' location.
+void check_pin(const ExperimentParameters& parameters, std::size_t k, const Location& where,
+               const std::vector<Level>& levels, ConfigErrors& errors);
+void check_handle(const ExperimentParameters& parameters, std::size_t k, const Location& where,
+                  const std::vector<Level>& levels, ConfigErrors& errors);
+
 /// The Dirichlet vertices of a level with their targets [m]. The last pin that selects a vertex decides; a
-/// pin without a transform keeps it at its position in `placed` (n×3) [m].
+/// pin without a transform keeps it at its position in `placed` (n×3) [m]. Throws std::runtime_error naming a
+/// pin that selects no vertex.
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
                                                 const Level& coarsest, const Positions& placed);
 

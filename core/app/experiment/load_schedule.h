@@ -28,7 +28,9 @@ class LoadSchedule {
   bool equilibrates() const { return equilibrates_; }
   /// The pseudo-time at the end of an increment, in the keys' unit, and the values of all keys there.
   double time(int increment) const { return keys_.time(increment); }
-  std::vector<double> values(int increment) const { return keys_.at(keys_.time(increment)); }
+  std::vector<double> values(int increment) const { return values_at(time(increment)); }
+  /// The values of all keys at a pseudo-time.
+  std::vector<double> values_at(double time) const { return keys_.at(time); }
 
   /// The load of the scene's own models.
   const std::shared_ptr<const LoadState>& first() const { return first_; }

@@ -1,7 +1,7 @@
 #include "core/app/experiment/reference_file.h"
 
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape {
 
@@ -27,7 +27,7 @@ std::optional<Positions> read_reference(const Experiment& experiment, const Hier
       return refuse(file.string() + " has " + std::to_string(mesh.vertices.rows()) +
                     " vertices, but the finest level has " + std::to_string(finest.vertex_count()) +
                     "; take a state of that level");
-    if (!same_triangles(mesh.triangles, finest.rest.triangles))
+    if (!same_entries(mesh.triangles, finest.rest.triangles))
       return refuse(file.string() + " has other triangles than the finest level; take a state of that level");
     return mesh.vertices;
   } catch (const std::exception& problem) {

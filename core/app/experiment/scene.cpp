@@ -6,13 +6,14 @@
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/reference_file.h"
+#include "core/app/experiment/schedule_check.h"
 #include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape {
 
@@ -81,7 +82,7 @@ Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& e
     for (const std::string& fault : check_coordinates(mesh.vertices))
       errors.push_back({e.location_of("start"), file + ": " + fault});
     if (mesh.vertices.rows() == coarsest.vertex_count() &&
-        same_triangles(mesh.triangles, coarsest.rest.triangles))
+        same_entries(mesh.triangles, coarsest.rest.triangles))
       return mesh.vertices;
     errors.push_back(
         {e.location_of("start"), "\"start\": " + file +
@@ -211,6 +212,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
+  check_schedule_on_levels(e, *scene, errors);
+  if (!errors.empty()) return nullptr;
   if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;

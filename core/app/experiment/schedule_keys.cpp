@@ -76,23 +76,6 @@ void check_plugins(const Experiment& e, const ExperimentParameters& changed, Con
     make_from<ContactModel>(*e.registry, contacts[k].node, errors, nullptr, e.contacts[k].get());
 }
 
-/// A key's path with indices in place of names, so that paths of one parameter are equal.
-std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
-  std::vector<std::string> words = split(path, '.');
-  const ConfigNode* node = &config;
-  for (std::string& word : words) {
-    if (!node) break;
-    if (node->kind == NodeKind::list) {
-      const auto index = node->index_of(word);
-      if (index) word = std::to_string(*index);
-      node = index ? &node->items[*index] : nullptr;
-    } else {
-      node = node->find(word);
-    }
-  }
-  return words;
-}
-
 /// Appends an error for every key that sets what an earlier one sets.
 void refuse_repeated_keys(const Experiment& e, ConfigErrors& errors) {
   const std::vector<KeyParameters>& keys = e.parameters.schedule.keys;
@@ -130,6 +113,22 @@ std::vector<ConfigNode> with_values_between(const KeyParameters& key) {
 }
 
 }  // namespace
+
+std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
+  std::vector<std::string> words = split(path, '.');
+  const ConfigNode* node = &config;
+  for (std::string& word : words) {
+    if (!node) break;
+    if (node->kind == NodeKind::list) {
+      const auto index = node->index_of(word);
+      if (index) word = std::to_string(*index);
+      node = index ? &node->items[*index] : nullptr;
+    } else {
+      node = node->find(word);
+    }
+  }
+  return words;
+}
 
 void KeyParameters::declare(Declaration<KeyParameters>& d) {
   d.add("parameter", &KeyParameters::parameter)

@@ -12,6 +12,9 @@ void set_first_keys(ConfigNode& source);
 /// that their parameters refuse.
 void check_schedule(const Experiment& experiment, ConfigErrors& errors);
 
+/// A key's path in an experiment's map, with indices in place of names: paths of one parameter are equal.
+std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path);
+
 /// The values of all keys of a schedule over pseudo-time, one after another.
 class KeyedValues {
  public:

@@ -12,12 +12,6 @@ using Eigen::Vector3d, Eigen::Vector4d;
 /// Squared sine below which two directions count as parallel: parameters along both are then round-off.
 constexpr double parallel_squared_sine = 1e-22;
 
-/// The parameter in [0, 1] of the point nearest to p on the segment from the origin to u.
-double nearest(const Vector3d& u, const Vector3d& p) {
-  const double square = u.squaredNorm();
-  return square > 0 ? std::clamp(p.dot(u) / square, 0.0, 1.0) : 0.0;
-}
-
 void add_direction(Closest& result, const Vector4d& direction) {
   result.direction.col(result.free++) = direction;
 }
@@ -65,7 +59,7 @@ Closest closest_point_triangle(const Vector3d& x0, const Vector3d& x1, const Vec
     if (inside[k] > 0) continue;
     const int i = (k + 1) % 3, j = (k + 2) % 3;
     const Vector3d edge = corners[j] - corners[i], from = p - corners[i];
-    const double t = nearest(edge, from), square = (from - t * edge).squaredNorm();
+    const double t = nearest_on_segment(edge, from), square = (from - t * edge).squaredNorm();
     if (square >= smallest) continue;
     smallest = square;
     result = Closest();
@@ -82,8 +76,8 @@ Closest closest_edge_edge(const Vector3d& x0, const Vector3d& x1, const Vector3d
   const double square = n.squaredNorm();
   // Parallel lines allow any s. t is the nearest to it; if t is clamped, s is the nearest to that end.
   double s = square > 0 ? std::clamp(w.cross(v).dot(n) / square, 0.0, 1.0) : 0.0;
-  const double t = nearest(v, s * u - w);
-  if (t == 0 || t == 1) s = nearest(u, t * v + w);
+  const double t = nearest_on_segment(v, s * u - w);
+  if (t == 0 || t == 1) s = nearest_on_segment(u, t * v + w);
   Closest result;
   result.c = {1 - s, s, -(1 - t), -t};
   const bool s_free = s > 0 && s<1, t_free = t> 0 && t < 1;

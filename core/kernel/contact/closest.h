@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 namespace drape {
 
@@ -12,6 +13,13 @@ struct Closest {
   Directions direction = Directions::Zero();    ///< ∂c/∂t of the free parameters
   int free = 0;                                 ///< number of free parameters, 0 to 2
 };
+
+/// The parameter in [0, 1] of the point nearest to p on the segment from the origin to u; 0 for a segment
+/// without length.
+inline double nearest_on_segment(const Eigen::Vector3d& u, const Eigen::Vector3d& p) {
+  const double square = u.squaredNorm();
+  return square > 0 ? std::clamp(p.dot(u) / square, 0.0, 1.0) : 0.0;
+}
 
 /// Point x0 against triangle (x1, x2, x3): c_0 = 1, c_1 to c_3 are minus the barycentric coordinates. A
 /// triangle without area counts as its longest edge.

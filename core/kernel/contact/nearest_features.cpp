@@ -15,12 +15,6 @@ namespace {
 /// Sums of coefficients below this are round-off of terms that cancel.
 constexpr double zero_coefficient = 1e-12;
 
-/// The parameter in [0, 1] of the segment's point nearest to p.
-double nearest(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
-  const Vector3d u = b - a;
-  return std::clamp((p - a).dot(u) / u.squaredNorm(), 0.0, 1.0);
-}
-
 }  // namespace
 
 void FeatureSearch::add_triangle(const Vector3d& p, int t) {
@@ -47,7 +41,7 @@ void FeatureSearch::add_edge(const Vector3d& p, int e) {
   if (coefficient == 0) return;
   const auto v = obstacles_.surface.edges.row(e);
   const Vector3d a = position(v[0]), b = position(v[1]);
-  const double t = nearest(p, a, b);
+  const double t = nearest_on_segment(b - a, p - a);
   if ((p - a - t * (b - a)).squaredNorm() >= dhat_ * dhat_) return;
   if (t > 0 && t < 1)
     terms_.push_back({Kind::edge, e, -coefficient});
@@ -99,7 +93,7 @@ NearestFeature FeatureSearch::feature(const Vector3d& p, const Term& term) const
   } else if (term.kind == Kind::edge) {
     for (int k = 0; k < 2; ++k) f.vertices[k] = surface.edges(term.index, k);
     const Vector3d a = position(f.vertices[0]), b = position(f.vertices[1]);
-    const double t = nearest(p, a, b);
+    const double t = nearest_on_segment(b - a, p - a);
     f.weights = {1 - t, t, 0};
     f.along = (b - a).normalized();
     Vector3d r = p - a;

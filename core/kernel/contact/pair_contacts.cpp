@@ -23,6 +23,7 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
     for (int i = 0; i < count_; ++i) {
       sum += contacts_[i].value(parameters_.dhat);
       smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
+      frictional_count_ += contacts_[i].pair.friction != 0;
     }
     value_ = parameters_.stiffness * sum;
   }
@@ -67,8 +68,9 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
   }
 
   void append_friction_contacts(FrictionContacts& groups) const override {
+    if (frictional_count_ == 0) return;
     std::vector<FrictionContact>& result = groups.emplace_back();
-    result.reserve(count_);
+    result.reserve(frictional_count_);
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
       if (contact.pair.friction == 0) continue;
@@ -108,7 +110,7 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
   }
 
   std::unique_ptr<Contact[]> contacts_;
-  int count_, cloth_count_;
+  int count_, cloth_count_, frictional_count_ = 0;
   BarrierParameters parameters_;
   double value_ = 0, smallest_gap_ = std::numeric_limits<double>::infinity();
 };

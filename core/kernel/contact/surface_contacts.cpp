@@ -81,6 +81,7 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
   void append_friction_contacts(FrictionContacts& groups) const override {
     std::vector<FrictionContact>& frictions = groups.emplace_back();
     for (const SurfaceContact& contact : all_.contacts) {
+      if (!has_friction(contact)) continue;
       const std::vector<double> pressures = all_.pressures(contact, p_.dhat);
       for (int i = contact.first; i < contact.last; ++i) {
         const NearestFeature& f = all_.features[i];
@@ -99,6 +100,11 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
 
  private:
   int vertex_count() const { return static_cast<int>(all_.contacts.size()); }
+
+  bool has_friction(const SurfaceContact& contact) const {
+    return std::any_of(all_.features.begin() + contact.first, all_.features.begin() + contact.last,
+                       [](const NearestFeature& feature) { return feature.friction > 0; });
+  }
 
   double stiffness(const SurfaceContact& contact, int i) const {
     return p_.stiffness * contact.weight * all_.features[i].coefficient;

@@ -88,8 +88,8 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
     store_tangential_displacements(from);
     update_lagging(from);
   }
-  // displacement() needs the old models, and candidates and collisions may refer to them until they are
-  // cleared.
+  // displacement() needs the old models, and the old candidates and collisions may refer to them until
+  // reset() destroys these.
   const BoundContacts before = std::exchange(models_, models);
   store_tangential_displacements(x, &before);
   reset();

@@ -23,7 +23,8 @@ std::string to_string(const Intersection& intersection);
 /// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
 /// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
 /// columns without a cloth vertex are -1. Collisions with friction are FrictionalCollisions too
-/// (core/kernel/model/friction.h).
+/// (core/kernel/model/friction.h). Collisions may refer to the BoundContact, which outlives them, but not to
+/// the candidates that built them: other candidates replace those while the collisions are in use.
 class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
@@ -38,7 +39,8 @@ class ElementGaps {
   virtual void append_gaps(std::vector<double>& gaps) const = 0;
 };
 
-/// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them.
+/// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them. They may refer to the
+/// BoundContact.
 class CollisionCandidates {
  public:
   virtual ~CollisionCandidates() = default;

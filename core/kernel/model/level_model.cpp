@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/linear_algebra/same_entries.h"
 
 namespace drape {
 
@@ -80,7 +81,7 @@ void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const L
         throw std::runtime_error("energy " + term.name +
                                  ": bind returned null; return an object, which may have no elements");
       Stencils own = term.energy->stencils();
-      if (old && own != old->energy->stencils())
+      if (old && !same_entries(own, old->energy->stencils()))
         throw std::runtime_error("energy " + term.name +
                                  " changes its stencils with a parameter that a schedule changes; "
                                  "stencils must stay the same");

@@ -14,14 +14,12 @@ double LevelModel::energy_gradient(const Positions& x, Positions& g) const {
 }
 
 BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection) const {
-  std::vector<std::unique_ptr<CollisionCandidates>> candidates;  // outlive the collisions
   std::vector<std::unique_ptr<Collisions>> collisions;
   std::vector<const BoundEnergy*> energies;
   for (const Term& term : terms_)
     if (!term.is_linear()) energies.push_back(term.energy.get());
   for (const auto& contact : contacts_) {
-    candidates.push_back(contact->build_candidates(x, x));
-    collisions.push_back(candidates.back()->build_collisions(x));
+    collisions.push_back(contact->build_candidates(x, x)->build_collisions(x));
     energies.push_back(collisions.back().get());
   }
   std::vector<Stencils> stencils;

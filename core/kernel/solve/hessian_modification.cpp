@@ -38,24 +38,33 @@ HessianModification::HessianModification(const NewtonParameters& parameters)
 
 std::string HessianModification::factorise(const Assemble& assemble, const Factorise& factorise,
                                            const std::vector<char>& fixed, bool after_full_step) {
-  if (adaptive_ && factorise_blended(assemble, factorise, after_full_step)) return "";
-  const BlockMatrix& matrix = assemble(projection_);
-  if (!adaptive_ && factorise(matrix, 0)) return "";
-  if (const std::string where = first_not_finite(matrix, fixed); !where.empty())
+  const BlockMatrix* matrix = nullptr;  // the last that was tried, with the whole projection
+  if (adaptive_) {
+    matrix = blend_until_definite(assemble, factorise, after_full_step);
+    if (!matrix) return "";
+  } else {
+    matrix = &assemble(projection_);
+    if (factorise(*matrix, 0)) return "";
+  }
+  if (const std::string where = first_not_finite(*matrix, fixed); !where.empty())
     return "the Newton matrix holds entries that are not finite, first in " + where;
   // Without projection, or with a rigid mode in the static form: add mass until it factorises.
   for (double shift = first_shift_; shift < max_shift; shift *= 10)
-    if (factorise(matrix, shift)) return "";
+    if (factorise(*matrix, shift)) return "";
   return "the Newton matrix is not positive definite with any shift";
 }
 
-bool HessianModification::factorise_blended(const Assemble& assemble, const Factorise& factorise,
-                                            bool after_full_step) {
+const BlockMatrix* HessianModification::blend_until_definite(const Assemble& assemble,
+                                                             const Factorise& factorise,
+                                                             bool after_full_step) {
   int& blend = s_.blend;
-  for (blend = after_full_step ? std::max(blend - 1, 0) : blend; blend < blend_count; ++blend)
-    if (factorise(assemble({projection_, blends[blend]}), 0)) return true;
+  const BlockMatrix* matrix = nullptr;
+  for (blend = after_full_step ? std::max(blend - 1, 0) : blend; blend < blend_count; ++blend) {
+    matrix = &assemble({projection_, blends[blend]});
+    if (factorise(*matrix, 0)) return nullptr;
+  }
   blend = blend_count - 1;
-  return false;
+  return matrix;
 }
 
 }  // namespace drape

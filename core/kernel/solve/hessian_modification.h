@@ -46,7 +46,9 @@ class HessianModification {
                         bool after_full_step);
 
  private:
-  bool factorise_blended(const Assemble& assemble, const Factorise& factorise, bool after_full_step);
+  /// Null once a blend is positive definite; if none is, the matrix with the whole projection.
+  const BlockMatrix* blend_until_definite(const Assemble& assemble, const Factorise& factorise,
+                                          bool after_full_step);
 
   State s_;
   Projection::Kind projection_;

@@ -9,7 +9,8 @@ namespace drape {
 
 namespace {
 
-/// At equilibrium, an increment that advances by less than this fraction is blocked …
+/// At equilibrium, an increment that advances by less than this fraction of its remainder is blocked. An
+/// obstacle advances by about its gap at a time, so a very long motion counts as blocked too …
 constexpr double blocked_increment = 1e-3;
 /// … and infeasible after so many blocked attempts in a row, …
 constexpr int max_blocked_increments = 20;
@@ -74,9 +75,14 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
-  if (closed && blocked())
+  if (!blocked()) return;
+  if (closed)
     limit_text_ += "; the gap is " + three_digits(iterate_.objective().contacts().smallest_gap()) +
                    " m: at its target the obstacle touches or crosses the cloth";
+  else
+    limit_text_ +=
+        "; if there is room up to the target, raise the schedule's \"steps\": a part below a thousandth of "
+        "what remains of an increment counts as none";
 }
 
 /// Gives the iterate and the enforcer the model of the load that was reached. The cloth was at `from` when

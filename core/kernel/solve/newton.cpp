@@ -26,6 +26,7 @@ constexpr double max_drift = 100;
 struct End {
   Outcome outcome;
   std::string message = {};
+  std::string after_pins = {};  // follows the text of pins that are short of their targets
 };
 
 /// The loop over the implicit steps of one minimisation: what comes between them, and how the level ends.
@@ -71,10 +72,13 @@ class Newton {
       if (step_.interrupted() && observer_.stop_requested())
         return finish({Outcome::cancelled, "stopped on request"});
       if (const double drift = check_.drift(); drift > max_drift)
-        return finish({Outcome::infeasible,
-                       "nothing holds the cloth: it has drifted by " + three_digits(drift) +
-                           " of its diagonals and does not come to rest; pin it, put something under it, or "
-                           "raise the friction"});
+        return finish(
+            {Outcome::infeasible,
+             "nothing holds the cloth within " + three_digits(max_drift) +
+                 " of its diagonals: it has drifted by " + three_digits(drift) + " of them, " +
+                 three_digits(drift * iterate_.rest_diagonal()) +
+                 " m, and does not come to rest; pin it, put something under it, start it nearer to "
+                 "what is there, or raise the friction"});
     }
   }
 
@@ -151,8 +155,7 @@ class Newton {
       if (load_.steps() == p_.max_steps)
         return End{Outcome::max_steps_reached,
                    "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " +
-                       three_digits(iterate_.force_residual()) +
-                       (dirichlet_.active() ? "; " + dirichlet_.message(iterate_.x()) : "")};
+                       three_digits(iterate_.force_residual())};
       step_.begin();
       return std::nullopt;
     }
@@ -195,9 +198,7 @@ class Newton {
 
   End end_at_equilibrium(bool in_tolerance) {
     load_.report_increment();
-    if (dirichlet_.infeasible())
-      return {Outcome::infeasible,
-              dirichlet_.message(iterate_.x()) + "; the rest of the cloth is at equilibrium"};
+    if (dirichlet_.infeasible()) return {Outcome::infeasible, "", "the rest of the cloth is at equilibrium"};
     if (in_tolerance) return {Outcome::converged};
     return {Outcome::converged_to_rounding,
             "the force residual is " + three_digits(iterate_.force_residual()) +
@@ -259,10 +260,14 @@ class Newton {
 
   LevelResult finish(const End& end) {
     result_.outcome = end.outcome;
-    add_to_message(end.message);
     const bool failed = !succeeded(end.outcome) && end.outcome != Outcome::cancelled &&
-                        end.outcome != Outcome::refined_early_on_request;
-    if (failed && result_.x.allFinite()) add_to_message(weak_barrier(f_.model(), result_.x));
+                        end.outcome != Outcome::refined_early_on_request && result_.x.allFinite();
+    add_to_message(end.message);
+    // At a start without finite forces pins have not been enforced.
+    if (failed && std::isfinite(result_.force_residual) && (dirichlet_.active() || dirichlet_.infeasible()))
+      add_to_message(dirichlet_.message(result_.x));
+    add_to_message(end.after_pins);
+    if (failed) add_to_message(weak_barrier(f_.model(), result_.x));
     load_.store_progress(result_);
     result_.seconds += watch_.seconds();
     result_.analyses = step_.factor().analyses();

@@ -20,7 +20,10 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
   d.add("step_growth", &NewtonParameters::step_growth)
       .at_least(1)
       .at_most(1e3)
-      .description("factor on h after a full step; a step cut below a quarter divides h by it. 1 keeps h")
+      .description(
+          "factor on h after a full step; a step cut below a quarter divides h by it. With 1 h never grows, "
+          "and "
+          "stays as small as damping has made it")
       .source("departure from the paper");
   d.add("step_size_limit", &NewtonParameters::step_size_limit)
       .unit("s")

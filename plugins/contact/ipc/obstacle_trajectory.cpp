@@ -7,9 +7,10 @@
 
 #include "core/kernel/contact/nonlinear_ccd.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/linear_algebra/interpolate.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/rotation.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape::ipc {
 namespace {
@@ -20,13 +21,7 @@ constexpr double degree = M_PI / 180;
 constexpr double max_rotation = 0.1;  // of a segment, which bounds the chord error that inflates boxes [rad]
 constexpr long initial_pair_limit = 100'000;  // per segment; above it a shorter segment is tried
 
-template <class T>
-T interpolate(const T& a, const T& b, double t) {
-  return (1 - t) * a + t * b;
-}
-
-/// Exactly a at 0 and b at 1.
-Pose interpolate(const Pose& a, const Pose& b, double t) {
+Pose pose_between(const Pose& a, const Pose& b, double t) {
   return {interpolate<double>(a.scale, b.scale, t), interpolate<Vector3d>(a.rotate, b.rotate, t),
           interpolate<Vector3d>(a.translate, b.translate, t)};
 }
@@ -131,7 +126,7 @@ void remove_static(AdjacencyList& rows, const TrajectorySegment& segment, const 
 Eigen::Matrix3d TrajectorySegment::linear(int body, double time) const {
   const Body& b = bodies[body];
   if (b.begin.rotate == b.end.rotate) return interpolate(b.begin.scale, b.end.scale, time) * b.rotation;
-  return interpolate(b.begin, b.end, time).linear();
+  return pose_between(b.begin, b.end, time).linear();
 }
 
 Vector3d TrajectorySegment::translate(int body, double time) const {
@@ -155,7 +150,7 @@ ObstacleTrajectory::ObstacleTrajectory(const Obstacles& before, const Obstacles&
     throw std::runtime_error("obstacles cannot appear or vanish during a run");
   for (std::size_t i = 0; i < after.bodies.size(); ++i) {
     const Obstacle &from = before.bodies[i], &to = after.bodies[i];
-    if (!same_triangles(from.mesh.triangles, to.mesh.triangles))
+    if (!same_entries(from.mesh.triangles, to.mesh.triangles))
       throw std::runtime_error("obstacle \"" + to.name + "\": its mesh changed: it has " +
                                std::to_string(to.mesh.triangles.rows()) + " triangles instead of " +
                                std::to_string(from.mesh.triangles.rows()) +
@@ -193,8 +188,8 @@ TrajectorySegment ObstacleTrajectory::segment(double begin, double end) const {
     body.moves = moves_[i] != 0;
     if (!body.moves) continue;
     const ObstacleGeometry &from = before_.bodies[i].geometry, &to = after_.bodies[i].geometry;
-    body.begin = interpolate(from.pose, to.pose, begin);
-    body.end = interpolate(from.pose, to.pose, end);
+    body.begin = pose_between(from.pose, to.pose, begin);
+    body.end = pose_between(from.pose, to.pose, end);
     body.rotation = rotation_matrix(body.begin.rotate);
     const auto local_at = [&](double t) {
       if (are_equal(from.frames, to.frames) && from.local_scale == to.local_scale)

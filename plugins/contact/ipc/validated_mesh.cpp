@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/kernel/linear_algebra/same_entries.h"
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/primitives.h"
-#include "core/kernel/mesh/same_triangles.h"
 
 namespace drape::ipc {
 namespace {
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices.rows() == b.vertices.rows() && a.vertices == b.vertices &&
-         same_triangles(a.triangles, b.triangles);
+         same_entries(a.triangles, b.triangles);
 }
 
 }  // namespace

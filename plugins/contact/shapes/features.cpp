@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/kernel/contact/closest.h"
 #include "core/kernel/mesh/primitives.h"
 
 namespace drape::shapes {
@@ -52,7 +53,7 @@ void visit_candidates(const Features& f, int count, const Solid& solid, const Ve
 
 double distance_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   const Vector3d e = b - a;
-  return (p - a - std::clamp((p - a).dot(e) / e.squaredNorm(), 0.0, 1.0) * e).norm();
+  return (p - a - nearest_on_segment(e, p - a) * e).norm();
 }
 
 /// The surface of revolution of a profile of (radius, z), ordered from top to bottom.

@@ -14,7 +14,7 @@ constexpr double unreliable_gap = 1e-7;  // below it a nearest point's direction
 /// round-off.
 constexpr double tiny_gap = 1e-9, tiny_gap_fraction = 0.9;
 
-Corners interpolate(const Corners& a, const Corners& b, double t) {
+Corners corners_between(const Corners& a, const Corners& b, double t) {
   Corners c;
   for (int k = 0; k < 3; ++k) c[k] = a[k] + t * (b[k] - a[k]);
   return c;
@@ -26,7 +26,7 @@ Vector3d centroid(const Corners& c) { return (c[0] + c[1] + c[2]) / 3; }
 double separation_end(const Solid& solid, const Corners& from, const Corners& to, double t,
                       const Vector3d& normal, double width) {
   const double support = solid.support(normal);
-  const Corners now = interpolate(from, to, t);
+  const Corners now = corners_between(from, to, t);
   double part = 1;
   for (int k = 0; k < 3; ++k) {
     const double here = normal.dot(now[k]) - support - width, end = normal.dot(to[k]) - support - width;
@@ -94,7 +94,7 @@ double advance(const Solid& solid, const Corners& from, const Corners& to, doubl
   for (int iteration = 0; iteration < 128 && s.gap > 1.01 * min_gap; ++iteration) {
     t = separation_end(solid, from, to, t, s.normal, min_gap);
     if (t >= 1) return 1;
-    s = separate(solid, interpolate(from, to, t));
+    s = separate(solid, corners_between(from, to, t));
   }
   return t;
 }

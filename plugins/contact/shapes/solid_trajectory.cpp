@@ -5,17 +5,13 @@
 #include <stdexcept>
 
 #include "core/kernel/contact/nonlinear_ccd.h"
+#include "core/kernel/linear_algebra/interpolate.h"
 
 namespace drape::shapes {
 
 namespace {
 
 using Eigen::Vector3d;
-
-template <class T>
-T interpolate(const T& a, const T& b, double t) {
-  return (1 - t) * a + t * b;
-}
 
 /// The largest distance from the centre of a point that rotates with the axes. The rounding does not rotate.
 double lever_arm(const Solid& s) {
