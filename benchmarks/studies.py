@@ -5,7 +5,7 @@ only its iterations and flops (one thread a run, a run a core); `starts`; the co
 where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
 benchmarks/results; `meshes` of data/ that it needs; whether it needs the Python `module`; commands to `attempt`, whose failure is what is recorded;
 whether a run that is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be
-`partial`, of the scenes that have run.
+`partial`, of the scenes that have run; whether what `gather` prints is a table of `scenes`.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -31,7 +31,7 @@ def previews(name, what, starts, timed=False, meshes=(), most_levels=None):
 def scenes(what, most_levels=None):
     record = record_of("scenes", most_levels) + ".md"
     return {"what": what, "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes", most_levels=most_levels)],
-            "twins": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
+            "scenes": True, "partial": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
             "records": [record]}
 
 
