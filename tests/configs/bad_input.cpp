@@ -339,6 +339,26 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }
 
+TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, each where it stands") {
+  const std::string text = replaced(
+      replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"), "levels: 2",
+      "contact: [ipc, shapes]\nobstacles:\n  - {name: b, mesh: b.obj}\n  - "
+      "{name: c, mesh: c.obj}\n  - {name: d, shape: half_space, normal: [0, "
+      "0, 0]}\nlevels: 2");
+  const std::string of_files =
+      "error: e.yaml:2:8: cannot read a.obj: No such file or directory\n"
+      "error: e.yaml:5:5: ipc: obstacle \"b\": cannot read b.obj: No such file or directory\n"
+      "error: e.yaml:6:5: ipc: obstacle \"c\": cannot read c.obj: No such file or directory\n"
+      "error: e.yaml:7:5: shapes: d: half_space needs a \"normal\" that is not zero\n";
+  CHECK(said_of(text) == of_files);
+  CHECK(said_of(replaced(text, "levels: 2", "levelz: 2")) ==
+        of_files + "error: e.yaml:8:1: unknown key \"levelz\"; did you mean \"levels\"?\n");
+  CHECK(said_of(replaced(replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"),
+                         "scale: [", "file: s.ply, scale: [")) ==
+        "error: e.yaml:2:8: cannot read a.obj: No such file or directory\n"
+        "error: e.yaml:4:8: cannot read s.ply: No such file or directory\n");
+}
+
 TEST_CASE("keys of earlier versions are refused with the new ones") {
   CHECK(said_of_set("frames=3") == "error: --set frames: \"frames\" is now called \"snapshots\"\n");
   CHECK(said_of_set("verify=every_step") ==

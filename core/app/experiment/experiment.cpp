@@ -48,6 +48,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
     check_name("name", e.parameters.name, name->where, errors);
   make_plugins(registry, errors, e);
   check_schedule(e, errors);
+  if (!errors.empty()) check_mesh_files(e, errors);
   // The common newton section is read once for itself and once in each method: report each fault once.
   std::set<std::string> seen;
   ConfigErrors once;

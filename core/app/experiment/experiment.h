@@ -49,6 +49,10 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
 /// The same from a map that has been read already, overrides included.
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
 
+/// Appends the faults of the cloth's and the start's mesh files, which are read. For experiments that are not
+/// valid, whose scene cannot be built: otherwise build_scene appends them.
+void check_mesh_files(const Experiment& experiment, ConfigErrors& errors);
+
 /// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;
