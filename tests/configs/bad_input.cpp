@@ -123,7 +123,8 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   CHECK(said_with(std::nan("")) ==
         "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
   CHECK(said_with(1e11) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate of 1e+11 m; at most 1e+09 m can be computed "
+        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate of 1e+11 m; at most 1e+09 "
+        "m can be computed "
         "with\n");
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
@@ -389,7 +390,8 @@ TEST_CASE("keys of earlier versions are refused with the new ones") {
       said_of_edit("levels: 2",
                    "contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: "
                    "contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}]}") ==
-      "error: e.yaml:5:31: \"shapes\" in shapes is now \"obstacles\"\n");
+      "error: e.yaml:5:31: unknown key \"ball\" in shapes; known keys are type, dhat, stiffness, "
+      "friction_smoothing_distance, min_gap_fraction\n");
 }
 
 TEST_CASE("obstacles that no contact model takes are refused with the model that would") {
@@ -428,9 +430,30 @@ TEST_CASE("a --set or --method that does not fit") {
   CHECK(said_of(small_experiment(), "--threads two") ==
         "error: --threads: must be an integer of at least 1, not two; see `drape run --help`\n");
   CHECK(said_of(small_experiment(), "--levels 11") ==
-        "error: --set levels: \"levels\" must be at most 10, not 11\n");
+        "error: --levels: \"levels\" must be at most 10, not 11\n");
   CHECK(said_of(small_experiment(), "--fast") ==
-        "error: The following argument was not expected: --fast; see `drape run --help`\n");
+        "error: there is no option --fast; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--fast 1 -x") ==
+        "error: there is no option --fast; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "second third") ==
+        "error: The following arguments were not expected: second third; see `drape run --help`\n");
+}
+
+TEST_CASE("a --set within what the experiment does not have names that") {
+  CHECK(said_of_set("handles.0.radius=2") ==
+        "error: --set handles.0.radius: the experiment has no \"handles\"; write that list first\n");
+  CHECK(said_of_set("obstacles.plate.translate=[0, 0, 1]") ==
+        "error: --set obstacles.plate.translate: the experiment has no \"obstacles\"; write that list "
+        "first\n");
+  CHECK(said_of_set("schedule.keys.0.times=[0, 1]") ==
+        "error: --set schedule.keys.0.times: the experiment has no \"schedule.keys\"; write that list "
+        "first\n");
+  CHECK(said_of_set("contact.dhat=1e-3") ==
+        "error: --set contact.dhat: the experiment has no \"contact\"; name its plugin first\n");
+  CHECK(said_of(small_experiment() + "schedule: {keys: [{parameter: handles.0.translate, times: [0, 1], "
+                                     "values: [[0, 0, 0], [0, 0, 1]]}]}\n") ==
+        "error: e.yaml:15:75: key \"handles.0.translate\": the experiment has no \"handles\"; write that "
+        "list first\n");
 }
 
 /// Listens on a port of 127.0.0.1 as long as it lives.

@@ -104,7 +104,7 @@ TEST_CASE(
     "a run that may take more memory than there is, is refused before anything is built, unless allowed") {
   CHECK_THAT(
       check_refusal("--levels 10 --set cloth.columns=12 --set cloth.rows=12"),
-      Matches("error: --set levels: level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of "
+      Matches("error: --levels: level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of "
               "memory, where this machine has [0-9.]+ GB; take at most [0-9] levels, or allow it with "
               "--allow-memory\n"));
   CHECK_THAT(check_refusal("--levels 10 --allow-memory --set cloth.columns=1000 --set cloth.rows=1000"),
@@ -119,7 +119,7 @@ TEST_CASE(
   const Ended ended = Command(line, folder.path).wait();
   CHECK(ended.exit_code == 2);
   CHECK(ended.err ==
-        "error: --set levels: level 0 would have about 90000 vertices and take about 3.1 GB of memory, where "
+        "error: --levels: level 0 would have about 90000 vertices and take about 3.1 GB of memory, where "
         "this "
         "machine has 3.0 GB; ask for fewer vertices, or allow it with --allow-memory\n");
   const Ended allowed = Command(line + " --allow-memory", folder.path).wait();

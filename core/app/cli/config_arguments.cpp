@@ -66,9 +66,9 @@ Overrides ConfigArguments::overrides() const {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--set " + set + ": write it as key=value, as in --set newton.step_size=0.1");
-    all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+    all.push_back({set.substr(0, equals), set.substr(equals + 1)});
   }
-  if (levels > 0) all.emplace_back("levels", std::to_string(levels));
+  if (levels > 0) all.push_back({"levels", std::to_string(levels), "--levels"});
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/make_plugins.h"
 #include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
@@ -31,7 +32,7 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
                                           const Registry& registry, ConfigErrors& errors) {
   ConfigNode source = read_yaml(file, errors);
   if (!errors.empty()) return std::nullopt;
-  for (const auto& [key, value] : overrides) set_path(source, key, value, errors);
+  for (const Override& o : overrides) set_parameter(source, o.key, o.value, o.option, errors);
   return read_experiment(std::move(source), registry, errors);
 }
 

@@ -39,8 +39,12 @@ struct Experiment {
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);
 
-/// Values from the command line, `key.path=value`, in order.
-using Overrides = std::vector<std::pair<std::string, std::string>>;
+/// A value from the command line.
+struct Override {
+  std::string key, value;               ///< `key.path=value`
+  std::string option = "--set " + key;  ///< for messages
+};
+using Overrides = std::vector<Override>;  ///< in order
 
 /// Reads and validates an experiment; empty, with every error appended, if it is not valid.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/app/experiment/contact_configs.h"
-#include "core/app/files/yaml_file.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/string_utils.h"
@@ -78,7 +78,7 @@ void check_plugins(const Experiment& e, const ExperimentParameters& changed, Con
 
 /// A key's path with indices in place of names, so that paths of one parameter are equal.
 std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
-  std::vector<std::string> words = split(path, '.');
+  std::vector<std::string> words = words_of_path(config, path);
   const ConfigNode* node = &config;
   for (std::string& word : words) {
     if (!node) break;
@@ -184,7 +184,7 @@ void set_first_keys(ConfigNode& source) {
     if (!parameter || !values || values->kind != NodeKind::list || values->items.empty()) continue;
     const std::string& path = parameter->scalar;
     if (std::find(changeable.begin(), changeable.end(), path.substr(0, path.find('.'))) != changeable.end())
-      set_path(source, path, values->items[0], parameter->where, ignored);
+      set_parameter(source, path, values->items[0], parameter->where, ignored);
   }
 }
 
@@ -220,7 +220,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
       ConfigNode config = e.resolved;
       ConfigErrors own;
       const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
-      if (set_path(config, p.keys[k].parameter, value, where, own)) {
+      if (set_parameter(config, p.keys[k].parameter, value, where, own)) {
         ExperimentParameters read;
         schema.read(&read, config, own);
         check_plugins(e, read, own);

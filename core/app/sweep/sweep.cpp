@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/app/experiment/describe.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/experiment_files.h"
@@ -103,7 +104,7 @@ class Reader {
         if (setting.path == "start.seed" && !p.seeds.empty())
           faults.push_back(
               {setting.where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
-        set_path(source, setting.path, setting.value, setting.where, faults);
+        set_parameter(source, setting.path, setting.value, setting.where, faults);
         if (settings == &variation.settings) run.settings[setting.path] = json_value(setting.value);
       }
     const bool own = !variation.methods.empty();
