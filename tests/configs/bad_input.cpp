@@ -121,9 +121,9 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
     return drape_with("check e.yaml --set start.file=start.ply", folder.path).err;
   };
   CHECK(said_with(std::nan("")) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
+        "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate that is not finite\n");
   CHECK(said_with(1e11) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate of 1e+11 m; at most 1e+09 "
+        "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate of 1e+11 m; at most 1e+09 "
         "m can be computed "
         "with\n");
   CHECK(said_with(0.1) == "");
@@ -132,8 +132,9 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
       Catch::Matchers::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
                                 "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
   CHECK_THAT(drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
-             Catch::Matchers::Contains("the start of level 0: vertex 1 has a coordinate of 2e+09 m; at most "
-                                       "1e+09 m can be computed with\n"));
+             Catch::Matchers::Contains(
+                 "the start of level 0: vertex 1 (counted from 0) has a coordinate of 2e+09 m; at most "
+                 "1e+09 m can be computed with\n"));
 }
 
 TEST_CASE("output is short for any number and length of errors") {
