@@ -152,7 +152,7 @@ class Reader {
       run.folder = "runs/" + variation.folder + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
       const auto [other, first] = configs_.emplace(run.config, run.name);
-      if (!first)
+      if (!first && seed == seeds.front())
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
                                               "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
