@@ -46,6 +46,10 @@ int report_errors(const ConfigErrors& errors) {
   return exit_bad_input;
 }
 
+void warn_of(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) std::cerr << "warning: " << printable(line) << "\n";
+}
+
 void ConfigArguments::add_to(CLI::App& command) {
   config_option = command.add_option("experiment", config, "experiment file (YAML)")->required();
   command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
