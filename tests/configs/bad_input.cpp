@@ -121,9 +121,10 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
     return drape_with("check e.yaml --set start.file=start.ply", folder.path).err;
   };
   CHECK(said_with(std::nan("")) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate that is not finite\n");
+        "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate that is not finite\n");
   CHECK(said_with(1e11) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 has a coordinate of 1e+11 m; at most 1e+09 m can be computed "
+        "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate of 1e+11 m; at most 1e+09 "
+        "m can be computed "
         "with\n");
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
@@ -131,8 +132,9 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
       Catch::Matchers::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
                                 "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
   CHECK_THAT(drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
-             Catch::Matchers::Contains("the start of level 0: vertex 1 has a coordinate of 2e+09 m; at most "
-                                       "1e+09 m can be computed with\n"));
+             Catch::Matchers::Contains(
+                 "the start of level 0: vertex 1 (counted from 0) has a coordinate of 2e+09 m; at most "
+                 "1e+09 m can be computed with\n"));
 }
 
 TEST_CASE("output is short for any number and length of errors") {
@@ -339,6 +341,26 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
 }
 
+TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, each where it stands") {
+  const std::string text = replaced(
+      replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"), "levels: 2",
+      "contact: [ipc, shapes]\nobstacles:\n  - {name: b, mesh: b.obj}\n  - "
+      "{name: c, mesh: c.obj}\n  - {name: d, shape: half_space, normal: [0, "
+      "0, 0]}\nlevels: 2");
+  const std::string of_files =
+      "error: e.yaml:2:8: cannot read a.obj: No such file or directory\n"
+      "error: e.yaml:5:5: ipc: obstacle \"b\": cannot read b.obj: No such file or directory\n"
+      "error: e.yaml:6:5: ipc: obstacle \"c\": cannot read c.obj: No such file or directory\n"
+      "error: e.yaml:7:5: shapes: d: half_space needs a \"normal\" that is not zero\n";
+  CHECK(said_of(text) == of_files);
+  CHECK(said_of(replaced(text, "levels: 2", "levelz: 2")) ==
+        of_files + "error: e.yaml:8:1: unknown key \"levelz\"; did you mean \"levels\"?\n");
+  CHECK(said_of(replaced(replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"),
+                         "scale: [", "file: s.ply, scale: [")) ==
+        "error: e.yaml:2:8: cannot read a.obj: No such file or directory\n"
+        "error: e.yaml:4:8: cannot read s.ply: No such file or directory\n");
+}
+
 TEST_CASE("keys of earlier versions are refused with the new ones") {
   CHECK(said_of_set("frames=3") == "error: --set frames: \"frames\" is now called \"snapshots\"\n");
   CHECK(said_of_set("verify=every_step") ==
@@ -369,7 +391,8 @@ TEST_CASE("keys of earlier versions are refused with the new ones") {
       said_of_edit("levels: 2",
                    "contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: "
                    "contact.shapes.ball.centre, times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}]}") ==
-      "error: e.yaml:5:31: \"shapes\" in shapes is now \"obstacles\"\n");
+      "error: e.yaml:5:31: unknown key \"ball\" in shapes; known keys are type, dhat, stiffness, "
+      "friction_smoothing_distance, min_gap_fraction\n");
 }
 
 TEST_CASE("obstacles that no contact model takes are refused with the model that would") {
@@ -408,9 +431,30 @@ TEST_CASE("a --set or --method that does not fit") {
   CHECK(said_of(small_experiment(), "--threads two") ==
         "error: --threads: must be an integer of at least 1, not two; see `drape run --help`\n");
   CHECK(said_of(small_experiment(), "--levels 11") ==
-        "error: --set levels: \"levels\" must be at most 10, not 11\n");
+        "error: --levels: \"levels\" must be at most 10, not 11\n");
   CHECK(said_of(small_experiment(), "--fast") ==
-        "error: The following argument was not expected: --fast; see `drape run --help`\n");
+        "error: there is no option --fast; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "--fast 1 -x") ==
+        "error: there is no option --fast; see `drape run --help`\n");
+  CHECK(said_of(small_experiment(), "second third") ==
+        "error: The following arguments were not expected: second third; see `drape run --help`\n");
+}
+
+TEST_CASE("a --set within what the experiment does not have names that") {
+  CHECK(said_of_set("handles.0.radius=2") ==
+        "error: --set handles.0.radius: the experiment has no \"handles\"; write that list first\n");
+  CHECK(said_of_set("obstacles.plate.translate=[0, 0, 1]") ==
+        "error: --set obstacles.plate.translate: the experiment has no \"obstacles\"; write that list "
+        "first\n");
+  CHECK(said_of_set("schedule.keys.0.times=[0, 1]") ==
+        "error: --set schedule.keys.0.times: the experiment has no \"schedule.keys\"; write that list "
+        "first\n");
+  CHECK(said_of_set("contact.dhat=1e-3") ==
+        "error: --set contact.dhat: the experiment has no \"contact\"; name its plugin first\n");
+  CHECK(said_of(small_experiment() + "schedule: {keys: [{parameter: handles.0.translate, times: [0, 1], "
+                                     "values: [[0, 0, 0], [0, 0, 1]]}]}\n") ==
+        "error: e.yaml:15:75: key \"handles.0.translate\": the experiment has no \"handles\"; write that "
+        "list first\n");
 }
 
 /// Listens on a port of 127.0.0.1 as long as it lives.

@@ -81,31 +81,35 @@ TEST_CASE("a malformed mesh file is named with its line") {
 
 TEST_CASE("a mesh that is no surface with one side up is named with the element") {
   CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 7) runs in the same direction in triangles 4 and 7: "
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 7) runs in the same direction in triangles 4 and 7 "
+        "(counted from 0): "
         "one of them is inverted\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 8) runs in the same direction in triangles 6 and 7: "
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 8) runs in the same direction in triangles 6 and 7 "
+        "(counted from 0): "
         "one of them is inverted\n"
         "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 7, 8) faces the other way than most of this flat "
-        "mesh\n");
+        "mesh (counted from 0)\n");
   CHECK(said_of_mesh("") == "error: in/e.yaml:2:8: in/cloth.obj: is empty\n");
   CHECK(said_of_mesh("v 0 0 0\n") ==
         "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 0 belongs to no triangle\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 0 belongs to no triangle (counted from 0)\n");
   CHECK(said_of_mesh(sheet + "v 0 0 1\nf 1 10 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8 (counted from 0)\n");
   CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 8) repeats a vertex\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 8) repeats a vertex (counted from 0)\n");
   CHECK(said_of_mesh(replaced(sheet, "v 2 2 0\n", "v 1 1 0\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 6 (4, 5, 8) has no area\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 7) has no area\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 6 (4, 5, 8) has no area (counted from 0)\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 7) has no area (counted from 0)\n");
   CHECK(said_of_mesh(sheet + "f 1 2 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 8 (0, 1, 4) has the same vertices as triangle 0\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 1) runs in the same direction in triangles 0 and 8: "
+        "error: in/e.yaml:2:8: in/cloth.obj: triangle 8 (0, 1, 4) has the same vertices as triangle 0 "
+        "(counted from 0)\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 1) runs in the same direction in triangles 0 and 8 "
+        "(counted from 0): "
         "one of them is inverted\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (1, 4) has 3 triangles: 0, 3, 8\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8 (counted from 0)\n"
+        "error: in/e.yaml:2:8: in/cloth.obj: edge (1, 4) has 3 triangles: 0, 3, 8 (counted from 0)\n");
   CHECK(said_of_mesh(sheet + "v 5 5 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 9 belongs to no triangle\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 9 belongs to no triangle (counted from 0)\n");
 }
 
 TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
@@ -127,12 +131,14 @@ TEST_CASE("few faults are listed for any number in a mesh") {
   for (int k = 0; k < 1000; ++k)
     mesh += "v " + std::to_string(k) + " 1 " + std::to_string(k) + "\nf 1 2 -1\n";
   CHECK_THAT(said_of_mesh(mesh),
-             Catch::Matchers::Contains("edge (0, 1) has 1000 triangles: 0, 1, 2, 3, 4, 5, 6, 7, …\n"));
+             Catch::Matchers::Contains(
+                 "edge (0, 1) has 1000 triangles: 0, 1, 2, 3, 4, 5, 6, 7, … (counted from 0)\n"));
 }
 
 TEST_CASE("a mesh whose squares overflow is not said to have no area") {
   CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 1e100 0\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 has a coordinate of 1e+100 m; at most 1e+09 m can "
+        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 (counted from 0) has a coordinate of 1e+100 m; at most "
+        "1e+09 m can "
         "be computed with\n");
 }
 

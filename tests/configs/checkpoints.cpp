@@ -39,8 +39,8 @@ void write_sheets(const Scratch& folder) {
 
 /// Some steps a level, in which the sheets come to touch each other and the ball.
 Overrides some_steps(Overrides more = {}) {
-  more.emplace_back("start.translate", "[-0.2, -0.2, 0.1015]");
-  more.emplace_back("newton.max_steps", "8");
+  more.push_back({"start.translate", "[-0.2, -0.2, 0.1015]"});
+  more.push_back({"newton.max_steps", "8"});
   return more;
 }
 
@@ -123,8 +123,9 @@ RunOptions silent(const fs::path& out) {
 /// `relaxing`, if it is given, counts those that began on a level which relaxes.
 int check_in_parts(const Scratch& scratch, Overrides overrides, int* relaxing = nullptr) {
   // Every part measures the start again: at full resolution that takes longer than its steps.
-  overrides.emplace_back(
-      "metrics", "[curvature_consistency, distance, residuals, {type: silhouette, resolution: 32}, stretch]");
+  overrides.push_back(
+      {"metrics",
+       "[curvature_consistency, distance, residuals, {type: silhouette, resolution: 32}, stretch]"});
   const fs::path& folder = scratch.path;
   const Experiment experiment = experiment_in(folder / "e.yaml", overrides);
   run_experiment(experiment, *scene_of(experiment), silent(folder / "whole"));
@@ -176,7 +177,7 @@ TEST_CASE("So does one whose iterations share a matrix, and one with several of 
     Overrides shared =
         some_steps({{"newton.hessian_update_interval", "3"}, {"newton.iterations_per_step", iterations}});
     // A stop is asked for within steps of two iterations too, and such a part leads nowhere: more steps.
-    shared.emplace_back("newton.max_steps", "12");
+    shared.push_back({"newton.max_steps", "12"});
     CHECK(check_in_parts(folder, shared) > 60);
   }
 }
@@ -195,8 +196,8 @@ TEST_CASE(
     const Scratch folder;
     folder.write("e.yaml", text_of(data / file));
     Overrides overrides = small;
-    overrides.emplace_back("methods", "{pcs: {" + pcs + "}}");
-    overrides.emplace_back("newton.force_tolerance", file == std::string("golden.yaml") ? "1e-8" : "1e-4");
+    overrides.push_back({"methods", "{pcs: {" + pcs + "}}"});
+    overrides.push_back({"newton.force_tolerance", file == std::string("golden.yaml") ? "1e-8" : "1e-4"});
     int relaxing = 0;
     CHECK(check_in_parts(folder, overrides, &relaxing) > 15);
     CHECK(relaxing > 1);

@@ -245,10 +245,20 @@ TEST_CASE("report rewrites a run's page, or names what is missing") {
   CHECK(ended.exit_code == 0);
   CHECK(ended.out == "report: out/report.html\n");
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
-  CHECK(refusal_of("report nowhere") == "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK(refusal_of("report nowhere") ==
+        "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
   CHECK_THAT(refusal_of("report out --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
   CHECK(refusal_of("report out out --out both.html --width 90") ==
         "error: --width is for the pictures of one run; a page of several runs has none\n");
+  CHECK(ended.err == "");
+  REQUIRE(fs::exists(folder / "out/pictures/newton_l0.png"));
+  folder.write("out/pictures/mine.png", "mine");
+  fs::remove(folder / "out/levels/newton_l0.ply");
+  const Ended without = drape_with("report out", folder.path);
+  CHECK(without.exit_code == 0);
+  CHECK(without.err == "warning: cannot read out/levels/newton_l0.ply: No such file or directory\n");
+  CHECK_FALSE(fs::exists(folder / "out/pictures/newton_l0.png"));
+  CHECK(fs::exists(folder / "out/pictures/mine.png"));
   folder.write("out/results.json", "{\"experiment\": ");
   const Ended broken = drape_with("report out", folder.path);
   CHECK(broken.exit_code == 2);

@@ -177,7 +177,7 @@ TEST_CASE("every method's own interpolation prolongs its states") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   std::string command = "run e.yaml --out out --method all --threads 1 --quiet --no-report";
-  for (const auto& [key, value] : changed) command += " --set '" + key + "=" + value + "'";
+  for (const Override& o : changed) command += " --set '" + o.key + "=" + o.value + "'";
   REQUIRE(drape_with(command, folder.path).exit_code == 0);
   const Json all = Json::parse(text_of(folder / "out/results.json"))["methods"];
   const std::vector<Row> rows = rows_of(folder / "out/errors.csv");

@@ -131,6 +131,35 @@ TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an an
   }
 }
 
+TEST_CASE("an animation of a level of one step is refused with the levels that have more") {
+  const Scratch folder;
+  fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
+  Json results = Json::parse(text_of(folder / "run/results.json"));
+  Json& level = results["methods"]["pcs"]["levels"][1];
+  level["newton_iterations"] = 1;
+  const Json all = level["snapshots"];
+  const auto refusal = [&] {
+    folder.write("run/results.json", results.dump());
+    return refused_by("export run --to a.glb --frames", folder.path);
+  };
+  for (const char* list : {"iterations", "seconds"}) level["snapshots"][list] = Json::array({0});
+  level["snapshots"].erase("checksum");
+  const std::string states = text_of(folder / "run" / all["file"].get<std::string>());
+  folder.write("run/" + all["file"].get<std::string>(),
+               states.substr(0, states.size() / all["seconds"].size()));
+  CHECK(
+      refusal() ==
+      "error: --frames: level 1 of pcs took no more than one iteration, so it has no state before its last; "
+      "choose --level 0\n");
+  level["newton_iterations"] = 7;  // of an experiment with snapshots: 1
+  CHECK(
+      refusal() ==
+      "error: --frames: the run has only the last state of level 1; run the experiment with snapshots: 8\n");
+  level["snapshots"] = nullptr;
+  CHECK(refusal() ==
+        "error: --frames: the run has no snapshots of level 1; run the experiment with snapshots: 8\n");
+}
+
 TEST_CASE("the other formats have the cloth of the finest level, or of the one that is named") {
   const Scratch folder;
   for (const std::string extension : {".obj", ".ply"})
@@ -324,5 +353,6 @@ TEST_CASE("view writes the page if it is missing or old, and opens it, or prints
         fs::canonical(folder.path) / "a run/report.html");
   const Ended nothing = drape_with("view nowhere", folder.path, none);
   CHECK(nothing.exit_code == 2);
-  CHECK(nothing.err == "error: nowhere: no results.json here; give the folder of a run\n");
+  CHECK(nothing.err ==
+        "error: nowhere: neither results.json nor sweep.json here; give the folder of a run or a sweep\n");
 }

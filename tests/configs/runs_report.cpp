@@ -317,6 +317,31 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
              Contains("broken: pcs, level 1: seconds went from ") && Contains("slower (bound broken)"));
 }
 
+TEST_CASE("compare gives energies no verdict where the models differ, and names the keys") {
+  const Edited run([](OrderedJson& all) {
+    OrderedJson& level = all["methods"]["pcs"]["levels"][1];
+    level["energy_on_finest"] = level["energy_on_finest"].get<double>() - 0.1;
+  });
+  const auto matches = [](const std::string& line) {
+    return Catch::Matchers::Matches("[\\s\\S]*" + line + "[\\s\\S]*");
+  };
+  const std::string config = text_of(run.folder / "b/config.yaml");
+  const Ended same = run.compare();
+  CHECK_THAT(same.out, matches("pcs, level 1 +energy .* better\n") && !Contains("models differ"));
+  const auto with_other = [&](const std::string& key) {
+    std::string changed = config;
+    changed.insert(changed.find(key + ": ") + key.size() + 2, "1");
+    run.folder.write("b/config.yaml", changed);
+    return run.compare();
+  };
+  CHECK(with_other("max_steps").out == same.out);
+  const Ended other = with_other("bending_modulus");
+  CHECK_THAT(
+      other.out,
+      matches("pcs, level 1 +energy .* other\n") &&
+          Contains("Energies have no verdict, as their models differ: in material.bending_modulus.\n"));
+}
+
 TEST_CASE("a bound is broken if a method no longer converges or exists") {
   const Edited stalled([](OrderedJson& all) { all["methods"]["pcs"]["status"] = "stalled"; });
   CHECK(stalled.compare().exit_code == 0);

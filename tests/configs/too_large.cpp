@@ -79,11 +79,11 @@ TEST_CASE("a mesh with coordinates beyond what can be computed with is refused, 
   folder.write("e.yaml", replaced(small_experiment(), "shape: square, side: 1, columns: 6, rows: 6",
                                   "shape: file, file: far.obj"));
   CHECK_THAT(check_refusal(folder, ""),
-             StartsWith("error: e.yaml:2:8: far.obj: vertex 2 has a coordinate of 1e+30 m; "
+             StartsWith("error: e.yaml:2:8: far.obj: vertex 2 (counted from 0) has a coordinate of 1e+30 m; "
                         "at most 1e+09 m can be computed with\n"));
   folder.write("e.yaml", with("contact: ipc\nobstacles: [{mesh: far.obj}]"));
   CHECK_THAT(check_refusal(folder, ""),
-             Contains("far.obj: vertex 2 has a coordinate of 1e+30 m; at most 1e+09 m"));
+             Contains("far.obj: vertex 2 (counted from 0) has a coordinate of 1e+30 m; at most 1e+09 m"));
 }
 
 TEST_CASE("a cloth whose vertices cannot be about as many as asked for is refused with both numbers") {
@@ -104,7 +104,7 @@ TEST_CASE(
     "a run that may take more memory than there is, is refused before anything is built, unless allowed") {
   CHECK_THAT(
       check_refusal("--levels 10 --set cloth.columns=12 --set cloth.rows=12"),
-      Matches("error: --set levels: level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of "
+      Matches("error: --levels: level 9 would have about 3\\.2e\\+07 vertices and take about 1582 GB of "
               "memory, where this machine has [0-9.]+ GB; take at most [0-9] levels, or allow it with "
               "--allow-memory\n"));
   CHECK_THAT(check_refusal("--levels 10 --allow-memory --set cloth.columns=1000 --set cloth.rows=1000"),
@@ -119,7 +119,7 @@ TEST_CASE(
   const Ended ended = Command(line, folder.path).wait();
   CHECK(ended.exit_code == 2);
   CHECK(ended.err ==
-        "error: --set levels: level 0 would have about 90000 vertices and take about 3.1 GB of memory, where "
+        "error: --levels: level 0 would have about 90000 vertices and take about 3.1 GB of memory, where "
         "this "
         "machine has 3.0 GB; ask for fewer vertices, or allow it with --allow-memory\n");
   const Ended allowed = Command(line + " --allow-memory", folder.path).wait();

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "core/app/cli/config_arguments.h"
+#include "core/app/experiment/experiment_path.h"
 #include "tests/fuzz/experiment_input.h"
 
 namespace {
@@ -41,9 +42,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   ConfigNode source = base;
   ConfigErrors errors;
-  for (const auto& [key, value] : overrides) {
+  for (const auto& [key, value, option] : overrides) {
     const std::size_t before = errors.size();
-    require(set_path(source, key, value, errors) == (errors.size() == before), "set, or an error");
+    require(set_parameter(source, key, value, option, errors) == (errors.size() == before),
+            "set, or an error");
   }
   read_twice(std::move(source), std::move(errors));
   return 0;

@@ -47,6 +47,8 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(swept.exit_code == 1);
   CHECK_THAT(swept.err, Contains("endless, seed 1: failed") && Contains("exceeded the sweep's time_limit"));
   CHECK_THAT(swept.err, Contains("unheld, seed 1: refused, as expected, after") && Contains("; 1 failed"));
+  CHECK_THAT(swept.out, Contains("unheld     ") && Contains("refused, as expected  ") &&
+                            !Contains("widen its region") && Contains("exceeded the sweep's time_limit"));
 
   const Ended ended = drape_with("table out --format json", folder.path);
   CHECK(ended.exit_code == 1);

@@ -136,7 +136,7 @@ TEST_CASE("Ctrl-C stops the runs, which save their state, and the same command r
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
-  CHECK_THAT(ended.err, Contains("stopping: 1 running save what they have\n"));
+  CHECK_THAT(ended.err, Contains("stopping: 1 run is saving its state\n"));
   CHECK_THAT(ended.err,
              Catch::Matchers::EndsWith("stopped on request; the same command runs what is missing\n"));
   const Json stopped = runs_of(folder / "out");
@@ -244,7 +244,7 @@ TEST_CASE("a sweep that no longer fits its results is refused, and the results s
   folder.write("s.yaml", sweep);
   if (drape::core_count() >= 2)
     CHECK(said(" --threads 2") ==
-          "error: out: run \"a\", seed 1 was made with 1 threads a run, not 2, so times would not compare" +
+          "error: out: run \"a\", seed 1 was made with 1 thread per run, not 2, so times would not compare" +
               ways + "out/runs/a/seed_1*\n");
   // What was added is run; what was there is not.
   folder.write("s.yaml", replaced(sweep, "{name: a}, ", "{name: a}, {name: c, levels: 2}, "));

@@ -128,6 +128,8 @@ TEST_CASE("two equal variations") {
       "error: s.yaml:3:32: variations \"a b\" and \"a_b\" would share the folder a_b; rename one of them\n");
   CHECK(said_of("ablation: [{name: a}, {name: b, levels: 2}]\n") ==
         "error: s.yaml:3:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
+  CHECK(said_of("repeats: 2\nset: {start.perturbation: 1e-3}\nablation: [{name: a}, {name: b}]\n") ==
+        "error: s.yaml:5:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");
   CHECK(said_of("methods: [pcs]\nablation: [{name: a}, {name: b, set: "
                 "{methods.newton.newton.hessian_update_interval: 2}}]\n") ==
         "error: s.yaml:4:30: variations \"a\" and \"b\" come to the same experiment; take one of them out\n");

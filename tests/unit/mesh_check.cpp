@@ -52,13 +52,14 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
   SECTION("coordinate that is not finite") {
     mesh.vertices(1, 2) = std::numeric_limits<double>::quiet_NaN();
     mesh.vertices(3, 0) = std::numeric_limits<double>::infinity();
-    CHECK(check_mesh(mesh) == Faults{"vertex 1 has a coordinate that is not finite",
-                                     "vertex 3 has a coordinate that is not finite"});
+    CHECK(check_mesh(mesh) == Faults{"vertex 1 (counted from 0) has a coordinate that is not finite",
+                                     "vertex 3 (counted from 0) has a coordinate that is not finite"});
   }
   SECTION("coordinates too large, or a mesh too small, to be computed with") {
     mesh.vertices(1, 2) = -1e30;
     CHECK(check_mesh(mesh) ==
-          Faults{"vertex 1 has a coordinate of 1e+30 m; at most 1e+09 m can be computed with"});
+          Faults{
+              "vertex 1 (counted from 0) has a coordinate of 1e+30 m; at most 1e+09 m can be computed with"});
     mesh.vertices = strip().vertices * 1e-30;
     CHECK(check_mesh(mesh) == Faults{"the mesh is 1.41e-30 m across; at least 1e-09 m can be computed with"});
     mesh.vertices = strip().vertices * 1e8;
@@ -76,50 +77,53 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
   }
   SECTION("vertex without triangle") {
     append_vertex(mesh, 5, 5, 5);
-    CHECK(check_mesh(mesh) == Faults{"vertex 4 belongs to no triangle"});
+    CHECK(check_mesh(mesh) == Faults{"vertex 4 belongs to no triangle (counted from 0)"});
   }
   SECTION("repeated index") {
     append_triangle(mesh, 1, 3, 1);
-    CHECK(check_mesh(mesh) == Faults{"triangle 2 (1, 3, 1) repeats a vertex"});
+    CHECK(check_mesh(mesh) == Faults{"triangle 2 (1, 3, 1) repeats a vertex (counted from 0)"});
   }
   SECTION("no area, at any scale") {
     const double scale = GENERATE(1e-6, 1.0, 1e6);
     mesh.vertices.row(3) << 0.5, 0.5, 1;  // on the edge (1, 2)
     mesh.vertices *= scale;
-    CHECK(check_mesh(mesh) == Faults{"triangle 1 (2, 1, 3) has no area"});
+    CHECK(check_mesh(mesh) == Faults{"triangle 1 (2, 1, 3) has no area (counted from 0)"});
     mesh.vertices.row(3) += scale * Eigen::RowVector3d(1e-9, 0, 0);
     CHECK(check_mesh(mesh).empty());
   }
   SECTION("edge with three triangles") {
     append_vertex(mesh, 0, 0, 2);
     append_triangle(mesh, 1, 2, 4);
-    CHECK(check_mesh(mesh) == Faults{"edge (1, 2) has 3 triangles: 0, 1, 2"});
+    CHECK(check_mesh(mesh) == Faults{"edge (1, 2) has 3 triangles: 0, 1, 2 (counted from 0)"});
   }
   SECTION("inverted triangle") {
     mesh.triangles.row(1) << 1, 2, 3;
-    CHECK(check_mesh(mesh) ==
-          Faults{"edge (1, 2) runs in the same direction in triangles 0 and 1: one of them is inverted"});
+    CHECK(check_mesh(mesh) == Faults{"edge (1, 2) runs in the same direction in triangles 0 and 1 (counted "
+                                     "from 0): one of them is inverted"});
   }
   SECTION("bow-tie") {
     append_vertex(mesh, 2, 1, 1);
     append_vertex(mesh, 2, 2, 1);
     append_triangle(mesh, 3, 4, 5);
-    CHECK(check_mesh(mesh) == Faults{"vertex 3 joins 2 separate fans of triangles"});
+    CHECK(check_mesh(mesh) == Faults{"vertex 3 joins 2 separate fans of triangles (counted from 0)"});
   }
   SECTION("duplicate triangle") {
     append_triangle(mesh, 1, 3, 2);
     CHECK(check_mesh(mesh) ==
-          Faults{"triangle 2 (1, 3, 2) has the same vertices as triangle 1",
-                 "edge (1, 2) has 3 triangles: 0, 1, 2",
-                 "edge (1, 3) runs in the same direction in triangles 1 and 2: one of them is inverted",
-                 "edge (2, 3) runs in the same direction in triangles 1 and 2: one of them is inverted"});
+          Faults{"triangle 2 (1, 3, 2) has the same vertices as triangle 1 (counted from 0)",
+                 "edge (1, 2) has 3 triangles: 0, 1, 2 (counted from 0)",
+                 "edge (1, 3) runs in the same direction in triangles 1 and 2 (counted from 0): one of them "
+                 "is inverted",
+                 "edge (2, 3) runs in the same direction in triangles 1 and 2 (counted from 0): one of them "
+                 "is inverted"});
   }
   SECTION("flat mesh that folds over") {
     mesh.vertices.col(2).setZero();
     CHECK(check_mesh(mesh).empty());
     append_vertex(mesh, 0.2, 0.2, 0);
     append_triangle(mesh, 3, 1, 4);  // shares the edge (1, 3) rightly but lies on the other triangles
-    CHECK(check_mesh(mesh) == Faults{"triangle 2 (3, 1, 4) faces the other way than most of this flat mesh"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"triangle 2 (3, 1, 4) faces the other way than most of this flat mesh (counted from 0)"});
   }
 }
 

@@ -264,7 +264,7 @@ TEST_CASE("counts that do not fit the file are told as such", "[io]") {
   CHECK(said("a.ply", header + std::string(13, '\0')) ==
         ": the file has data after the elements that its header declares (the header declares 1 vertex)");
   CHECK(said("a.ply", header + std::string(8, '\0') + std::string("\0\0\xc0\x7f", 4)) ==
-        ": vertex 0 has a coordinate that is not finite");
+        ": vertex 0 (counted from 0) has a coordinate that is not finite");
 }
 
 TEST_CASE("what is declared twice, left over, not finite or no text is refused", "[io]") {

@@ -305,7 +305,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     write_ply(run.folder / "levels/pcs_l1.ply", mesh);
     const std::string page = run.page(true);
     CHECK(contains(page, "newton_l1.ply"));
-    CHECK(contains(page, "pcs_l1.ply: vertex 5 has a coordinate that is not finite"));
+    CHECK(contains(page, "pcs_l1.ply: vertex 5 (counted from 0) has a coordinate that is not finite"));
     CHECK(contains(page, "Not drawn"));
     const PictureSet pictures = draw_pictures(read_run(run.folder), {}, small_pictures);
     CHECK(pictures.find("pcs_l1.png") == nullptr);

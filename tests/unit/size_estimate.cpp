@@ -87,4 +87,9 @@ TEST_CASE("What exceeds the machine's memory is refused unless it is allowed") {
   CHECK(why ==
         "level 9 would have about 2.6e+11 vertices, more than the 4e+07 that can be counted; take at most 3 "
         "levels");
+  // Memory suffices for fewer than can be counted: both are said.
+  CHECK_THAT(
+      refusal(grid_of(24, 10)),
+      Catch::Matches(".* that can be counted; take at most [1-8] levels, for which this machine's memory "
+                     "of [0-9.]+ GB suffices, or up to 9 levels with --allow-memory"));
 }

@@ -46,6 +46,10 @@ int report_errors(const ConfigErrors& errors) {
   return exit_bad_input;
 }
 
+void warn_of(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) std::cerr << "warning: " << printable(line) << "\n";
+}
+
 void ConfigArguments::add_to(CLI::App& command) {
   config_option = command.add_option("experiment", config, "experiment file (YAML)")->required();
   command.add_option("--set", sets, "override one value, as in newton.step_size=0.1; may be repeated")
@@ -66,9 +70,9 @@ Overrides ConfigArguments::overrides() const {
     const std::size_t equals = set.find('=');
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--set " + set + ": write it as key=value, as in --set newton.step_size=0.1");
-    all.emplace_back(set.substr(0, equals), set.substr(equals + 1));
+    all.push_back({set.substr(0, equals), set.substr(equals + 1)});
   }
-  if (levels > 0) all.emplace_back("levels", std::to_string(levels));
+  if (levels > 0) all.push_back({"levels", std::to_string(levels), "--levels"});
   return all;
 }
 

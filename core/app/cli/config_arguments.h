@@ -21,6 +21,9 @@ std::function<std::string(const std::string&)> number_of_at_least(double least);
 /// Prints the errors and returns the exit code.
 int report_errors(const ConfigErrors& errors);
 
+/// Prints each line as a warning on standard error.
+void warn_of(const std::vector<std::string>& lines);
+
 /// An experiment file and its overrides on the command line.
 struct ConfigArguments {
   std::string config;

@@ -1,7 +1,6 @@
 #include "core/app/cli/help.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include "core/app/experiment/exit_codes.h"
@@ -12,21 +11,28 @@ namespace drape {
 
 namespace {
 
-/// The first unknown option that the error names, without its dashes and value; empty for other errors.
-std::string unknown_option(const CLI::Error& error) {
-  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return "";
-  std::istringstream words(error.what());
-  for (std::string word; words >> word;)
-    if (word.starts_with("--") && word.size() > 2) return word.substr(2, word.find('=') - 2);
+/// The words that no command expects, in order; empty for other errors. The error's own text has them
+/// backwards.
+std::vector<std::string> unexpected_words(const CLI::App& app, const CLI::Error& error) {
+  if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError)) return {};
+  return app.remaining(true);
+}
+
+/// The first option among the words, with its dashes and without its value; empty without one.
+std::string first_option(const std::vector<std::string>& words) {
+  for (const std::string& word : words)
+    if (word.size() > 1 && word[0] == '-' && word != "--") return word.substr(0, word.find('='));
   return "";
 }
 
-/// The command's option that is nearest to a name without dashes; empty if none is near.
-std::string nearest_option(const CLI::App& command, const std::string& name) {
+/// The command's option that is nearest to an unknown one; empty if none is near.
+std::string nearest_option(const CLI::App& command, const std::string& unknown) {
+  if (!unknown.starts_with("--")) return "";
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options())
     names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
-  return nearest_word(name, names);
+  const std::string near = nearest_word(unknown.substr(2), names);
+  return near.empty() ? "" : "--" + near;
 }
 
 }  // namespace
@@ -80,13 +86,19 @@ void require_command(const CLI::App& app, const std::string& word) {
 std::string refusal(const CLI::App& app, const CLI::Error& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::string command = chosen.empty() ? "" : " " + chosen[0]->get_name();
-  const std::string unknown = unknown_option(error);
-  const std::string near = unknown.empty() ? "" : nearest_option(chosen.empty() ? app : *chosen[0], unknown);
-  const std::string what =
-      !near.empty() && near == unknown
-          ? "there is no option --" + excerpt(unknown) + " before the command; write it after that."
-      : near.empty() ? printable(error.what())
-                     : "there is no option --" + excerpt(unknown) + "; did you mean --" + near + "?";
+  const std::vector<std::string> words = unexpected_words(app, error);
+  const std::string unknown = first_option(words);
+  const std::string near = nearest_option(chosen.empty() ? app : *chosen[0], unknown);
+  std::string what = "there is no option " + excerpt(unknown);
+  if (!near.empty())
+    what += near == unknown ? " before the command; write it after that." : "; did you mean " + near + "?";
+  if (unknown.empty()) {
+    what = printable(error.what());
+    if (words.size() > 1) {
+      what = "The following arguments were not expected:";
+      for (const std::string& word : words) what += " " + excerpt(word);
+    }
+  }
   return "error: " + what + (near.empty() ? "; see" : " See") + " `drape" + command + " --help`\n";
 }
 

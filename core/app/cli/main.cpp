@@ -143,10 +143,12 @@ int report(const std::vector<std::filesystem::path>& folders, std::filesystem::p
   if (page.empty()) page = folders.front() / "report.html";
   if (folders.size() > 1 && page == folders.front() / "report.html")
     throw std::runtime_error("several folders: name the page with --out, as in --out results/together.html");
-  if (several)
+  if (several) {
     write_runs_report(folders, page);
-  else
-    write_report(folders.front(), {}, picture_width);
+  } else {
+    require_run_or_sweep(folders.front());
+    warn_of(write_report(folders.front(), {}, picture_width));
+  }
   std::cout << "report: " << page.string() << "\n";
   return exit_done;
 }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "core/app/cli/config_arguments.h"
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/report.h"
@@ -64,12 +65,13 @@ ViewCommand::ViewCommand(CLI::App& app)
 
 int ViewCommand::run() const {
   const fs::path folder = folder_, page = folder / "report.html";
+  require_run_or_sweep(folder);
   const bool sweep = is_sweep(folder);
   if (!is_current(page, folder / (sweep ? "sweep.json" : "results.json"))) {
     if (sweep)
       write_runs_report({folder}, page);
     else
-      write_report(folder);
+      warn_of(write_report(folder));
   }
   std::cout << "report: " << printable(page.string()) << "\n";
   if (!has_display() || !open_in_browser(page))

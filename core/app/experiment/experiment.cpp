@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/make_plugins.h"
 #include "core/app/experiment/schedule_keys.h"
 #include "core/app/files/file_name.h"
@@ -54,7 +55,7 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
                                           const Registry& registry, ConfigErrors& errors) {
   ConfigNode source = read_yaml(file, errors);
   if (!errors.empty()) return std::nullopt;
-  for (const auto& [key, value] : overrides) set_path(source, key, value, errors);
+  for (const Override& o : overrides) set_parameter(source, o.key, o.value, o.option, errors);
   return read_experiment(std::move(source), registry, errors);
 }
 
@@ -72,6 +73,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   check_vertex_counts(e, errors);
   make_plugins(registry, errors, e);
   check_schedule(e, errors);
+  if (!errors.empty()) check_mesh_files(e, errors);
   // The common newton section is read once for itself and once in each method: report each fault once.
   std::set<std::string> seen;
   ConfigErrors once;

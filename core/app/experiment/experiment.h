@@ -39,8 +39,12 @@ struct Experiment {
 void check_name(const std::string& what, const std::string& name, const Location& where,
                 ConfigErrors& errors);
 
-/// Values from the command line, `key.path=value`, in order.
-using Overrides = std::vector<std::pair<std::string, std::string>>;
+/// A value from the command line.
+struct Override {
+  std::string key, value;               ///< `key.path=value`
+  std::string option = "--set " + key;  ///< for messages
+};
+using Overrides = std::vector<Override>;  ///< in order
 
 /// Reads and validates an experiment; empty, with every error appended, if it is not valid.
 std::optional<Experiment> read_experiment(const std::filesystem::path& file, const Overrides& overrides,
@@ -48,6 +52,10 @@ std::optional<Experiment> read_experiment(const std::filesystem::path& file, con
 
 /// The same from a map that has been read already, overrides included.
 std::optional<Experiment> read_experiment(ConfigNode source, const Registry& registry, ConfigErrors& errors);
+
+/// Appends the faults of the cloth's and the start's mesh files, which are read. For experiments that are not
+/// valid, whose scene cannot be built: otherwise build_scene appends them.
+void check_mesh_files(const Experiment& experiment, ConfigErrors& errors);
 
 /// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {

@@ -247,7 +247,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .formerly("frames")
       .at_least(0)
       .at_most(1000)
-      .description("number of intermediate states per level to record and to measure errors of");
+      .description("largest number of intermediate states per level to record and to measure errors of");
   d.add_choice(
        "check_intersections", &ExperimentParameters::check_intersections,
        {{"every_level", IntersectionCheck::every_level}, {"every_step", IntersectionCheck::every_step}})

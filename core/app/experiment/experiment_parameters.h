@@ -108,6 +108,9 @@ struct ReferenceParameters {
 /// How often exact predicates count the intersections.
 enum class IntersectionCheck { every_level, every_step };
 
+/// The refiner of an experiment that names none.
+inline constexpr const char* default_refiner = "loop";
+
 /// A whole experiment file.
 struct ExperimentParameters {
   std::string name;

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "core/app/experiment/boundary_conditions.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/app/experiment/experiment_path.h"
 
 namespace drape {
 
@@ -36,7 +36,7 @@ LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
   std::size_t first = 0;
   for (std::size_t k = 0; k < e.parameters.schedule.keys.size(); ++k) {
     const std::string& name = e.parameters.schedule.keys[k].parameter;
-    for (const Target& target : targets_of(e, contacts, split(name, '.'))) {
+    for (const Target& target : targets_of(e, contacts, words_of_path(e.resolved, name))) {
       Section& section = section_of(e, contacts, target);
       const bool of_plugin = section.plugin.entry != nullptr;
       const auto path =

@@ -94,8 +94,9 @@ class PluginMaker {
   void make_refiner() {
     const ConfigNode& node = e_.parameters.refiner;
     ConfigNode resolved;
-    e_.refiner = make_from<Refiner>(
-        registry_, node.kind == ConfigNode::Kind::null ? scalar_node("loop") : node, errors_, &resolved);
+    e_.refiner = make_from<Refiner>(registry_,
+                                    node.kind == ConfigNode::Kind::null ? scalar_node(default_refiner) : node,
+                                    errors_, &resolved);
     set("refiner", resolved);
   }
 

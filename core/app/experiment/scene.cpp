@@ -75,22 +75,45 @@ class Noise {
   } waves_[8];
 };
 
-Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+/// The cloth; empty, with every fault appended, if it is none.
+std::optional<TriangleMesh> checked_cloth(const Experiment& e, ConfigErrors& errors) {
+  const ClothParameters& c = e.parameters.cloth;
+  try {
+    TriangleMesh cloth = make_cloth(e);
+    const std::vector<std::string> faults = check_mesh(cloth);
+    for (const std::string& fault : faults)
+      errors.push_back({e.location_of("cloth"), (c.shape == "file" ? c.file + ": " : "") + fault});
+    if (faults.empty()) return cloth;
+  } catch (const std::exception& error) {
+    errors.push_back({e.location_of("cloth"), reason_of(error)});
+  }
+  return std::nullopt;
+}
+
+/// The mesh of the start's file; empty, with every fault appended, if it is none.
+std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors) {
   const std::string& file = e.parameters.start.file;
   try {
-    const TriangleMesh mesh = read_mesh(file);
-    for (const std::string& fault : check_coordinates(mesh.vertices))
-      errors.push_back({e.location_of("start"), file + ": " + fault});
-    if (mesh.vertices.rows() == coarsest.vertex_count() &&
-        same_entries(mesh.triangles, coarsest.rest.triangles))
-      return mesh.vertices;
-    errors.push_back(
-        {e.location_of("start"), "\"start\": " + file +
-                                     " has other vertices or triangles than the coarsest level; take a "
-                                     "mesh like rest/l0.ply of a run's folder"});
+    TriangleMesh mesh = read_mesh(file);
+    const std::vector<std::string> faults = check_coordinates(mesh.vertices);
+    for (const std::string& fault : faults) errors.push_back({e.location_of("start"), file + ": " + fault});
+    if (faults.empty()) return mesh;
   } catch (const std::exception& problem) {
     errors.push_back({e.location_of("start"), reason_of(problem)});
   }
+  return std::nullopt;
+}
+
+Positions read_start(const Experiment& e, const Level& coarsest, ConfigErrors& errors) {
+  const std::optional<TriangleMesh> mesh = start_mesh(e, errors);
+  if (!mesh) return coarsest.rest.vertices;
+  if (mesh->vertices.rows() == coarsest.vertex_count() &&
+      same_entries(mesh->triangles, coarsest.rest.triangles))
+    return mesh->vertices;
+  errors.push_back(
+      {e.location_of("start"), "\"start\": " + e.parameters.start.file +
+                                   " has other vertices or triangles than the coarsest level; take a "
+                                   "mesh like rest/l0.ply of a run's folder"});
   return coarsest.rest.vertices;
 }
 
@@ -157,6 +180,11 @@ Location Experiment::location_of(const std::string& key) const {
   return node ? node->where : source.where;
 }
 
+void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
+  if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
+  if (!e.parameters.start.file.empty()) start_mesh(e, errors);
+}
+
 const LevelModel& Scene::model(int level) const {
   return schedule ? *schedule->model(level) : *models[level];
 }
@@ -166,20 +194,13 @@ Problem Scene::problem() const { return {hierarchy, models, starts, schedule.get
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
-  TriangleMesh cloth;
-  try {
-    cloth = make_cloth(e);
-  } catch (const std::exception& error) {
-    errors.push_back({e.location_of("cloth"), reason_of(error)});
-    return nullptr;
-  }
-  const std::string file = p.cloth.shape == "file" ? p.cloth.file + ": " : "";
-  for (const std::string& fault : check_mesh(cloth)) errors.push_back({e.location_of("cloth"), file + fault});
+  std::optional<TriangleMesh> cloth = checked_cloth(e, errors);
+  if (!cloth && !p.start.file.empty()) start_mesh(e, errors);
   if (!errors.empty()) return nullptr;
 
   auto scene = std::make_unique<Scene>();
   try {
-    scene->hierarchy = Hierarchy::of(std::move(cloth), *e.refiner, p.levels);
+    scene->hierarchy = Hierarchy::of(std::move(*cloth), *e.refiner, p.levels);
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});
     return nullptr;

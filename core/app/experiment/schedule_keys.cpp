@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/app/experiment/contact_configs.h"
-#include "core/app/files/yaml_file.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/string_utils.h"
@@ -115,7 +115,7 @@ std::vector<ConfigNode> with_values_between(const KeyParameters& key) {
 }  // namespace
 
 std::vector<std::string> indexed_path(const ConfigNode& config, const std::string& path) {
-  std::vector<std::string> words = split(path, '.');
+  std::vector<std::string> words = words_of_path(config, path);
   const ConfigNode* node = &config;
   for (std::string& word : words) {
     if (!node) break;
@@ -183,7 +183,7 @@ void set_first_keys(ConfigNode& source) {
     if (!parameter || !values || values->kind != NodeKind::list || values->items.empty()) continue;
     const std::string& path = parameter->scalar;
     if (std::find(changeable.begin(), changeable.end(), path.substr(0, path.find('.'))) != changeable.end())
-      set_path(source, path, values->items[0], parameter->where, ignored);
+      set_parameter(source, path, values->items[0], parameter->where, ignored);
   }
 }
 
@@ -219,7 +219,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
       ConfigNode config = e.resolved;
       ConfigErrors own;
       const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
-      if (set_path(config, p.keys[k].parameter, value, where, own)) {
+      if (set_parameter(config, p.keys[k].parameter, value, where, own)) {
         ExperimentParameters read;
         schema.read(&read, config, own);
         check_plugins(e, read, own);

@@ -29,6 +29,10 @@ std::string about(double number) {
   return text;
 }
 
+std::string levels_text(std::ptrdiff_t count) {
+  return std::to_string(count) + (count == 1 ? " level" : " levels");
+}
+
 bool is_grid(const ClothParameters& c) {
   return (c.shape == "square" || c.shape == "rectangle") && c.triangulation != "random";
 }
@@ -94,11 +98,13 @@ void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& erro
   const std::vector<double> vertices = estimated_vertices(e.parameters);
   if (vertices.empty()) return;
   const double machine = machine_memory();
+  const auto can_be_counted = [&](double n) { return n <= max_finest_vertices; };
   const auto fits = [&](double n) {
-    return n <= max_finest_vertices && (large == LargeMemory::allowed || estimated_memory(n) <= machine);
+    return can_be_counted(n) && (large == LargeMemory::allowed || estimated_memory(n) <= machine);
   };
   const auto fitting = std::find_if_not(vertices.begin(), vertices.end(), fits) - vertices.begin();
   if (fitting == std::ssize(vertices)) return;
+  const auto counted = std::find_if_not(vertices.begin(), vertices.end(), can_be_counted) - vertices.begin();
   const double finest = vertices.back();
   std::string why =
       "level " + std::to_string(vertices.size() - 1) + " would have about " + about(finest) + " vertices";
@@ -107,9 +113,12 @@ void refuse_too_large(const Experiment& e, LargeMemory large, ConfigErrors& erro
   else
     why += " and take about " + memory_text(estimated_memory(finest)) +
            " of memory, where this machine has " + memory_text(machine);
-  why += fitting > 0 ? "; take at most " + std::to_string(fitting) + (fitting == 1 ? " level" : " levels")
-                     : "; ask for fewer vertices";
-  if (finest <= max_finest_vertices) why += ", or allow it with --allow-memory";
+  why += fitting > 0 ? "; take at most " + levels_text(fitting) : "; ask for fewer vertices";
+  if (can_be_counted(finest))
+    why += ", or allow it with --allow-memory";
+  else if (fitting < counted)
+    why += (fitting > 0 ? ", for which this machine's memory of " + memory_text(machine) + " suffices" : "") +
+           ", or up to " + levels_text(counted) + " with --allow-memory";
   errors.push_back({e.location_of(e.source.find("levels") ? "levels" : "cloth"), why});
 }
 

@@ -208,13 +208,19 @@ ConfigNode read_yaml(const std::filesystem::path& file, ConfigErrors& errors) {
   }
 }
 
-bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
-  const Location where{"--set " + path, 0, 0};
+std::optional<ConfigNode> value_of_option(const std::string& text, const std::string& option,
+                                          ConfigErrors& errors) {
   const size_t before = errors.size();
-  ConfigNode parsed = parse_value(value, where.file, errors);
-  if (errors.size() != before) return false;
-  set_places(parsed, where);
-  return set_path(root, path, std::move(parsed), where, errors);
+  ConfigNode value = parse_value(text, option, errors);
+  if (errors.size() != before) return std::nullopt;
+  set_places(value, {option, 0, 0});
+  return value;
+}
+
+bool set_path(ConfigNode& root, const std::string& path, const std::string& value, ConfigErrors& errors) {
+  const std::string option = "--set " + path;
+  std::optional<ConfigNode> parsed = value_of_option(value, option, errors);
+  return parsed && set_path(root, path, std::move(*parsed), {option, 0, 0}, errors);
 }
 
 bool set_path(ConfigNode& root, const std::string& path, ConfigNode value, const Location& where,

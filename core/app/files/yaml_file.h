@@ -18,6 +18,11 @@ ConfigNode parse_yaml(const std::string& text, const std::string& name, ConfigEr
 /// The node in block style, lists of scalars on one line; parse_yaml gives the node back.
 std::string to_yaml(const ConfigNode& node);
 
+/// The YAML value of an option of the command line, which is its location; empty, with an error appended, if
+/// it is no YAML.
+std::optional<ConfigNode> value_of_option(const std::string& text, const std::string& option,
+                                          ConfigErrors& errors);
+
 /// Sets the node at a path to a YAML value. A path consists of keys and, in lists, of indices from 0, types
 /// or names ("metrics.0.type", "energies.gravity.acceleration"). Missing maps are made; a plugin's bare name
 /// becomes `{type: name}`. Locations are named "--set <path>". Returns false, with an error appended, if the

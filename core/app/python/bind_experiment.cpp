@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/method_choice.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
@@ -33,9 +34,9 @@ class ExperimentHandle {
     ConfigErrors errors;
     ConfigNode changed = source_;
     if (py::isinstance<py::str>(value))
-      set_path(changed, key, value.cast<std::string>(), errors);
+      set_parameter(changed, key, value.cast<std::string>(), "--set " + key, errors);
     else
-      set_path(changed, key, node_of(value), Location{"--set " + key, 0, 0}, errors);
+      set_parameter(changed, key, node_of(value), Location{"--set " + key, 0, 0}, errors);
     throw_errors(errors);
     source_ = std::move(changed);
   }

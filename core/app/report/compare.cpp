@@ -5,6 +5,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "core/app/report/model_keys.h"
 #include "core/app/report/run_rows.h"
 #include "core/app/report/text_table.h"
 #include "core/app/view/html.h"
@@ -70,17 +71,25 @@ struct ComparedQuantities {
 bool is_time(const std::string& key) { return key == "seconds" || key == "preview_seconds"; }
 bool is_work(const std::string& key) { return key == "iterations" || key == "flops"; }
 
+/// One quantity of one run.
+struct Entry {
+  std::string where, key;
+  double value;
+  const RunData* run;
+};
+
 /// Values by level and key, in file order, and whether each method converged.
 struct Sheet {
-  std::vector<std::tuple<std::string, std::string, double>> entries;
+  std::vector<Entry> entries;
   std::vector<std::pair<std::string, bool>> converged;
+  const RunData* run = nullptr;  ///< whose values are added
 
   void add(const std::string& where, const std::string& key, const OptionalNumber& value) {
-    if (value) entries.emplace_back(where, key, *value);
+    if (value) entries.push_back({where, key, *value, run});
   }
-  const double* find(const std::string& where, const std::string& key) const {
-    for (const auto& [w, k, value] : entries)
-      if (w == where && k == key) return &value;
+  const Entry* find(const std::string& where, const std::string& key) const {
+    for (const Entry& entry : entries)
+      if (entry.where == where && entry.key == key) return &entry;
     return nullptr;
   }
 };
@@ -113,18 +122,19 @@ Sheet sheet_of(const RunCollection& collection, const ComparedQuantities& quanti
     std::string prefix;
     if (named) prefix = run.variation + (run.seed ? ", seed " + html::count(run.seed) : "") + ": ";
     if (!run.data) continue;
+    sheet.run = &*run.data;
     for (const MethodRecord& method : run.data->methods)
       add_method(sheet, quantities, prefix, *run.data, method);
   }
   return sheet;
 }
 
-std::string verdict(const Change& c) {
+std::string verdict(const Change& c, bool same_model) {
   const double difference = c.after - c.before;
   const double noise = is_time(c.key) ? time_noise : relative_noise;
   if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
   if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
-  if (c.better == Better::neither) return "other";
+  if (c.better == Better::neither || (c.key == "energy" && !same_model)) return "other";
   const bool good = (difference < 0) != (c.better == Better::higher);
   if (is_time(c.key)) return good ? "faster" : "slower";
   if (is_work(c.key)) return good ? "less work" : "more work";
@@ -137,6 +147,19 @@ bool holds(const Change& c, double ratio) {
   if (c.better == Better::higher) return c.after * ratio >= c.before;
   return c.after <= c.before + (ratio - 1) * std::abs(c.before);
 }
+
+/// In which keys of their model two runs differ, read once for each two.
+class ModelDifferences {
+ public:
+  const std::vector<std::string>& of(const RunData& a, const RunData& b) {
+    const auto [found, is_new] = known_.try_emplace({&a, &b});
+    if (is_new) found->second = differing_model_keys(a.configuration, b.configuration);
+    return found->second;
+  }
+
+ private:
+  std::map<std::pair<const RunData*, const RunData*>, std::vector<std::string>> known_;
+};
 
 std::string change_of(const Change& c) {
   if (c.before > 0 && c.after > 0) return "×" + html::number_text(c.after / c.before);
@@ -175,10 +198,17 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;
   const ComparedQuantities quantities(before, after);
   const Sheet a = sheet_of(before, quantities, named), b = sheet_of(after, quantities, named);
-  for (const auto& [where, key, value] : a.entries)
-    if (const double* now = b.find(where, key)) {
-      Change& change = changes_.emplace_back(Change{where, key, value, *now, quantities.better(key)});
-      change.verdict = verdict(change);
+  ModelDifferences differences;
+  for (const Entry& was : a.entries)
+    if (const Entry* now = b.find(was.where, was.key)) {
+      Change& change = changes_.emplace_back(
+          Change{was.where, was.key, was.value, now->value, quantities.better(was.key)});
+      const std::vector<std::string>& keys = differences.of(*was.run, *now->run);
+      change.verdict = verdict(change, keys.empty());
+      if (was.key != "energy") continue;
+      for (const std::string& key : keys)
+        if (std::find(differing_.begin(), differing_.end(), key) == differing_.end())
+          differing_.push_back(key);
     }
   if (changes_.empty())
     throw std::runtime_error("nothing of " + before.name + " is in " + after.name + " too: no method" +
@@ -240,6 +270,15 @@ std::string Comparison::text() const {
       text += std::string("only in the ") + where + ": and " + std::to_string(names.size() - most_listed) +
               " more\n";
   };
+  if (!differing_.empty()) {
+    constexpr std::size_t most_named = 12;
+    std::vector<std::string> keys = differing_;
+    if (keys.size() > most_named) {
+      keys.resize(most_named);
+      keys.push_back("…");
+    }
+    text += "Energies have no verdict, as their models differ: in " + joined(keys) + ".\n";
+  }
   list("first", lost_);
   list("second", gained_);
   for (const std::string& line : broken_) text += "broken: " + line + "\n";

@@ -24,6 +24,7 @@ struct Change {
   std::string key;
   double before = 0, after = 0;
   Better better = Better::lower;
+  /// An energy has no better and worse where the models differ (model_keys.h).
   /// "faster", "slower", "less work", "more work", "better", "worse", "other", or "" for the same
   std::string verdict = {};
   bool broken = false;  ///< violates a bound
@@ -45,6 +46,7 @@ class Comparison {
  private:
   std::vector<Change> changes_;
   std::vector<std::string> lost_, gained_, broken_;
+  std::vector<std::string> differing_;  // keys of the model, for energies
   std::size_t bounds_ = 0;
 };
 

@@ -55,11 +55,12 @@ TriangleMesh run_mesh(const RunData& run, const std::string& name) {
 
 std::optional<TriangleMesh> try_run_mesh(const RunData& run, const std::string& name,
                                          std::vector<std::string>& notes) {
-  if (name.empty() || !std::filesystem::is_regular_file(run.folder / name)) return {};
+  if (name.empty()) return {};
   try {
     return run_mesh(run, name);
   } catch (const std::exception& error) {
-    notes.emplace_back(reason_of(error));
+    const std::string note = reason_of(error);
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
     return {};
   }
 }

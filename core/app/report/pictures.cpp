@@ -1,5 +1,6 @@
 #include "core/app/report/pictures.h"
 
+#include <algorithm>
 #include <cctype>
 
 #include "core/app/report/field_pictures.h"
@@ -36,6 +37,23 @@ void draw_outlines(const RunData& run, PictureCanvas& canvas, const PictureSet& 
     const Picture* fine = set.find(state_picture(method, levels->fine));
     if (coarse && fine) canvas.draw_outlined(outline_picture(method, *levels), fine->image, *coarse);
   }
+}
+
+/// Removes what an earlier report drew and this one did not, as of a state whose mesh is gone.
+void remove_stale(const RunData& run, const PictureSet& set) {
+  const auto is_of = [](const std::string& name, const MethodRecord& method) {
+    const std::string begin = file_part(method.name) + "_l";
+    return name.starts_with(begin) && name.ends_with(".png") &&
+           std::isdigit(static_cast<unsigned char>(name[begin.size()]));
+  };
+  std::vector<std::filesystem::path> stale;
+  for (const auto& entry : std::filesystem::directory_iterator(run.folder / "pictures")) {
+    const std::string name = entry.path().filename().string();
+    const bool own = std::any_of(run.methods.begin(), run.methods.end(),
+                                 [&](const MethodRecord& method) { return is_of(name, method); });
+    if (own && !set.pictures.contains(name)) stale.push_back(entry.path());
+  }
+  for (const std::filesystem::path& picture : stale) std::filesystem::remove(picture);
 }
 
 }  // namespace
@@ -95,6 +113,7 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
     draw_states(run, canvas);
     draw_outlines(run, canvas, set);
     draw_fields(run, canvas, set);
+    remove_stale(run, set);
   } catch (const RenderingCancelled&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
                         run.folder.string() + " draws them.");

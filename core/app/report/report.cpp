@@ -210,13 +210,15 @@ std::string notes(const PictureSet& set) {
 
 }  // namespace
 
-void write_report(const std::filesystem::path& run_directory, const std::function<bool()>& cancelled,
-                  std::optional<int> picture_width) {
+std::vector<std::string> write_report(const std::filesystem::path& run_directory,
+                                      const std::function<bool()>& cancelled,
+                                      std::optional<int> picture_width) {
   const RunData run = read_run(run_directory);
   PictureSet set = draw_pictures(run, cancelled, picture_width);
   const Gallery gallery(set);
   const ReportView view = report_view(run);
-  set.notes.insert(set.notes.end(), view.notes.begin(), view.notes.end());
+  for (const std::string& note : view.notes)
+    if (std::find(set.notes.begin(), set.notes.end(), note) == set.notes.end()) set.notes.push_back(note);
   const std::string page =
       html::fill(Embedded::page_html(),
                  {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},
@@ -246,6 +248,7 @@ void write_report(const std::filesystem::path& run_directory, const std::functio
                   {"charts", std::string(Embedded::charts_js())},
                   {"script", std::string(Embedded::page_js())}});
   write_file(run_directory / "report.html", page);
+  return set.notes;
 }
 
 }  // namespace drape

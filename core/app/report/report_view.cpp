@@ -24,7 +24,8 @@ constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, un
 constexpr const char* section_open =
     "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
     "JavaScript.</p></noscript>\n"
-    "<p>The same states to turn around, a view a method. The slider goes from level to level; Play shows the "
+    "<p>The same states, to turn around: one view per method. The slider goes from level to level; Play "
+    "shows the "
     "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
 
 /// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final

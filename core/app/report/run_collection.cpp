@@ -177,6 +177,12 @@ bool RunRecord::refused() const {
 
 bool is_sweep(const fs::path& folder) { return fs::is_regular_file(folder / "sweep.json"); }
 
+void require_run_or_sweep(const fs::path& folder) {
+  if (is_sweep(folder) || fs::is_regular_file(folder / "results.json")) return;
+  throw std::runtime_error(folder.string() +
+                           ": neither results.json nor sweep.json here; give the folder of a run or a sweep");
+}
+
 RunCollection read_runs(const std::vector<fs::path>& folders) {
   RunCollection collection;
   std::vector<fs::path> single;
@@ -186,12 +192,9 @@ RunCollection read_runs(const std::vector<fs::path>& folders) {
       const std::size_t begin = collection.runs.size();
       read_sweep(folder, collection);
       sources.push_back({folder, begin, collection.runs.size()});
-    } else if (fs::is_regular_file(folder / "results.json")) {
-      single.push_back(folder);
     } else {
-      throw std::runtime_error(
-          folder.string() +
-          ": neither results.json nor sweep.json here; give the folder of a run or a sweep");
+      require_run_or_sweep(folder);
+      single.push_back(folder);
     }
   }
   const std::size_t begin = collection.runs.size();

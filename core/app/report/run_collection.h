@@ -43,6 +43,9 @@ struct RunCollection {
 /// Whether it is a sweep's folder.
 bool is_sweep(const std::filesystem::path& folder);
 
+/// Throws std::runtime_error with one line for a folder that is neither a run's nor a sweep's.
+void require_run_or_sweep(const std::filesystem::path& folder);
+
 /// Reads runs and sweeps. Runs whose configs differ only by the seed form a variation, which is named after
 /// the experiment or, if that is ambiguous, after the folder. Throws std::runtime_error with one line for a
 /// folder that is neither a run nor a sweep.

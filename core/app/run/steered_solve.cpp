@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/method_choice.h"
-#include "core/app/files/yaml_file.h"
 #include "core/app/run/checkpoint_manager.h"
 
 namespace drape {
@@ -31,7 +31,7 @@ bool SteeredSolve::set(const std::string& key, const std::string& value, ConfigE
   if (!iterated && level_ < 0)
     throw std::runtime_error("nothing is iterated yet; set " + key + " in the experiment");
   ConfigNode source = experiment_->source;
-  if (!set_path(source, key, value, errors)) return false;
+  if (!set_parameter(source, key, value, "--set " + key, errors)) return false;
   auto changed = read_experiment(std::move(source), *experiment_->registry, errors);
   if (!changed) return false;
   MethodState from;

@@ -54,7 +54,10 @@ class LocalEngine {
     waiting_.clear();
     for (Running& r : running_) r.process.stop();
     if (!running_.empty())
-      std::fprintf(stderr, "stopping: %zu running save what they have\n", running_.size());
+      std::fprintf(stderr,
+                   running_.size() == 1 ? "stopping: %zu run is saving its state\n"
+                                        : "stopping: %zu runs are saving their states\n",
+                   running_.size());
   }
 
   /// Memory for a new run [bytes]: the available memory less what the running ones may still allocate.

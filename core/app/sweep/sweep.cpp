@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/app/experiment/describe.h"
+#include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/experiment_files.h"
@@ -103,7 +104,7 @@ class Reader {
         if (setting.path == "start.seed" && !p.seeds.empty())
           faults.push_back(
               {setting.where, "\"start.seed\" is what the sweep's seeds set; take one of them out"});
-        set_path(source, setting.path, setting.value, setting.where, faults);
+        set_parameter(source, setting.path, setting.value, setting.where, faults);
         if (settings == &variation.settings) run.settings[setting.path] = json_value(setting.value);
       }
     const bool own = !variation.methods.empty();
@@ -151,7 +152,7 @@ class Reader {
       run.folder = "runs/" + variation.folder + "/seed_" + std::to_string(seed);
       run.config = to_yaml(resolved);
       const auto [other, first] = configs_.emplace(run.config, run.name);
-      if (!first)
+      if (!first && seed == seeds.front())
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
                                               "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);

@@ -78,10 +78,10 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
                                " are of another experiment than the sweep now says" + remedies +
                                run_paths(files));
     if (status.threads != threads)
-      throw std::runtime_error(folder + ": " + title(run.name, run.seed) + " was made with " +
-                               std::to_string(status.threads) + " threads a run, not " +
-                               std::to_string(threads) + ", so times would not compare" + remedies +
-                               run_paths(files));
+      throw std::runtime_error(
+          folder + ": " + title(run.name, run.seed) + " was made with " + std::to_string(status.threads) +
+          (status.threads == 1 ? " thread" : " threads") + " per run, not " + std::to_string(threads) +
+          ", so times would not compare" + remedies + run_paths(files));
   }
 }
 
@@ -126,15 +126,19 @@ std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_fai
   return indices;
 }
 
+bool is_refused_as_expected(const Json& run) {
+  const Json expect = run.value("expect", Json::object());
+  return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
+         expect.value("outcome", "") == "refused";
+}
+
 Json SweepFolder::refresh() const {
   Json json = read();
   bool complete = true;
   for (Json& run : json["runs"]) {
     const RunStatus status = read_status(files(run["folder"]));
     run.update(status.json());
-    const Json expect = run.value("expect", Json::object());
-    complete =
-        complete && (status.has_results() || (status.refused() && expect.value("outcome", "") == "refused"));
+    complete = complete && (status.has_results() || is_refused_as_expected(run));
   }
   json["complete"] = complete;
   write_file(path_ / "sweep.json", json_text(json, 1) + "\n");

@@ -40,6 +40,9 @@ inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
   return status.refused() && run.expect.outcome == "refused";
 }
 
+/// The same of an entry of sweep.json's runs.
+bool is_refused_as_expected(const nlohmann::ordered_json& run);
+
 /// Locks a sweep's folder for one process and its runs.
 class FolderLock {
  public:

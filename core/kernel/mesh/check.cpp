@@ -39,6 +39,9 @@ class Faults {
 
 std::string text(int number) { return std::to_string(number); }
 
+/// Ends a text with indices: a mesh file's own, and messages with its lines, may count from 1.
+constexpr const char* from_0 = " (counted from 0)";
+
 std::string triangle_name(const Triangles& triangles, int t) {
   return "triangle " + text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
          text(triangles(t, 2)) + ")";
@@ -74,20 +77,20 @@ bool check_indices(const TriangleMesh& mesh, Faults& faults) {
       in_range = false;
     }
   for (int v = 0; v < n; ++v)
-    if (!used[v]) faults.push_back("vertex " + text(v) + " belongs to no triangle");
+    if (!used[v]) faults.push_back("vertex " + text(v) + " belongs to no triangle" + from_0);
   return in_range;
 }
 
 void check_shapes(const TriangleMesh& mesh, Faults& faults) {
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     if (repeats_vertex(mesh.triangles, t)) {
-      faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex");
+      faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex" + from_0);
       continue;
     }
     const auto [a, b, c] = corners(mesh, t);
     const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
     if ((b - a).cross(c - a).norm() <= smallest_height * longest)  // false where a coordinate is NaN
-      faults.push_back(triangle_name(mesh.triangles, t) + " has no area");
+      faults.push_back(triangle_name(mesh.triangles, t) + " has no area" + from_0);
   }
 }
 
@@ -102,7 +105,7 @@ void check_duplicates(const Triangles& triangles, Faults& faults) {
   for (std::size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i].first == sorted[i - 1].first)
       faults.push_back(triangle_name(triangles, sorted[i].second) + " has the same vertices as triangle " +
-                       text(sorted[i - 1].second));
+                       text(sorted[i - 1].second) + from_0);
 }
 
 /// Sets of triangle corners that are connected across edges; each set is a fan.
@@ -132,10 +135,11 @@ void check_edge(const Triangles& triangles, const std::vector<int>& sides, Fault
     for (std::size_t k = 0; k < std::min(sides.size(), most_named); ++k)
       names += (names.empty() ? " " : ", ") + text(sides[k] / 3);
     if (sides.size() > most_named) names += ", …";
-    faults.push_back(edge_name(e) + " has " + text(static_cast<int>(sides.size())) + " triangles:" + names);
+    faults.push_back(edge_name(e) + " has " + text(static_cast<int>(sides.size())) + " triangles:" + names +
+                     from_0);
   } else if (sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from) {
     faults.push_back(edge_name(e) + " runs in the same direction in triangles " + text(sides[0] / 3) +
-                     " and " + text(sides[1] / 3) + ": one of them is inverted");
+                     " and " + text(sides[1] / 3) + from_0 + ": one of them is inverted");
   }
 }
 
@@ -162,7 +166,8 @@ void check_connectivity(const Triangles& triangles, int vertex_count, Faults& fa
     if (fans.find(c) == c && !repeats_vertex(triangles, c / 3)) ++fan_count[triangles(c / 3, c % 3)];
   for (int v = 0; v < vertex_count; ++v)
     if (fan_count[v] > 1)
-      faults.push_back("vertex " + text(v) + " joins " + text(fan_count[v]) + " separate fans of triangles");
+      faults.push_back("vertex " + text(v) + " joins " + text(fan_count[v]) + " separate fans of triangles" +
+                       from_0);
 }
 
 void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
@@ -175,7 +180,8 @@ void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
     if (z < 0) down.push_back(t);
   }
   for (int t : up.size() < down.size() ? up : down)
-    faults.push_back(triangle_name(mesh.triangles, t) + " faces the other way than most of this flat mesh");
+    faults.push_back(triangle_name(mesh.triangles, t) + " faces the other way than most of this flat mesh" +
+                     from_0);
 }
 
 }  // namespace
@@ -186,9 +192,9 @@ std::vector<std::string> check_coordinates(const Positions& x) {
   for (int v = 0; v < x.rows(); ++v) {
     const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(largest))
-      faults.push_back("vertex " + text(v) + " has a coordinate that is not finite");
+      faults.push_back("vertex " + text(v) + from_0 + " has a coordinate that is not finite");
     else if (largest > largest_coordinate)
-      faults.push_back("vertex " + text(v) + " has a coordinate of " + three_digits(largest) +
+      faults.push_back("vertex " + text(v) + from_0 + " has a coordinate of " + three_digits(largest) +
                        " m; at most " + three_digits(largest_coordinate) + " m can be computed with");
   }
   if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();

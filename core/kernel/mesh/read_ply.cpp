@@ -219,7 +219,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     for (std::size_t v = 0; v < column.size(); ++v) {
       if (!std::isfinite(column[v]))
         throw std::runtime_error(path.string() + ": vertex " + std::to_string(v) +
-                                 " has a coordinate that is not finite");
+                                 " (counted from 0) has a coordinate that is not finite");
       content.mesh.coordinates[3 * v + axis] = column[v];
     }
   }

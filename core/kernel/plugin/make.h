@@ -19,9 +19,9 @@ PluginParameters read_plugin_parameters(const Registry& registry, const std::str
                                         ConfigNode* resolved = nullptr);
 
 /// The object with these parameters, a pointer to the kind's interface, which may share with `before` what
-/// does not differ (RegistryEntry::make). Null, with an error at `where` appended, if the plugin refuses
-/// them.
-std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Location& where,
+/// does not differ (RegistryEntry::make). Null, with every error appended, if the plugin refuses them; an
+/// error's location is that of the refused parameter in the node `written`, or the node's own.
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const ConfigNode& written,
                                   ConfigErrors& errors, const void* before = nullptr);
 
 /// The plugin object of a node, `loop` or `{type: loop, corner_angle: 30}`; null, with every error appended,
@@ -32,7 +32,7 @@ std::shared_ptr<Interface> make_from(const Registry& registry, const ConfigNode&
                                      ConfigNode* resolved = nullptr, const Interface* before = nullptr) {
   const PluginParameters parameters =
       read_plugin_parameters(registry, Kind<Interface>::name, node, errors, resolved);
-  return std::static_pointer_cast<Interface>(make_plugin(parameters, node.where, errors, before));
+  return std::static_pointer_cast<Interface>(make_plugin(parameters, node, errors, before));
 }
 
 }  // namespace drape

@@ -5,6 +5,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/plugin/refused_parameters.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
@@ -45,6 +46,18 @@ std::string fault_of(const Schema& schema) {
       return "the default of parameter \"" + p.name + "\" is refused: " + errors[0].message;
   }
   return "";
+}
+
+/// The location of what a path leads to from a node; of the last node on the way that is written.
+Location location_of(const ConfigNode& written, const std::string& path) {
+  const ConfigNode* node = &written;
+  for (const std::string& word : split(path, '.')) {
+    const auto index = node->kind == ConfigNode::Kind::list ? node->index_of(word) : std::nullopt;
+    const ConfigNode* next = index ? &node->items[*index] : node->find(word);
+    if (!next) break;
+    node = next;
+  }
+  return node->where.text().empty() ? written.where : node->where;
 }
 
 }  // namespace
@@ -128,15 +141,19 @@ PluginParameters read_plugin_parameters(const Registry& registry, const std::str
   return read;
 }
 
-std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Location& where,
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const ConfigNode& written,
                                   ConfigErrors& errors, const void* before) {
   if (!parameters.values) return nullptr;
+  const std::string plugin = parameters.entry->name + ": ";
   try {
     return parameters.entry->make(parameters.values.get(), before);
+  } catch (const RefusedParameters& refused) {
+    for (const ParameterFault& fault : refused.faults)
+      errors.push_back({location_of(written, fault.path), plugin + fault.message});
   } catch (const std::exception& error) {
-    errors.push_back({where, parameters.entry->name + ": " + reason_of(error)});
-    return nullptr;
+    errors.push_back({written.where, plugin + reason_of(error)});
   }
+  return nullptr;
 }
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/plugin/refused_parameters.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 
 namespace drape::ipc {
@@ -18,18 +19,17 @@ void Ipc::Parameters::declare(Declaration<Parameters>& d) {
 
 Ipc::Ipc(const Parameters& parameters, const Ipc* before) : p_(parameters) {
   std::size_t levels = 1;
-  for (const ObstacleParameters& p : p_.obstacles) {
-    const std::size_t k = meshes_.size();
+  for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
     const bool same =
         before && k < before->meshes_.size() && ObstacleMeshes::are_same(p, before->p_.obstacles[k]);
     meshes_.push_back(same ? before->meshes_[k] : ObstacleMeshes::of(p, static_cast<int>(k)));
     levels = std::max<std::size_t>(levels, p.cages.count + 1);
-  }
+  });
   for (std::size_t level = 0; level < levels; ++level) {
     std::vector<Obstacle> bodies;
-    for (std::size_t k = 0; k < meshes_.size(); ++k)
-      bodies.push_back(
-          Obstacle::of(p_.obstacles[k], static_cast<int>(k), meshes_[k], static_cast<int>(level)));
+    for_all_items("obstacles", p_.obstacles, [&](const ObstacleParameters& p, std::size_t k) {
+      bodies.push_back(Obstacle::of(p, static_cast<int>(k), meshes_[k], static_cast<int>(level)));
+    });
     const bool same =
         before && level < before->obstacles_.size() && before->obstacles_[level]->bodies == bodies;
     obstacles_.push_back(same ? before->obstacles_[level]

@@ -24,7 +24,7 @@ class Ipc final : public ContactModel, public Rebindable {
     static void declare(Declaration<Parameters>& d);
   };
 
-  /// Reads and validates the obstacles. Throws std::runtime_error naming an invalid one.
+  /// Reads and validates the obstacles. Throws RefusedParameters naming all invalid ones.
   explicit Ipc(const Parameters& parameters) : Ipc(parameters, nullptr) {}
   /// The same with the meshes, cages and trees of `before` where they are equal.
   Ipc(const Parameters& parameters, const Ipc& before) : Ipc(parameters, &before) {}

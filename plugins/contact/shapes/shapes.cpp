@@ -4,6 +4,7 @@
 
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/plugin/refused_parameters.h"
 #include "plugins/contact/shapes/bound_shapes.h"
 
 namespace drape::shapes {
@@ -95,12 +96,12 @@ void Shapes::Parameters::declare(Declaration<Parameters>& d) {
 }
 
 Shapes::Shapes(const Parameters& parameters) : p_(parameters) {
-  for (const ShapeParameters& shape : p_.obstacles) {
-    solids_.push_back(solid_of(shape, static_cast<int>(solids_.size()), p_.friction));
-    const Solid& solid = solids_.back();
+  for_all_items("obstacles", p_.obstacles, [&](const ShapeParameters& shape, std::size_t k) {
+    const Solid solid = solid_of(shape, static_cast<int>(k), p_.friction);
     if (solid.kind == SolidKind::cylinder && solid.radius > max_radius_over_dhat * p_.dhat)
       throw std::runtime_error(solid.name + " has a radius of more than 5e6 times \"dhat\"; raise \"dhat\"");
-  }
+    solids_.push_back(solid);
+  });
 }
 
 std::unique_ptr<BoundContact> Shapes::bind(const Level& level, const Material& material) const {

@@ -30,7 +30,7 @@ class Shapes final : public ContactModel {
     static void declare(Declaration<Parameters>& d);
   };
 
-  /// Throws std::runtime_error if a half-space's normal is zero or a cylinder's radius too large for d̂.
+  /// Throws RefusedParameters if a half-space's normal is zero or a cylinder's radius too large for d̂.
   explicit Shapes(const Parameters& parameters);
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
 

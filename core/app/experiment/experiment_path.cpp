@@ -1,0 +1,88 @@
+#include "core/app/experiment/experiment_path.h"
+
+#include "core/app/experiment/experiment_parameters.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/plugin/parameter_path.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+const Schema& schema() {
+  static const Schema schema = schema_of<ExperimentParameters>();
+  return schema;
+}
+
+bool is_missing(const ConfigNode* node) { return !node || node->kind == NodeKind::null; }
+
+/// Whether the experiment's key chooses one plugin, as `refiner` and `contact` do.
+bool chooses_plugin(const std::string& key) {
+  const Parameter* p = parameter_named(schema(), key);
+  return p && p->type == "node" && !p->plugin_kind.empty();
+}
+
+/// The path of the first list on the way whose items the words name although it has none; "" without one.
+std::string missing_list(const ConfigNode& experiment, const std::vector<std::string>& words) {
+  const Schema* section = &schema();
+  const ConfigNode* node = &experiment;
+  std::string path;
+  for (std::size_t k = 0; k + 1 < words.size(); ++k) {
+    const Parameter* p = parameter_named(*section, words[k]);
+    if (!p) return "";
+    path += (path.empty() ? "" : ".") + words[k];
+    if (node) node = node->find(words[k]);
+    if (p->type == "list of sections" || p->type == "list of nodes") {
+      if (is_missing(node) || (node->kind == NodeKind::list && node->items.empty())) return path;
+      const auto index = node->index_of(words[++k]);
+      if (!index) return "";
+      node = &node->items[*index];
+    }
+    if (!p->section) return "";
+    section = p->section.get();
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path) {
+  std::vector<std::string> words = split(path, '.');
+  if (words.size() < 3 || !chooses_plugin(words[0])) return words;
+  const ConfigNode* plugin = experiment.find(words[0]);
+  const ConfigNode* type = plugin && plugin->kind == NodeKind::map ? plugin->find("type") : plugin;
+  if (type && type->kind == NodeKind::scalar && type->scalar == words[1]) words.erase(words.begin() + 1);
+  return words;
+}
+
+bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,
+                   ConfigErrors& errors) {
+  const std::string key = path.substr(0, path.find('.'));
+  const bool within = key != path;
+  if (within && key == "refiner" && is_missing(experiment.find(key))) {
+    ConfigNode refiner = ConfigNode::of(default_refiner);
+    refiner.where = where;
+    set_path(experiment, key, std::move(refiner), where, errors);
+  } else if (within && chooses_plugin(key) && is_missing(experiment.find(key))) {
+    errors.push_back({where, "the experiment has no \"" + key + "\"; name its plugin first"});
+    return false;
+  }
+  const std::vector<std::string> words = words_of_path(experiment, path);
+  if (const std::string list = missing_list(experiment, words); !list.empty()) {
+    errors.push_back({where, "the experiment has no \"" + list + "\"; write that list first"});
+    return false;
+  }
+  std::string own;
+  for (std::size_t k = 0; k < words.size(); ++k) own += (k > 0 ? "." : "") + words[k];
+  return set_path(experiment, own, std::move(value), where, errors);
+}
+
+bool set_parameter(ConfigNode& experiment, const std::string& path, const std::string& value,
+                   const std::string& option, ConfigErrors& errors) {
+  const std::optional<ConfigNode> parsed = value_of_option(value, option, errors);
+  return parsed && set_parameter(experiment, path, *parsed, Location{option, 0, 0}, errors);
+}
+
+}  // namespace drape

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/kernel/plugin/config_node.h"
+
+namespace drape {
+
+/// The words of a parameter's path in an experiment. The type of a plugin that is not in a list is left out:
+/// "contact.shapes.dhat" is "contact.dhat" where the experiment has `contact: shapes`.
+std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path);
+
+/// As set_path, for the parameters of an experiment: the type of a plugin may stand in the path whether it is
+/// in a list or alone, the default refiner need not be written, and what is missing is named.
+bool set_parameter(ConfigNode& experiment, const std::string& path, ConfigNode value, const Location& where,
+                   ConfigErrors& errors);
+
+/// The same with a YAML value from the command line; its locations are the option, as in "--set levels".
+bool set_parameter(ConfigNode& experiment, const std::string& path, const std::string& value,
+                   const std::string& option, ConfigErrors& errors);
+
+}  // namespace drape

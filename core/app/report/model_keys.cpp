@@ -1,0 +1,52 @@
+#include "core/app/report/model_keys.h"
+
+#include <algorithm>
+
+#include "core/app/files/yaml_file.h"
+
+namespace drape {
+
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+constexpr const char* model_keys[] = {"cloth",    "levels",  "material", "pins",      "handles", "schedule",
+                                      "energies", "refiner", "contact",  "obstacles", "friction"};
+
+/// The word that names an item of a list in a path: its type or name, or its index.
+std::string word_of(const ConfigNode& item, std::size_t index) {
+  for (const char* key : {"type", "name"})
+    if (const ConfigNode* word = item.find(key); word && !word->scalar.empty()) return word->scalar;
+  return std::to_string(index);
+}
+
+void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string& path,
+                     std::vector<std::string>& differing) {
+  const bool lists = a.kind == NodeKind::list && b.kind == NodeKind::list && a.items.size() == b.items.size();
+  const bool of_maps = lists && std::all_of(a.items.begin(), a.items.end(), [](const ConfigNode& item) {
+                         return item.kind == NodeKind::map;
+                       });
+  if (of_maps) {
+    for (std::size_t i = 0; i < a.items.size(); ++i)
+      add_differences(a.items[i], b.items[i], path + "." + word_of(a.items[i], i), differing);
+  } else if (a.kind == NodeKind::map && b.kind == NodeKind::map) {
+    for (const auto& [key, value] : a.entries)
+      if (const ConfigNode* other = b.find(key)) add_differences(value, *other, path + "." + key, differing);
+  } else if (a.one_line() != b.one_line()) {
+    differing.push_back(path);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> differing_model_keys(const std::string& a, const std::string& b) {
+  ConfigErrors errors;
+  const ConfigNode one = parse_yaml(a, "config.yaml", errors), other = parse_yaml(b, "config.yaml", errors);
+  std::vector<std::string> differing;
+  for (const char* key : model_keys)
+    if (const ConfigNode* of_one = one.find(key), *of_other = other.find(key); of_one && of_other)
+      add_differences(*of_one, *of_other, key, differing);
+  return differing;
+}
+
+}  // namespace drape
