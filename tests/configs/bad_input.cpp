@@ -343,7 +343,8 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
 
 TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, each where it stands") {
   const std::string text = replaced(
-      replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"), "levels: 2",
+      replaced(small_experiment(), "shape: square, side: 1, columns: 6, rows: 6", "shape: file, file: a.obj"),
+      "levels: 2",
       "contact: [ipc, shapes]\nobstacles:\n  - {name: b, mesh: b.obj}\n  - "
       "{name: c, mesh: c.obj}\n  - {name: d, shape: half_space, normal: [0, "
       "0, 0]}\nlevels: 2");
@@ -355,7 +356,8 @@ TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, e
   CHECK(said_of(text) == of_files);
   CHECK(said_of(replaced(text, "levels: 2", "levelz: 2")) ==
         of_files + "error: e.yaml:8:1: unknown key \"levelz\"; did you mean \"levels\"?\n");
-  CHECK(said_of(replaced(replaced(small_experiment(), "shape: square, side: 1", "shape: file, file: a.obj"),
+  CHECK(said_of(replaced(replaced(small_experiment(), "shape: square, side: 1, columns: 6, rows: 6",
+                                  "shape: file, file: a.obj"),
                          "scale: [", "file: s.ply, scale: [")) ==
         "error: e.yaml:2:8: cannot read a.obj: No such file or directory\n"
         "error: e.yaml:4:8: cannot read s.ply: No such file or directory\n");

@@ -699,7 +699,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
 
   CHECK_THAT(refused_by(flow + "--out x --set refiner=midpoint", folder.path),
              Contains("--set refiner: \"refiner\" cannot be changed"));
-  CHECK_THAT(refused_by(flow + "--out x --set cloth.vertices=99", folder.path),
+  CHECK_THAT(refused_by(flow + "--out x --set cloth.seed=99", folder.path),
              Contains("\"cloth\" cannot be changed"));
   CHECK_THAT(refused_by(flow + "--out x --levels 1", folder.path), Contains("\"levels\" must be at least 2"));
   CHECK_THAT(refused_by(flow + "--out x --level 2", folder.path),

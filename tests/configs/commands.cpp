@@ -77,8 +77,8 @@ TEST_CASE("new writes an experiment that passes check and runs, and overwrites n
   CHECK(check.err == "");
   CHECK(check.out.find("first.yaml: valid. Vertices by level: 900, 3481, 13689\n") == 0);
   const Ended run = drape_with(
-      "run first.yaml --quiet --no-report --levels 1 --set cloth.columns=16 "
-      "--set cloth.rows=16 --set newton.force_tolerance=1e-2",
+      "run first.yaml --quiet --no-report --levels 1 --set cloth.vertices=256 "
+      "--set newton.force_tolerance=1e-2",
       folder.path);
   CHECK(run.err == "");
   CHECK(run.exit_code == 0);
