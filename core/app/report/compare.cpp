@@ -129,12 +129,12 @@ Sheet sheet_of(const RunCollection& collection, const ComparedQuantities& quanti
   return sheet;
 }
 
-std::string verdict(const Change& c, bool same_model) {
+std::string verdict(const Change& c) {
   const double difference = c.after - c.before;
   const double noise = is_time(c.key) ? time_noise : relative_noise;
   if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
   if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
-  if (c.better == Better::neither || (c.key == "energy" && !same_model)) return "other";
+  if (c.better == Better::neither) return "other";
   const bool good = (difference < 0) != (c.better == Better::higher);
   if (is_time(c.key)) return good ? "faster" : "slower";
   if (is_work(c.key)) return good ? "less work" : "more work";
@@ -203,9 +203,12 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
     if (const Entry* now = b.find(was.where, was.key)) {
       Change& change = changes_.emplace_back(
           Change{was.where, was.key, was.value, now->value, quantities.better(was.key)});
+      if (was.key != "energy") {
+        change.verdict = verdict(change);
+        continue;
+      }
       const std::vector<std::string>& keys = differences.of(*was.run, *now->run);
-      change.verdict = verdict(change, keys.empty());
-      if (was.key != "energy") continue;
+      change.verdict = keys.empty() ? verdict(change) : "other";
       for (const std::string& key : keys)
         if (std::find(differing_.begin(), differing_.end(), key) == differing_.end())
           differing_.push_back(key);

@@ -42,7 +42,7 @@ class CollisionStack final : public Collisions, public FrictionalCollisions, pub
   void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const override {
     int first = 0;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
-      // Of the last part, which is mostly by far the largest, no rows need to be counted.
+      // The last part, usually by far the largest, needs no count of its rows.
       if (k > 0) first += static_cast<int>(parts_[k - 1]->stencils().rows());
       BlockSink own = sink.from(first);
       parts_[k]->add_hessian(x, projection, own);
