@@ -86,6 +86,37 @@ TEST_CASE("a run that was resumed without its sweep is one of the sweep's result
   CHECK(text_of(folder / "out/runs/slow/seed_1/notes") == "mine");
 }
 
+TEST_CASE(
+    "a run that exceeded the time limit and was finished without its sweep is one of the sweep's results") {
+  const Scratch folder;
+  write_slow(folder);
+  cut_slow(folder, SIGINT);
+  const std::string run = "out/runs/slow/seed_1", status = run + ".status.json";
+  folder.write(status, replaced(text_of(folder / status), "cancelled", "failed"));
+  drape_with("run --resume " + run, folder.path);
+  folder.write(run + "/notes", "mine");
+  drape_with("sweep s.yaml --out out --retry-failed", folder.path);
+  CHECK(runs_of(folder / "out")[0]["status"] == "not_converged");
+  CHECK(text_of(folder / (run + "/log.jsonl")).find("run_resumed") != std::string::npos);
+  CHECK(text_of(folder / (run + "/notes")) == "mine");
+}
+
+TEST_CASE("a sweep replaces no complete results that it did not make") {
+  const Scratch folder;
+  write_slow(folder);
+  cut_slow(folder, SIGINT);
+  const std::string run = "out/runs/slow/seed_1", status = run + ".status.json";
+  drape_with("run --resume " + run, folder.path);
+  folder.write(
+      status,
+      R"({"status": "failed", "error": "", "exit_code": 2, "seconds": 0, "starts": 1, "threads": 1})");
+  const std::string results = text_of(folder / (run + "/results.json"));
+  const Ended ended = drape_with("sweep s.yaml --out out --retry-failed", folder.path);
+  CHECK(ended.exit_code == 2);
+  CHECK_THAT(ended.err, Catch::Matchers::Contains(run + ": has complete results, but not from this sweep"));
+  CHECK(text_of(folder / (run + "/results.json")) == results);
+}
+
 TEST_CASE("a sweep starts no run once its program was replaced, and the same command runs the rest") {
   const Scratch folder;
   std::filesystem::create_directory(folder / "bin");

@@ -25,6 +25,11 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// The results of a run in `files`, and what to do if they are damaged.
+JsonFile results_file(const RunFiles& files) {
+  return {files.results(), "remove the run's folder, and the sweep runs it again"};
+}
+
 /// The last few lines of a run's output.
 std::string last_lines(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
@@ -115,15 +120,23 @@ void write_status(const RunFiles& files, const RunStatus& status) {
   write_file(files.status(), json_text(status.json(), 1) + "\n");
 }
 
+bool has_complete_results(const RunFiles& files) {
+  const JsonFile file = results_file(files);
+  return file.find<bool>(parse_json(text_of_file(files.results())), "complete").value_or(false);
+}
+
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
-  if (status.state != RunState::running && status.state != RunState::cancelled) return status;
-  status.state = RunState::cancelled;
-  const std::filesystem::path path = files.folder / "results.json";
-  const JsonFile file(path, "remove the run's folder, and the sweep runs it again");
-  const Json results = parse_json(text_of_file(path));
-  if (!file.find<bool>(results, "complete").value_or(false)) return status;
+  // A refused run has not begun: results in its folder may be of another experiment.
+  const bool had_begun = status.state == RunState::running || status.state == RunState::cancelled ||
+                         (status.state == RunState::failed && !status.refused());
+  if (!had_begun) return status;
+  if (status.state == RunState::running) status.state = RunState::cancelled;
+  if (!has_complete_results(files)) return status;
+  const JsonFile file = results_file(files);
+  const Json results = parse_json(text_of_file(files.results()));
   if (!results.contains("methods")) file.refuse("\"methods\" is missing");
   status.state = RunState::converged;
+  status.error.clear();
   status.seconds = 0;
   for (const auto& [name, method] : results["methods"].items()) {
     if (!has_converged(file.find<std::string>(method, "status").value_or("")))

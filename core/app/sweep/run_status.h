@@ -33,6 +33,7 @@ struct RunStatus {
 /// One run's files in a sweep's folder: results inside, the others beside it.
 struct RunFiles {
   std::filesystem::path folder;
+  std::filesystem::path results() const { return folder / "results.json"; }
   std::filesystem::path config() const { return folder.string() + ".yaml"; }
   std::filesystem::path status() const { return folder.string() + ".status.json"; }
   std::filesystem::path lock() const { return folder.string() + ".lock"; }
@@ -43,8 +44,10 @@ struct RunFiles {
 RunStatus read_status(const RunFiles& files);
 void write_status(const RunFiles& files, const RunStatus& status);
 
-/// The status of a run that is marked as running but is not, or as cancelled: from its results if they are
-/// complete, as after `drape run --resume`; otherwise cancelled.
+/// Whether the run's folder has complete results, whoever made them.
+bool has_complete_results(const RunFiles& files);
+/// The status of a run that had begun and has no results yet: from its results if they are complete, as after
+/// `drape run --resume`; otherwise failed, or cancelled if it is marked as running but is not.
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status);
 
 struct RunProcessOptions {

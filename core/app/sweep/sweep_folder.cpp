@@ -72,7 +72,13 @@ void SweepFolder::refuse_other_runs(const Sweep& sweep, int threads) const {
       throw std::runtime_error(files.folder.string() +
                                ": is there already, and not from this sweep; move it away, or name another "
                                "folder with --out");
-    if (!resolve_interrupted(files, status).has_results()) continue;
+    if (!resolve_interrupted(files, status).has_results()) {
+      if (has_complete_results(files))
+        throw std::runtime_error(files.folder.string() +
+                                 ": has complete results, but not from this sweep; move it away, or name "
+                                 "another folder with --out");
+      continue;
+    }
     if (text_of_file(files.config()) != run.config)
       throw std::runtime_error(folder + ": the results of " + title(run.name, run.seed) +
                                " are of another experiment than the sweep now says" + remedies +
