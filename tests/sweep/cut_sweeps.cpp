@@ -86,8 +86,7 @@ TEST_CASE("a run that was resumed without its sweep is one of the sweep's result
   CHECK(text_of(folder / "out/runs/slow/seed_1/notes") == "mine");
 }
 
-TEST_CASE(
-    "a run that exceeded the time limit and was finished without its sweep is one of the sweep's results") {
+TEST_CASE("a run that failed and was completed without its sweep is one of the sweep's results") {
   const Scratch folder;
   write_slow(folder);
   cut_slow(folder, SIGINT);

@@ -30,6 +30,12 @@ JsonFile results_file(const RunFiles& files) {
   return {files.results(), "remove the run's folder, and the sweep runs it again"};
 }
 
+/// The run's results if they are complete, otherwise null.
+Json complete_results(const RunFiles& files) {
+  Json results = parse_json(text_of_file(files.results()));
+  return results_file(files).find<bool>(results, "complete").value_or(false) ? results : Json();
+}
+
 /// The last few lines of a run's output.
 std::string last_lines(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
@@ -120,10 +126,7 @@ void write_status(const RunFiles& files, const RunStatus& status) {
   write_file(files.status(), json_text(status.json(), 1) + "\n");
 }
 
-bool has_complete_results(const RunFiles& files) {
-  const JsonFile file = results_file(files);
-  return file.find<bool>(parse_json(text_of_file(files.results())), "complete").value_or(false);
-}
+bool has_complete_results(const RunFiles& files) { return !complete_results(files).is_null(); }
 
 RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
   // A refused run has not begun: results in its folder may be of another experiment.
@@ -131,9 +134,9 @@ RunStatus resolve_interrupted(const RunFiles& files, RunStatus status) {
                          (status.state == RunState::failed && !status.refused());
   if (!had_begun) return status;
   if (status.state == RunState::running) status.state = RunState::cancelled;
-  if (!has_complete_results(files)) return status;
+  const Json results = complete_results(files);
+  if (results.is_null()) return status;
   const JsonFile file = results_file(files);
-  const Json results = parse_json(text_of_file(files.results()));
   if (!results.contains("methods")) file.refuse("\"methods\" is missing");
   status.state = RunState::converged;
   status.error.clear();
