@@ -29,6 +29,7 @@ def described(thing):
 file, out = sys.argv[sys.argv.index("--") + 1:]
 for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
-bpy.ops.import_scene.gltf(filepath=file)
+# The default, shading by normals, fails in Debian 12: its Blender 3.4 needs an older numpy than its own.
+bpy.ops.import_scene.gltf(filepath=file, import_shading="SMOOTH")
 with open(out, "w") as stream:
     json.dump({thing.name: described(thing) for thing in bpy.data.objects if thing.type == "MESH"}, stream)

@@ -60,8 +60,8 @@ void discard_states(const RunFiles& files) {
   if (!std::filesystem::is_directory(states)) return;
   FileLock lock(states / "lock");
   if (!lock.acquire(0)) return;
-  for (const char* name : {"checkpoint/state.bin", "checkpoint/previous.bin", "results.json"})
-    std::filesystem::remove(files.folder / name);
+  for (const std::filesystem::path& file : {states / "state.bin", states / "previous.bin", files.results()})
+    std::filesystem::remove(file);
 }
 
 /// Marks the run as running.
