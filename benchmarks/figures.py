@@ -220,6 +220,39 @@ def python():
     return table(["what", "Python [s]", "C++ [s]", "ratio"], rows, ["python.json"], "lrrr")
 
 
+def beside_codim_ipc():
+    """The comparison's entries, a list of starts by scene and vertices."""
+    found = {}
+    for r in read("codim_ipc.json")["runs"]:
+        found.setdefault((r["scene"], r["vertices"]), []).append(r)
+    return found
+
+
+def codim_ipc_ratios(starts, key):
+    """Codim-IPC over drape, start by start; empty where it was not measured."""
+    return [r["codim_ipc"][key] / r["drape"][key] for r in starts if key in r["drape"]]
+
+
+def codim_ipc_range(key):
+    """The lowest and the highest median over scenes and numbers of vertices."""
+    medians = sorted(median(found) for starts in beside_codim_ipc().values() if (found := codim_ipc_ratios(starts, key)))
+    return f"{figure(medians[0], 2)} to {figure(medians[-1], 2)}"
+
+
+def codim_ipc():
+    two = lambda v: figure(v, 2)  # noqa: E731
+    rows = []
+    for (scene, vertices), starts in beside_codim_ipc().items():
+        cells = [with_range([r[program].get(key) for r in starts], two) for key in ("seconds_per_iteration", "seconds_to_same_state")
+                 for program in ("drape", "codim_ipc")]
+        ratios_of = [with_range(codim_ipc_ratios(starts, key), two) for key in ("seconds_per_iteration", "seconds_to_same_state")]
+        rows.append([scene, str(vertices), *cells[:2], ratios_of[0], *cells[2:], ratios_of[1],
+                     with_range([r.get("rms_distance") for r in starts], two)])
+    # No comment for docs_figures: ratios start by start stand in no record.
+    return table(["scene", "vertices", "s per iteration: drape", "Codim-IPC", "ratio", "s to the same state: drape", "Codim-IPC", "ratio",
+                  "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
+
+
 def scale():
     record = read("scale.json")
     mean = lambda r: f"{figure(r['seconds'], 2)} ({figure(r['seconds_lowest'], 2)}–{figure(r['seconds_highest'], 2)})"  # noqa: E731
@@ -247,6 +280,7 @@ STUDIES = [
     ("[changes](speed.md#changes-of-a-parameter)", "changes.json"),
     ("[linear solvers](speed.md#the-linear-solver)", "linear_solvers.json"),
     ("[Python](../extend/from-python.md#what-it-costs)", "python.json"),
+    ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
     ("[scale](speed.md#scale)", "scale.json"),
     ("[six scenes to 5.9K](previews.md#six-scenes-five-starts)", "previews.md"),
     ("[interpolation](previews.md#the-choice-of-interpolation)", "interpolation.md"),
@@ -316,6 +350,7 @@ BLOCKS = {
     "changes": changes,
     "linear solvers": linear_solvers,
     "python": python,
+    "codim_ipc": codim_ipc,
     "scale": scale,
     "studies": studies,
 }
@@ -333,6 +368,8 @@ VALUES = {
     "flops of pcs on the sphere, four levels": lambda: figure(flops_with_four_levels("sphere"), 2),
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
     **{f"flops of {method} in table 1": lambda method=method: flops_in_table1(method) for method in ("pcs", "cascadic")},
+    "iterations of Codim-IPC": lambda: codim_ipc_range("seconds_per_iteration"),
+    "same state by Codim-IPC": lambda: codim_ipc_range("seconds_to_same_state"),
     "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
     "crossing solves of sphere and previews": lambda: str(solves("sphere", "previews")[1]),
     "hard cases that pass": lambda: row_count("hard.json"),
