@@ -290,7 +290,6 @@ STUDIES = [
     ("[remedies](hard-cases.md#remedies)", "hard_remedies.md"),
     ("[Table 1](table1.md)", "table1.md"),
     ("[scenes](scenes.md)", "scenes.md"),
-    ("[scenes, three levels](scenes.md)", "scenes_levels_3.md"),
     ("[the dragon, by decrements, four levels](speed.md#levels-that-end-at-a-decrement)", "dragon_decrements_levels_4.md"),
     ("the dragon, by decrements", "dragon_decrements.md"),
 ]

@@ -1,11 +1,12 @@
 """The studies of `make results`, in the order in which they run.
 
 A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or
-only its iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take them all; `starts`; the commands that `run` it in {out}, which go on
-where they were cut; those that `gather` its records, a first word ">FILE" storing what the rest prints; its `records` in
-benchmarks/results; `meshes` of data/ that it needs; what else it `needs` in {build}, and how to get it; commands to `attempt`, whose failure is what is recorded;
-whether a run that is refused, or exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be
-`partial`, of the scenes that have run; whether what `gather` prints is a table of `scenes`.
+only its iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take all cores;
+`starts`; the commands that `run` it in {out}, which go on where they were cut; those that `gather` its records, a first word
+">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of data/ that it needs; what else it `needs`
+in {build}, and how to get it; commands to `attempt`, whose failure is what is recorded; whether a run that is refused, or
+exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be `partial`, of the scenes
+that have run; whether what `gather` prints is a table of `scenes`.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
@@ -20,21 +21,10 @@ def sweep(name, out="{out}", most_levels=None):
     return command + (["--most-levels", str(most_levels)] if most_levels else [])
 
 
-def record_of(name, most_levels):
-    return f"{name}_levels_{most_levels}" if most_levels else name
-
-
 def previews(name, what, starts, timed=False, meshes=(), most_levels=None):
-    record = record_of(name, most_levels)
+    record = f"{name}_levels_{most_levels}" if most_levels else name
     return {"what": what, "timed": timed, "starts": starts, "meshes": list(meshes), "run": [sweep(name, most_levels=most_levels)],
             "gather": [["benchmarks/previews", record, "{out}"]], "records": [f"{record}.json", f"{record}.md"]}
-
-
-def scenes(what, most_levels=None):
-    record = record_of("scenes", most_levels) + ".md"
-    return {"what": what, "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes", most_levels=most_levels)],
-            "scenes": True, "partial": True, "gather": [[">{results}/" + record, "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
-            "records": [record]}
 
 
 def program(name, what):
@@ -72,11 +62,13 @@ STUDIES = {
         "run": [["{drape}", "sweep", f"configs/hard/sweeps/{name}.yaml", "-o", "{out}/" + name, "-q"] for name in HARD],
         "gather": [["configs/hard/write_tables", "{drape}", "{out}", "{results}"]],
         "records": ["hard.json", "hard.md", "hard_remedies.json", "hard_remedies.md"]},
-    "scenes_levels_3": scenes("every scene of the supplement's Table 2, to three levels", 3),
     "table1": {
         "what": "the supplement's Table 1", "timed": False, "starts": 1, "meshes": MESHES, "partial": True, "run": [sweep("table1")],
         "gather": [["benchmarks/table1", "{out}", "{results}/table1"]], "records": ["table1.json", "table1.md"]},
-    "scenes": scenes("every scene of the supplement's Table 2"),
+    "scenes": {
+        "what": "every scene of the supplement's Table 2", "timed": False, "starts": 1, "meshes": ALL_MESHES, "run": [sweep("scenes")],
+        "scenes": True, "partial": True, "gather": [[">{results}/scenes.md", "{drape}", "table", "{out}", "--columns", RUN_COLUMNS]],
+        "records": ["scenes.md"]},
     "dragon_decrements_levels_4": previews("dragon_decrements", "the dragon under the paper's rule for ending levels, to 93K vertices", 3,
                                            meshes=["dragon.ply"], most_levels=4),
     "dragon_decrements": previews("dragon_decrements", "the dragon under the paper's rule for ending levels", 3, meshes=["dragon.ply"]),
