@@ -243,7 +243,7 @@ def codim_ipc():
     two = lambda v: figure(v, 2)  # noqa: E731
     rows = []
     for (scene, vertices), starts in beside_codim_ipc().items():
-        cells = [with_range([r[program].get(key) for r in starts], two) for key in ("seconds_per_iteration", "seconds_to_same_state")
+        cells = [seconds_text([r[program].get(key) for r in starts]) for key in ("seconds_per_iteration", "seconds_to_same_state")
                  for program in ("drape", "codim_ipc")]
         ratios_of = [with_range(codim_ipc_ratios(starts, key), two) for key in ("seconds_per_iteration", "seconds_to_same_state")]
         rows.append([scene, str(vertices), *cells[:2], ratios_of[0], *cells[2:], ratios_of[1],
