@@ -118,7 +118,13 @@ int reference_into(const std::filesystem::path& folder, const Registry& registry
 
 int reference(const Registry& registry) {
   const SharedSection newton = newton_section("#newton");
-  std::cout << "# Configuration reference\n\nMade by `drape reference`; do not edit.\n\n## Experiment\n\n"
+  std::cout << "# Configuration reference\n\n"
+               "```sh\n"
+               "drape describe experiment              # a table of this page, in the terminal\n"
+               "drape describe pcs                     # a plugin's\n"
+               "drape run my_drape.yaml --set newton.force_tolerance=1e-4 --set contact.shapes.dhat=2e-3\n"
+               "```\n\n"
+               "Made by `drape reference`; do not edit.\n\n## Experiment\n\n"
             << describe_markdown(schema_of<ExperimentParameters>("experiment"), &newton)
             << "\n## Newton\n\nThe section `newton` of an experiment applies to every method. A method's own "
                "`newton` takes precedence, key by key.\n\n"
