@@ -19,7 +19,7 @@
 # make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
 # make format   check the layout of the sources;  make fix-format  rewrites them
-# make lint     static analysis of core and plugins (LINT= a regular expression of folders), each source compiled by itself
+# make lint     static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source compiled by itself
 # make clean    remove what was built
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,
@@ -28,7 +28,9 @@
 PRESET ?= release
 JOBS ?= $(shell nproc)
 # Not `?=`: make itself has LINT = lint.
-LINT = (core|plugins)/
+LINT =
+# A folder is checked as one unit, which has its name.
+LINTED := $(if $(LINT),/(unity|lint)_$(notdir $(LINT:/=))(_cxx)?\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
 
@@ -131,8 +133,10 @@ lint: setup
 	@cmake --preset single-files --log-level=ERROR >/dev/null
 	@cmake --build build-single-files -j $(JOBS) --target drape_cli drape_plugins
 	@cmake --preset lint --log-level=ERROR >/dev/null
+	@grep -qE '$(LINTED)' build-lint/compile_commands.json || \
+	  { echo "lint: LINT=$(LINT) names no folder with sources of its own; give one such as core/app/sweep or plugins/energy" >&2; exit 2; }
 	@run-clang-tidy-16 -quiet -p build-lint -j $(JOBS) -extra-arg=-Wno-ignored-optimization-argument \
-	  -extra-arg=-Wno-unused-command-line-argument '$(LINT)'
+	  -extra-arg=-Wno-unused-command-line-argument '$(LINTED)'
 
 clean:
 	rm -rf build build-wheel build-debug build-clang build-asan build-tsan build-lint build-fuzz build-single-files
