@@ -28,6 +28,11 @@ def of(records, key):
     return median([r[key] for r in records])
 
 
+def lowest_to_highest(values):
+    """The range of a figure, for a sentence."""
+    return f"{figure(min(values), 2)} to {figure(max(values), 2)}"
+
+
 def iterations(records):
     return [median(level) for level in zip(*(r["iterations"] for r in records))]
 
@@ -235,19 +240,19 @@ def codim_ipc_ratios(starts, key):
 
 def codim_ipc_range(key):
     """The lowest and the highest median over scenes and numbers of vertices."""
-    medians = sorted(median(found) for starts in beside_codim_ipc().values() if (found := codim_ipc_ratios(starts, key)))
-    return f"{figure(medians[0], 2)} to {figure(medians[-1], 2)}"
+    ratios_of = [codim_ipc_ratios(starts, key) for starts in beside_codim_ipc().values()]
+    return lowest_to_highest([median(found) for found in ratios_of if found])
 
 
 def codim_ipc():
     two = lambda v: figure(v, 2)  # noqa: E731
     rows = []
     for (scene, vertices), starts in beside_codim_ipc().items():
-        cells = [seconds_text([r[program].get(key) for r in starts]) for key in ("seconds_per_iteration", "seconds_to_same_state")
-                 for program in ("drape", "codim_ipc")]
-        ratios_of = [with_range(codim_ipc_ratios(starts, key), two) for key in ("seconds_per_iteration", "seconds_to_same_state")]
-        rows.append([scene, str(vertices), *cells[:2], ratios_of[0], *cells[2:], ratios_of[1],
-                     with_range([r.get("rms_distance") for r in starts], two)])
+        row = [scene, str(vertices)]
+        for key in ("seconds_per_iteration", "seconds_to_same_state"):
+            row += [seconds_text([r[program].get(key) for r in starts]) for program in ("drape", "codim_ipc")]
+            row.append(with_range(codim_ipc_ratios(starts, key), two))
+        rows.append(row + [with_range([r.get("rms_distance") for r in starts], two)])
     # No comment for docs_figures: ratios start by start stand in no record.
     return table(["scene", "vertices", "s per iteration: drape", "Codim-IPC", "ratio", "s to the same state: drape", "Codim-IPC", "ratio",
                   "RMS distance of the final states"], rows, [], "lrrrrrrrr")[1:]
@@ -315,8 +320,8 @@ def flops_with_four_levels(scene):
 
 def flops_of_five_scenes():
     """The lowest and the highest of the scenes with a fourth level but for the sphere."""
-    ratios_of = [flops_with_four_levels(scene) for scene in {r["scene"] for r in read("four_levels.json")} - {"sphere"}]
-    return f"{figure(min(ratios_of), 2)} to {figure(max(ratios_of), 2)}"
+    scenes_of = {r["scene"] for r in read("four_levels.json")} - {"sphere"}
+    return lowest_to_highest([flops_with_four_levels(scene) for scene in scenes_of])
 
 
 def row_count(name):
@@ -356,8 +361,8 @@ BLOCKS = {
 
 def flops_in_table1(method):
     """The range of a method's flops relative to the direct solve's over the scenes of Table 1 that have run."""
-    shares = sorted(entry["methods"][method]["tflop"] / entry["methods"]["newton"]["tflop"] for entry in read("table1.json").values())
-    return f"{figure(shares[0], 2)} to {figure(shares[-1], 2)}"
+    methods = [entry["methods"] for entry in read("table1.json").values()]
+    return lowest_to_highest([of_scene[method]["tflop"] / of_scene["newton"]["tflop"] for of_scene in methods])
 
 
 VALUES = {
