@@ -372,6 +372,7 @@ VALUES = {
     "flops of pcs on the sphere, four levels": lambda: figure(flops_with_four_levels("sphere"), 2),
     "flops of pcs on five scenes, four levels": flops_of_five_scenes,
     **{f"flops of {method} in table 1": lambda method=method: flops_in_table1(method) for method in ("pcs", "cascadic")},
+    "processor of Codim-IPC's BLAS": lambda: read("codim_ipc.json")["runs"][0]["codim_ipc"]["blas_kernels"],
     "iterations of Codim-IPC": lambda: codim_ipc_range("seconds_per_iteration"),
     "same state by Codim-IPC": lambda: codim_ipc_range("seconds_to_same_state"),
     "solves of sphere and previews": lambda: str(solves("sphere", "previews")[0]),
