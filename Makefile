@@ -19,7 +19,7 @@
 # make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
 # make format   check the layout of the sources;  make fix-format  rewrites them
-# make lint     static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source compiled by itself
+# make lint     static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself
 # make clean    remove what was built
 #
 # PRESET=debug, ci, clang, asan or tsan chooses another of CMakePresets.json; under asan and tsan, the sanitizers,

@@ -77,7 +77,7 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
 });
 
 test('an obstacle that the schedule moves is shown where it is', async () => {
-  // It rises to the cloth in the first thousand increments; the others, minutes of them, leave time to look and to stop.
+  // It rises to the cloth in the first thousand increments. The others take minutes, so the run still goes on when it is stopped.
   fs.writeFileSync(path.join(folder, 'risen.yaml'), `name: risen
 cloth: {shape: square, side: 0.4, columns: 33, rows: 33}
 levels: 1

@@ -69,7 +69,7 @@ class ErrorTable {
   void write(const Positions* reference, const std::function<bool()>& stop,
              const std::function<void(const std::string&)>& fault);
 
-  bool empty() const { return levels_.empty(); }
+  [[nodiscard]] bool empty() const { return levels_.empty(); }
   const std::vector<LevelSnapshots>& levels() const { return levels_; }
   /// Restores what an earlier table of the same run had collected. The snapshots' files must still exist.
   void restore(std::vector<LevelSnapshots> levels) { levels_ = std::move(levels); }

@@ -25,7 +25,7 @@ class Faults {
     else
       ++more_;
   }
-  bool empty() const { return listed_.empty(); }
+  [[nodiscard]] bool empty() const { return listed_.empty(); }
   std::vector<std::string> all() && {
     if (more_ > 0) listed_.push_back("and " + std::to_string(more_) + " more faults like these");
     return std::move(listed_);
