@@ -23,6 +23,7 @@ struct OnePair {
   OnePair(PairKind kind, const PairPositions& at, const std::vector<int>& of_cloth = {0, 1, 2, 3}) {
     pair.kind = kind;
     pair.weight = 0.7;
+    pair.dhat = 1e-3;
     parameters.stiffness = 3;
     const int cloth = static_cast<int>(of_cloth.size());
     x.resize(cloth, 3);
@@ -47,7 +48,7 @@ struct OnePair {
   }
   /// Sets d̂ so that the gap is a part s of it.
   OnePair& with_gap_part(double s) {
-    parameters.dhat = (distance() - pair.offset) / s;
+    pair.dhat = (distance() - pair.offset) / s;
     return *this;
   }
   std::unique_ptr<Collisions> set(const Positions& y) const {
@@ -59,7 +60,7 @@ struct OnePair {
   /// Gradient and Hessian against differences with step h.
   void check_derivatives(double h, double tolerance) const {
     const auto own = set();
-    CAPTURE(at(), closest(pair.kind, at()).c.transpose(), distance(), parameters.dhat, pair.mollifier, h);
+    CAPTURE(at(), closest(pair.kind, at()).c.transpose(), distance(), pair.dhat, pair.mollifier, h);
     REQUIRE(own->contact_count() == 1);
     const Positions g = gradient_of(*own, x);
     const Eigen::MatrixXd hessian = dense(hessian_of(*own, x, Projection::none));
@@ -154,7 +155,7 @@ TEST_CASE("derivatives next to changes of the nearest features, and a continuous
            {Vector3d(1, 2, 0), Vector3d(-2, -1, 0), Vector3d(2, -3, 0), Vector3d(-1, 2, 0)}) {
         const Vector3d point = foot + e3 + aside * way;
         OnePair one(PairKind::point_triangle, columns(point, o, e1, e2));
-        one.parameters.dhat = 0.004;
+        one.pair.dhat = 0.004;
         one.check_derivatives(aside / 4, 1e-6 + 1e-15 / aside);
         one.check_projections();
         gradients.push_back(one.gradient(one.x));
@@ -167,7 +168,7 @@ TEST_CASE("derivatives next to changes of the nearest features, and a continuous
       for (const Vector3d& to : {Vector3d(0.001, 0.01, 0), Vector3d(0.004, 0.01, 0)}) {
         const Vector3d from = e3 + (to.x() == 0.004 ? 0.4 : 0) * e1 + Vector3d(sign, -2 * sign, 0) * aside;
         OnePair one(PairKind::edge_edge, columns(o, e1, from, to + e3));
-        one.parameters.dhat = 0.004;
+        one.pair.dhat = 0.004;
         one.check_derivatives(aside / 4, 1e-6 + 1e-15 / aside);
         one.check_projections();
       }
@@ -269,8 +270,8 @@ TEST_CASE("the force is -κ weight b'(s), along the shortest vector, and sums to
     const double expected = one.parameters.stiffness * one.pair.weight * barrier_slope(s);
     CHECK((pushed - expected * n).norm() <= 1e-9 * std::abs(expected));
     CHECK(g.colwise().sum().norm() <= 1e-12 * std::abs(expected));
-    CHECK(one.set()->value(one.x) == Approx(-one.parameters.stiffness * one.pair.weight *
-                                            one.parameters.dhat * (s - 1) * (s - 1) * std::log(s)));
+    CHECK(one.set()->value(one.x) == Approx(-one.parameters.stiffness * one.pair.weight * one.pair.dhat *
+                                            (s - 1) * (s - 1) * std::log(s)));
   }
 }
 
@@ -301,6 +302,7 @@ struct ManyPairs {
       const std::set<int> different(pair.vertices.begin(), pair.vertices.end());
       if (different.size() < 4) continue;
       pair.weight = unit(random);
+      pair.dhat = parameters.dhat;
       pair.offset = random() % 2 ? 0 : 0.01 * unit(random);
       pair.mollifier = 0.02 * unit(random);
       pair.friction = random() % 2 ? 0 : 0.3;

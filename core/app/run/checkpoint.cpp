@@ -34,7 +34,7 @@ template <class A>
 void fields(A& a, LevelResult& r) {
   a(r.level, r.outcome, r.message, r.x, r.from_initial_state, r.steps, r.iterations, r.factorisations,
     r.analyses, r.flops, r.seconds, r.seconds_by_phase, r.decrement, r.force_residual, r.smallest_gap,
-    r.load_stepping);
+    r.contact_stiffness, r.load_stepping);
 }
 
 template <class A>
@@ -44,7 +44,8 @@ void fields(A& a, TangentialDisplacement& s) {
 
 template <class A>
 void fields(A& a, ContactMemory& m) {
-  a(m.reference, m.tangential_displacements, m.candidates_begin, m.candidates_end, m.seconds_building);
+  a(m.reference, m.tangential_displacements, m.candidates_begin, m.candidates_end, m.seconds_building,
+    m.stiffness);
 }
 
 template <class A>
@@ -162,7 +163,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 13;
+constexpr std::uint32_t format = 14;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

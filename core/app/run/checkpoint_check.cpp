@@ -73,7 +73,13 @@ class Check {
   void result(const LevelResult& r) const {
     positions(r.x, r.level, "the state of level " + std::to_string(r.level));
     require(r.steps >= 0 && r.iterations >= 0 && r.factorisations >= 0 && r.analyses >= 0, "negative counts");
+    stiffness(r.contact_stiffness, r.level);
     load_stepping(r.load_stepping);
+  }
+
+  void stiffness(const ContactStiffness& s, int level) const {
+    require(s.empty() || s.size() == scene_.model(level).contacts().size(), "the contacts' stiffness");
+    for (const double own : s) require(own >= 0, "the contacts' stiffness");
   }
 
   void load_stepping(const LoadSteppingState& s) const {
@@ -111,6 +117,8 @@ class Check {
       positions(*x, level, "the contacts");
     require(memory.tangential_displacements.size() == models.size(),
             "the contacts' tangential displacements");
+    require(memory.stiffness.size() == models.size(), "the contacts' stiffness");
+    stiffness(memory.stiffness, level);
     for (const TangentialDisplacements& displacements : memory.tangential_displacements)
       require(ascends(displacements, [](const TangentialDisplacement& d) { return d.contact; }),
               "the contacts' tangential displacements");

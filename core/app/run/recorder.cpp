@@ -165,10 +165,10 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
-  const double energy = scene_.model(r.level).energy(r.x);
+  const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
+  const double energy = model.energy(r.x);
   Json parts = Json::object();
-  for (const auto& [name, joules] : scene_.model(r.level).energy_parts(r.x))
-    parts[name] = finite_or_null(joules);
+  for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = finite_or_null(joules);
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
@@ -193,6 +193,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"force_residual", finite_or_null(r.force_residual)},
                 {"intersections", crossing},
                 {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
+                {"contact_stiffness", r.contact_stiffness},
                 {"mesh", level_file(method_, r.level, ".ply")}};
   return entry;
 }

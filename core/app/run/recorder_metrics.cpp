@@ -70,11 +70,11 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
     const LevelResult& r = results[i];
     worst = worse_of(worst, r.outcome);
     Json& state = entry["levels"][i];
+    const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :
-             measure(name, *metric, {scene_.hierarchy.levels[r.level], scene_.model(r.level), r.x}, state)
-                 .values)
+             measure(name, *metric, {scene_.hierarchy.levels[r.level], model, r.x}, state).values)
           at_dotted(state, v.name) = finite_or_null(v.value);
   }
   write_collection(method_);

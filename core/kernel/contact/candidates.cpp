@@ -123,6 +123,7 @@ bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const Adjace
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_within_dhat(pair, motion)) return;
       pair.weight = weight;
+      pair.dhat = motion.dhat;
       pair.friction = friction;
       list.pairs.push_back(pair);
     };
@@ -148,6 +149,7 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_within_dhat(pair, motion)) return false;
       pair.weight = weight;
+      pair.dhat = motion.dhat;
       pair.obstacle = obstacles.body_of(other.triangles(t, 0));
       pair.friction = obstacles.friction_of(pair.obstacle, friction);
       list.pairs.push_back(pair);

@@ -50,8 +50,7 @@ struct Unmollified {
   Vector3d n, t[2];
   SymmetricMatrix<5, double> m{};
 
-  Unmollified(const Contact& contact, const BarrierParameters& parameters, int cloth_count)
-      : n(contact.normal) {
+  Unmollified(const Contact& contact, double stiffness, int cloth_count) : n(contact.normal) {
     const Frame frame(contact, cloth_count);
     const double d = contact.distance, slope = contact.barrier.first / d, length = frame.c.norm();
     t[0] = frame.t[0], t[1] = frame.t[1];
@@ -70,10 +69,10 @@ struct Unmollified {
       else
         p(j + 1, j) = 0;
     }
-    const double weight = parameters.stiffness * contact.pair.weight;
+    const double weight = stiffness * contact.pair.weight;
     for (int j = 0; j < 3; ++j)
       for (int i = 0; i <= j; ++i) m(i, j) = -weight * slope * (p(i, 0) * p(j, 0) + p(i, 1) * p(j, 1));
-    m(0, 0) += weight * contact.barrier.second / parameters.dhat * length * length;
+    m(0, 0) += weight * contact.barrier.second / contact.pair.dhat * length * length;
     for (int k = 0; k < 2; ++k) {
       for (int i = 0; i < 3; ++i) m(i, 3 + k) = -weight * slope * length * p(i, k);
       if (k >= frame.free) m(3 + k, 3 + k) = weight * slope * length * length;
@@ -112,7 +111,7 @@ struct Mollified {
   Coordinates q = Coordinates::Zero();
   SymmetricMatrix<9, double> m{};
 
-  Mollified(const Contact& contact, const BarrierParameters& parameters, int cloth_count) {
+  Mollified(const Contact& contact, double stiffness, int cloth_count) {
     const Frame frame(contact, cloth_count);
     int moving = 0;
     for (int k = 0; k < 4; ++k)
@@ -131,15 +130,15 @@ struct Mollified {
                                2 * u.dot(v) * Eigen::Matrix3d::Identity();
     Eigen::Matrix<double, 9, 1> gb, gz, tangents[2];
     for (int a = 0; a < 3; ++a) {
-      gb.segment<3>(3 * a) = contact.barrier.first / parameters.dhat * c[a] * n;
+      gb.segment<3>(3 * a) = contact.barrier.first / contact.pair.dhat * c[a] * n;
       gz.segment<3>(3 * a) = eu[a] * zu + ev[a] * zv;
       for (int k = 0; k < 2; ++k)
         tangents[k].segment<3>(3 * a) =
             k < frame.free ? Vector3d(c[a] * frame.t[k] + contact.distance * q.col(a).dot(frame.p.col(k)) * n)
                            : Vector3d::Zero();
     }
-    const double slope = contact.barrier.first / (parameters.dhat * contact.distance),
-                 curvature = contact.barrier.second / (parameters.dhat * parameters.dhat);
+    const double slope = contact.barrier.first / (contact.pair.dhat * contact.distance),
+                 curvature = contact.barrier.second / (contact.pair.dhat * contact.pair.dhat);
     const Derivatives& mollifier = contact.mollifier;
     for (int b = 0; b < 9; ++b)
       for (int a = 0; a <= b; ++a) {
@@ -150,7 +149,7 @@ struct Mollified {
                      tangents[1][a] * tangents[1][b]);
         const double by_z = eu[i] * eu[j] * uu(r, s) + ev[i] * ev[j] * vv(r, s) + eu[i] * ev[j] * uv(r, s) +
                             ev[i] * eu[j] * uv(s, r);
-        m(a, b) = parameters.stiffness * contact.pair.weight * parameters.dhat *
+        m(a, b) = stiffness * contact.pair.weight * contact.pair.dhat *
                   (mollifier.value * by_distance + mollifier.first * (gz[a] * gb[b] + gb[a] * gz[b]) +
                    contact.barrier.value * (mollifier.second * gz[a] * gz[b] + mollifier.first * by_z));
       }
@@ -190,13 +189,13 @@ void project_all(std::vector<Kind>& kinds, Projection projection) {
 }
 
 template <class Kind>
-void hessians_of_kind(const Contact* contacts, int count, bool mollified, const BarrierParameters& parameters,
-                      int cloth_count, Projection projection, PairBlocks* blocks) {
+void hessians_of_kind(const Contact* contacts, int count, bool mollified, double stiffness, int cloth_count,
+                      Projection projection, PairBlocks* blocks) {
   std::vector<Kind> kinds;
   std::vector<int> indices;
   for (int i = 0; i < count; ++i) {
     if (contacts[i].mollified() != mollified) continue;
-    kinds.emplace_back(contacts[i], parameters, cloth_count);
+    kinds.emplace_back(contacts[i], stiffness, cloth_count);
     indices.push_back(i);
   }
   project_all(kinds, projection);
@@ -205,10 +204,10 @@ void hessians_of_kind(const Contact* contacts, int count, bool mollified, const 
 
 }  // namespace
 
-void contact_hessians(const Contact* contacts, int count, const BarrierParameters& parameters,
-                      int cloth_count, Projection projection, PairBlocks* blocks) {
-  hessians_of_kind<Unmollified>(contacts, count, false, parameters, cloth_count, projection, blocks);
-  hessians_of_kind<Mollified>(contacts, count, true, parameters, cloth_count, projection, blocks);
+void contact_hessians(const Contact* contacts, int count, double stiffness, int cloth_count,
+                      Projection projection, PairBlocks* blocks) {
+  hessians_of_kind<Unmollified>(contacts, count, false, stiffness, cloth_count, projection, blocks);
+  hessians_of_kind<Mollified>(contacts, count, true, stiffness, cloth_count, projection, blocks);
 }
 
 }  // namespace drape

@@ -4,13 +4,13 @@
 
 namespace drape {
 
-bool is_within_dhat(const ContactPair& pair, const PairPositions& x, double dhat) {
-  const double reach = pair.offset + dhat;
+bool is_within_dhat(const ContactPair& pair, const PairPositions& x) {
+  const double reach = pair.offset + pair.dhat;
   return box_distance(pair.kind, x) < reach &&
          connection(x, closest(pair.kind, x)).squaredNorm() < reach * reach;
 }
 
-Contact contact_at(const ContactPair& pair, const PairPositions& x, double dhat) {
+Contact contact_at(const ContactPair& pair, const PairPositions& x) {
   Contact contact;
   contact.pair = pair;
   contact.closest = closest(pair.kind, x);
@@ -18,7 +18,7 @@ Contact contact_at(const ContactPair& pair, const PairPositions& x, double dhat)
   contact.distance = r.norm();
   contact.normal = r / contact.distance;
   for (int k = 0; k < 3; ++k) contact.difference.col(k) = x.col(k + 1) - x.col(0);
-  contact.barrier = barrier(contact.gap() / dhat);
+  contact.barrier = barrier(contact.gap() / pair.dhat);
   contact.mollifier = {1, 0, 0};
   if (pair.kind == PairKind::edge_edge)
     contact.mollifier =
@@ -26,11 +26,12 @@ Contact contact_at(const ContactPair& pair, const PairPositions& x, double dhat)
   return contact;
 }
 
-PairPositions contact_gradient(const Contact& contact, double dhat) {
+PairPositions contact_gradient(const Contact& contact) {
   PairPositions g = -contact.pressure() * contact.normal * contact.closest.c.transpose();
   if (contact.mollified()) {
     const Eigen::Vector3d u = contact.first_edge(), v = contact.second_edge(), n = u.cross(v);
-    const double by_z = contact.pair.weight * dhat * contact.mollifier.first * contact.barrier.value;
+    const double by_z =
+        contact.pair.weight * contact.pair.dhat * contact.mollifier.first * contact.barrier.value;
     const Eigen::Vector3d by_u = 2 * by_z * v.cross(n), by_v = 2 * by_z * n.cross(u);
     g.col(0) -= by_u;
     g.col(1) += by_u;

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// A pair within d̂ at one state, with the factors of its energy κ · weight · d̂ · m · b. Members are not
+/// A pair within its d̂ at one state, with the factors of its energy κ · weight · d̂ · m · b. Members are not
 /// initialised, to save time.
 struct Contact {
   ContactPair pair;
@@ -20,7 +20,7 @@ struct Contact {
   /// Whether the edges are nearly parallel: then m is not constant 1.
   bool mollified() const { return pair.kind == PairKind::edge_edge && mollifier.second != 0; }
   /// Energy over κ [m³].
-  double value(double dhat) const { return pair.weight * dhat * mollifier.value * barrier.value; }
+  double value() const { return pair.weight * pair.dhat * mollifier.value * barrier.value; }
   /// Normal force over κ [m²].
   double pressure() const { return -pair.weight * mollifier.value * barrier.first; }
 
@@ -28,23 +28,23 @@ struct Contact {
   Eigen::Vector3d second_edge() const { return difference.col(2) - difference.col(1); }
 };
 
-/// Whether the pair's gap at x is below d̂ [m].
-bool is_within_dhat(const ContactPair& pair, const PairPositions& x, double dhat);
-/// The pair's contact at x for this d̂ [m]. The primitives must not touch.
-Contact contact_at(const ContactPair& pair, const PairPositions& x, double dhat);
+/// Whether the pair's gap at x is below its d̂.
+bool is_within_dhat(const ContactPair& pair, const PairPositions& x);
+/// The pair's contact at x. The primitives must not touch.
+Contact contact_at(const ContactPair& pair, const PairPositions& x);
 
 /// The gradient of a contact's energy over κ; column k is vertex k's [m²].
-PairPositions contact_gradient(const Contact& contact, double dhat);
+PairPositions contact_gradient(const Contact& contact);
 
 /// The 3×3 blocks (a, b), a ≤ b, of a pair's Hessian, row-major; block (a, b) has index b (b + 1) / 2 + a.
 struct PairBlocks {
   double block[10][9];
 };
 
-/// Hessians of `count` contacts with respect to vertices below cloth_count, projected as matrices of those
-/// vertices; the other blocks are zero. Without projection they are exact: the distance's second derivatives
-/// follow from ∂c/∂t by a Schur complement.
-void contact_hessians(const Contact* contacts, int count, const BarrierParameters& parameters,
-                      int cloth_count, Projection projection, PairBlocks* blocks);
+/// Hessians of `count` contacts with the barrier stiffness κ [Pa], with respect to vertices below
+/// cloth_count, projected as matrices of those vertices; the other blocks are zero. Without projection they
+/// are exact: the distance's second derivatives follow from ∂c/∂t by a Schur complement.
+void contact_hessians(const Contact* contacts, int count, double stiffness, int cloth_count,
+                      Projection projection, PairBlocks* blocks);
 
 }  // namespace drape

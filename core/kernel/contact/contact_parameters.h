@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/kernel/contact/barrier_parameters.h"
-#include "core/kernel/contact/stiffness.h"
+#include "core/kernel/model/contact_stiffness.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 
@@ -20,7 +20,8 @@ struct ContactParameters {
 
   /// With the default stiffness for this material where none is given.
   BarrierParameters barrier(const Material& material) const {
-    return {dhat, stiffness.value_or(contact_stiffness(material)), friction_smoothing_distance};
+    return {dhat, stiffness.value_or(contact_stiffness(material)), friction_smoothing_distance,
+            stiffness.has_value()};
   }
 };
 
@@ -53,7 +54,7 @@ void declare_contact_parameters(Declaration<Derived>& d) {
       .description(
           "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
           "weight per area")
-      .source("core/kernel/contact/stiffness.h");
+      .source("core/kernel/model/contact_stiffness.h");
   d.add("friction_smoothing_distance", &Derived::friction_smoothing_distance)
       .unit("m")
       .at_least(1e-12)

@@ -60,6 +60,12 @@ class CollisionStack final : public Collisions, public FrictionalCollisions, pub
     return gap;
   }
 
+  NormalForces normal_forces() const override {
+    NormalForces forces;
+    for (const auto& part : parts_) forces.add(part->normal_forces());
+    return forces;
+  }
+
   /// For parts that all know their gaps, as those of core/kernel/contact do.
   void append_gaps(std::vector<double>& gaps) const override {
     for (const auto& part : parts_) dynamic_cast<const ElementGaps&>(*part).append_gaps(gaps);

@@ -21,7 +21,7 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
       : contacts_(std::move(contacts)), count_(count), cloth_count_(cloth_count), parameters_(parameters) {
     double sum = 0;
     for (int i = 0; i < count_; ++i) {
-      sum += contacts_[i].value(parameters_.dhat);
+      sum += contacts_[i].value();
       smallest_gap_ = std::min(smallest_gap_, contacts_[i].gap());
       frictional_count_ += contacts_[i].pair.friction != 0;
     }
@@ -33,12 +33,18 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
   void append_gaps(std::vector<double>& gaps) const override {
     for (int i = 0; i < count_; ++i) gaps.push_back(contacts_[i].gap());
   }
+  NormalForces normal_forces() const override {
+    NormalForces forces;
+    for (int i = 0; i < count_; ++i)
+      forces.add(parameters_.stiffness * contacts_[i].pressure(), contacts_[i].barrier.first);
+    return forces;
+  }
   double value(const Positions&) const override { return value_; }
 
   double add_gradient(const Positions&, Positions& g) const override {
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
-      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact, parameters_.dhat);
+      const PairPositions by_vertex = parameters_.stiffness * contact_gradient(contact);
       for (int k = 0; k < 4; ++k)
         if (const int v = contact.pair.vertices[k]; v < cloth_count_) g.row(v) += by_vertex.col(k);
     }
@@ -58,8 +64,8 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
     for (int first = 0; first < count_; first += run) {
       const int size = std::min(run, count_ - first);
       parallel_for(size, contacts_per_task, [&](int begin, int end) {
-        contact_hessians(&contacts_[first + begin], end - begin, parameters_, cloth_count_, projection,
-                         blocks.get() + begin);
+        contact_hessians(&contacts_[first + begin], end - begin, parameters_.stiffness, cloth_count_,
+                         projection, blocks.get() + begin);
       });
       for (int i = 0; i < size; ++i)
         for (int b = 0, index = 0; b < 4; ++b)
@@ -126,7 +132,7 @@ std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positio
   std::vector<std::vector<int>> near((size + pairs_per_task - 1) / pairs_per_task);
   parallel_for(size, pairs_per_task, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat))
+      if (is_within_dhat(pairs[i], positions_of(pairs[i], x, obstacle_vertices)))
         near[begin / pairs_per_task].push_back(i);
   });
   std::vector<int> start = {0};
@@ -135,7 +141,7 @@ std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positio
   parallel_for(static_cast<int>(near.size()), 1, [&](int piece, int) {
     Contact* contact = contacts.get() + start[piece];
     for (const int i : near[piece])
-      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices), parameters.dhat);
+      *contact++ = contact_at(pairs[i], positions_of(pairs[i], x, obstacle_vertices));
   });
   return std::make_unique<PairCollisions>(std::move(contacts), start.back(), static_cast<int>(x.rows()),
                                           parameters);

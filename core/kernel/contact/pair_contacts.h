@@ -20,14 +20,15 @@ struct ContactPair {
   PairKind kind = PairKind::point_triangle;
   int obstacle = -1;     ///< index in the contact model; -1 for two primitives of the cloth
   double weight = 0;     ///< area weight of the pair's energy [m²]
+  double dhat = 0;       ///< d̂ of the pair, below which its barrier acts [m]
   double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
   double mollifier = 0;  ///< edge_edge: ε of the mollifier, |u × v|² [m⁴]
   double friction = 0;   ///< μ
 };
 
-/// The barrier potential κ d̂ Σ_pairs weight · m · b(gap / d̂), b(s) = -(s - 1)² ln s, m the edge-edge
-/// mollifier, over those `pairs` whose gap at x (cloth, n×3) is below d̂, in their order. Obstacle vertices
-/// are static. +∞ if a gap is not positive.
+/// The barrier potential κ Σ_pairs d̂ · weight · m · b(gap / d̂), b(s) = -(s - 1)² ln s, m the edge-edge
+/// mollifier, over those `pairs` whose gap at x (cloth, n×3) is below their d̂, in their order. Obstacle
+/// vertices are static. +∞ if a gap is not positive.
 std::unique_ptr<Collisions> make_pair_contacts(const Positions& x, const Positions& obstacle_vertices,
                                                const std::vector<ContactPair>& pairs,
                                                const BarrierParameters& parameters);

@@ -49,6 +49,14 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
       gaps.push_back(gap);
     }
   }
+  /// A negative coefficient takes a force away that other features of the surface count twice.
+  NormalForces normal_forces() const override {
+    NormalForces forces;
+    for (const SurfaceContact& contact : all_.contacts)
+      for (int i = contact.first; i < contact.last; ++i)
+        forces.add(-stiffness(contact, i) * barriers_[i].first, barriers_[i].first);
+    return forces;
+  }
   double value(const Positions&) const override { return value_; }
 
   double add_gradient(const Positions&, Positions& g) const override {

@@ -36,6 +36,11 @@ class VertexCollisions final : public Collisions, public FrictionalCollisions, p
     for (const VertexContact& c : contacts_) gaps.push_back(c.nearest.distance);
   }
 
+  NormalForces normal_forces() const override {
+    NormalForces forces;
+    for (int i = 0; i < contact_count(); ++i) forces.add(force(i), barriers_[i].first);
+    return forces;
+  }
   double value(const Positions&) const override {
     double sum = 0;
     for (int i = 0; i < contact_count(); ++i) sum += contacts_[i].weight * barriers_[i].value;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/kernel/model/contact_stiffness.h"
+
 namespace drape {
 
 namespace {
@@ -47,6 +49,36 @@ void ActiveContacts::begin_step(const Positions& x) {
   lag_friction();
 }
 
+void ActiveContacts::replace(BoundContacts models) {
+  // Collisions and candidates may refer to the models before.
+  friction_.clear();
+  collisions_.clear();
+  candidates_.clear();
+  models_ = std::move(models);
+  if (state_.rows() == 0) return;
+  const Positions x = std::exchange(state_, Positions());
+  build_candidates(candidates_motion_->begin, candidates_motion_->end);
+  build_collisions(x);
+  if (reference_.rows() > 0) lag_friction();
+}
+
+void ActiveContacts::set_stiffness(const ContactStiffness& stiffness) {
+  BoundContacts models = stiffened(models_, stiffness);
+  if (models != models_) replace(std::move(models));
+}
+
+bool ActiveContacts::raise_stiffness(const Positions& x, double largest) {
+  if (models_.empty() || stiffness_is_fixed_) return false;
+  build_collisions(x);
+  ContactStiffness raised = stiffness();
+  for (std::size_t k = 0; k < models_.size(); ++k)
+    raised[k] = raised_stiffness(raised[k], collisions_[k]->normal_forces().mean_pressure(), largest);
+  BoundContacts models = stiffened(models_, raised);
+  if (models == models_) return false;
+  replace(std::move(models));
+  return true;
+}
+
 void ActiveContacts::reset() {
   candidates_.clear();
   collisions_.clear();
@@ -83,14 +115,15 @@ bool ActiveContacts::has_friction() const {
 
 void ActiveContacts::update_obstacles(const BoundContacts& models, const Positions& from,
                                       const Positions& x) {
-  if (models_ == models) return;
+  BoundContacts next = stiffened(models, stiffness());
+  if (models_ == next) return;
   if (!advected_ && friction_enabled_) {  // contacts may have formed since friction was lagged
     store_tangential_displacements(from);
     update_lagging(from);
   }
   // displacement() needs the old models, and the old candidates and collisions may refer to them until
   // reset() destroys these.
-  const BoundContacts before = std::exchange(models_, models);
+  const BoundContacts before = std::exchange(models_, std::move(next));
   store_tangential_displacements(x, &before);
   reset();
   advected_ = true;
@@ -112,13 +145,18 @@ void ActiveContacts::lag_friction() {
 
 ContactMemory ActiveContacts::memory() const {
   if (models_.empty()) return {};
-  return {reference_, tangential_displacements_, collisions_motion_->begin, collisions_motion_->end,
-          seconds_building_};
+  return {reference_,
+          tangential_displacements_,
+          collisions_motion_->begin,
+          collisions_motion_->end,
+          seconds_building_,
+          stiffness()};
 }
 
 void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
   seconds_building_ = memory.seconds_building;
   if (models_.empty()) return;
+  set_stiffness(memory.stiffness);
   build_candidates(memory.candidates_begin, memory.candidates_end);
   state_.resize(0, 3);
   build_collisions(x);

@@ -16,6 +16,7 @@ struct ContactMemory {
   std::vector<TangentialDisplacements> tangential_displacements;
   Positions candidates_begin, candidates_end;  ///< the motion whose candidates gave the step's collisions [m]
   double seconds_building = 0;                 ///< total time of building collisions [s]
+  ContactStiffness stiffness;                  ///< of each model
 };
 
 /// Candidates, collisions and lagged friction of one level during a minimisation. Does nothing on a level
@@ -28,6 +29,17 @@ class ActiveContacts {
   bool has_friction() const;
   /// For motions without physical sliding, as from one level to the next.
   void disable_friction() { friction_enabled_ = false; }
+
+  /// The barrier stiffness of each model [Pa].
+  ContactStiffness stiffness() const { return stiffness_of(models_); }
+  /// Gives the models at least this barrier stiffness [Pa], empty or of each model.
+  void set_stiffness(const ContactStiffness& stiffness);
+  /// Keeps the barrier stiffness as it is from now on.
+  void fix_stiffness() { stiffness_is_fixed_ = true; }
+  /// Raises the barrier stiffness of each model whose contacts at x carry far more than its barrier is made
+  /// for, to at most `largest` [Pa] (core/kernel/model/contact_stiffness.h). Returns whether any was raised.
+  /// Call it between steps.
+  bool raise_stiffness(const Positions& x, double largest);
 
   /// Starts a step at x: lags friction's normal forces and tangents there, and stores the tangential
   /// displacements.
@@ -76,6 +88,9 @@ class ActiveContacts {
   void store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);
   ObstacleMotion motion_since(const BoundContacts& before, std::size_t model) const;
 
+  /// Takes models of another barrier stiffness, with the candidates found again.
+  void replace(BoundContacts models);
+
   BoundContacts models_;
   std::vector<std::unique_ptr<CollisionCandidates>> candidates_;
   std::vector<std::unique_ptr<Collisions>> collisions_;                        // at state_
@@ -85,7 +100,7 @@ class ActiveContacts {
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
   Positions state_;                                                // that the collisions were built at
   Positions reference_;  // that tangential displacements are measured from
-  bool friction_enabled_ = true;
+  bool friction_enabled_ = true, stiffness_is_fixed_ = false;
   bool advected_ = false;
   double seconds_building_ = 0;
 };

@@ -17,4 +17,18 @@ std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts) {
   return all;
 }
 
+ContactStiffness stiffness_of(const BoundContacts& contacts) {
+  ContactStiffness stiffness;
+  for (const auto& contact : contacts) stiffness.push_back(contact->stiffness());
+  return stiffness;
+}
+
+BoundContacts stiffened(const BoundContacts& contacts, const ContactStiffness& stiffness) {
+  BoundContacts result = contacts;
+  for (std::size_t k = 0; k < stiffness.size(); ++k)
+    if (stiffness[k] > contacts.at(k)->stiffness())
+      if (auto stiffer = contacts[k]->with_stiffness(stiffness[k])) result[k] = std::move(stiffer);
+  return result;
+}
+
 }  // namespace drape

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,6 +21,24 @@ struct Intersection {
 /// "cloth triangle 12 and ball: sphere at (0.1, 0, 0.3)".
 std::string to_string(const Intersection& intersection);
 
+/// The normal forces of collisions, to judge their barrier by.
+struct NormalForces {
+  double sum = 0;       ///< Σ force [N]
+  double weighted = 0;  ///< Σ force · |b'(gap / d̂)|: each weighted by its pressure over κ [N]
+
+  /// Adds a contact's normal force [N], whose barrier has the slope b'.
+  void add(double force, double slope) {
+    sum += force;
+    weighted += force * std::abs(slope);
+  }
+  void add(const NormalForces& other) {
+    sum += other.sum;
+    weighted += other.weighted;
+  }
+  /// The pressure over κ that the average newton of contact acts with; 0 without contact.
+  double mean_pressure() const { return sum > 0 ? weighted / sum : 0; }
+};
+
 /// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
 /// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
 /// columns without a cloth vertex are -1. Collisions with friction are FrictionalCollisions too
@@ -29,6 +48,8 @@ class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
+  /// None for collisions without a barrier.
+  virtual NormalForces normal_forces() const { return {}; }
 };
 
 /// Optional interface of Collisions that knows the gap of each element, for programs that look at contacts.
@@ -62,6 +83,15 @@ class BoundContact {
   virtual std::vector<Intersection> intersections(const Positions& x) const = 0;
   /// The obstacles as meshes, for drawing.
   virtual std::vector<TriangleMesh> obstacles() const = 0;
+
+  /// The barrier stiffness κ [Pa]; 0 for a model without a barrier.
+  virtual double stiffness() const { return 0; }
+  /// This model with another κ [Pa]; null if its κ is a parameter of the experiment, or if it has none.
+  virtual std::shared_ptr<const BoundContact> with_stiffness([[maybe_unused]] double stiffness) const {
+    return nullptr;
+  }
+  /// One line on pairs of primitives that the barrier leaves out, for messages; empty if there are none.
+  virtual std::string remark() const { return ""; }
 };
 
 /// Optional interface of a BoundContact whose obstacles move between load states (kinematic obstacles of
@@ -82,6 +112,14 @@ class KinematicObstacles {
 
 /// The contacts of one level. Models of the level under different loads may share them.
 using BoundContacts = std::vector<std::shared_ptr<const BoundContact>>;
+
+/// The barrier stiffness κ of each contact model [Pa].
+using ContactStiffness = std::vector<double>;
+
+ContactStiffness stiffness_of(const BoundContacts& contacts);
+/// The contacts with the larger of their own κ and `stiffness`, which may be empty or has a value for each;
+/// the same objects where κ stays.
+BoundContacts stiffened(const BoundContacts& contacts, const ContactStiffness& stiffness);
 
 /// The obstacles of all contacts, as meshes for drawing.
 std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts);

@@ -7,6 +7,7 @@
 
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/linear_algebra/same_entries.h"
+#include "core/kernel/model/contact_stiffness.h"
 
 namespace drape {
 
@@ -55,6 +56,28 @@ LevelModel::LevelModel(const Level& level, const Material& material, const std::
   add_up_linear_energies();
   bind_contacts(contacts, before);
   if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+  adapt_stiffness_to_load();
+}
+
+void LevelModel::adapt_stiffness_to_load() {
+  if (contacts_.empty()) return;
+  const double pressure = load_pressure(level_->rest.vertices);
+  ContactStiffness stiffness = stiffness_of(contacts_);
+  for (double& own : stiffness) own = stiffness_for_load(own, pressure);
+  contacts_ = stiffened(contacts_, stiffness);
+}
+
+LevelModel LevelModel::with_stiffness(const ContactStiffness& stiffness) const {
+  LevelModel model = *this;
+  model.contacts_ = stiffened(contacts_, stiffness);
+  return model;
+}
+
+double LevelModel::load_pressure(const Positions& x) const {
+  double square = 0;
+  for (int i = 0; i < level_->vertex_count(); ++i)
+    if (!fixed_[i]) square += std::pow(level_->vertex_area[i], 2);
+  return square > 0 ? load_norm(x) / std::sqrt(square) : 0;
 }
 
 std::string LevelModel::unused_name(const std::string& type) const {

@@ -66,6 +66,11 @@ class LevelModel {
   std::optional<double> midpoint_factor(EnergyRole role) const;
   const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
 
+  /// This model with at least this barrier stiffness [Pa], empty or of each contact.
+  LevelModel with_stiffness(const ContactStiffness& stiffness) const;
+  /// Root mean square of the external forces per area over the free vertices at x [Pa].
+  double load_pressure(const Positions& x) const;
+
   /// The energies of role `limit`, S_l.
   const std::vector<const BoundEnergy*>& limits() const { return limits_; }
   /// Empty without contact.
@@ -114,6 +119,7 @@ class LevelModel {
   std::string unused_name(const std::string& type) const;  // by terms_ and the contacts' part
   void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
   void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
+  void adapt_stiffness_to_load();
   double external_force_norm(const Positions& x) const;
   double barrier(const Positions& x) const;  // of the contacts [J]
   void add_up_linear_energies();

@@ -92,6 +92,7 @@ struct LevelResult {
   double decrement = 0;
   double force_residual = 0;           ///< of the objective [1]
   std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
+  ContactStiffness contact_stiffness;  ///< at the end, of each contact model [Pa]
   LoadSteppingState load_stepping;     ///< at the end
 };
 

@@ -12,16 +12,8 @@ namespace {
 /// Gaps below this fraction of d̂ indicate a weak barrier.
 constexpr double weak_gap_fraction = 1e-3;
 /// Stiffness over the load's pressure: a barrier with a ratio of 1 leaves a gap of d̂ / 2, with 10 of 5 d̂ / 6
-/// (core/kernel/contact/stiffness.h).
+/// (core/kernel/model/contact_stiffness.h).
 constexpr double suitable_ratio = 10;
-
-/// Root mean square of the external forces per area over the free vertices [Pa].
-double load_pressure(const LevelModel& model, const Positions& x) {
-  double square = 0;
-  for (int i = 0; i < model.level().vertex_count(); ++i)
-    if (!model.fixed()[i]) square += std::pow(model.level().vertex_area[i], 2);
-  return square > 0 ? model.load_norm(x) / std::sqrt(square) : 0;
-}
 
 }  // namespace
 
@@ -31,7 +23,7 @@ std::string weak_barrier(const LevelModel& model, const Positions& x) {
     if (!provider) continue;
     const SmallestGap smallest = provider->smallest_gap(x);
     if (!(smallest.gap < weak_gap_fraction * smallest.dhat)) continue;
-    const double pressure = load_pressure(model, x);
+    const double pressure = model.load_pressure(x);
     if (smallest.stiffness >= pressure) continue;
     return "the barrier is too weak for the load: its stiffness is " + three_digits(smallest.stiffness) +
            " Pa but the load's pressure is " + three_digits(pressure) + " Pa, and the gap between " +

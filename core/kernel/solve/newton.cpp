@@ -19,6 +19,8 @@ constexpr double near_equilibrium = 10;
 /// Steps between checks of the residual on the next level, which costs an evaluation of its contacts and
 /// forces.
 constexpr int residual_check_interval = 4;
+/// Force residual below which contacts count as carrying the load and no more.
+constexpr double balanced = 1;
 /// Drift of the centroid, in bounding box diagonals, after which the cloth counts as falling without end.
 constexpr double max_drift = 100;
 
@@ -85,6 +87,7 @@ class Newton {
  private:
   /// Returns false if the start has no finite energy and forces.
   bool begin() {
+    f_.contacts().set_stiffness(run_.stiffness);
     f_.contacts().begin_step(iterate_.x());
     iterate_.evaluate();
     if (std::isfinite(iterate_.energy()))
@@ -156,9 +159,21 @@ class Newton {
         return End{Outcome::max_steps_reached,
                    "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " +
                        three_digits(iterate_.force_residual())};
+      follow_contact_forces();
       step_.begin();
       return std::nullopt;
     }
+  }
+
+  /// Raises the stiffness of barriers that carry too much, once the forces nearly balance: before, contacts
+  /// carry the motion's impacts.
+  void follow_contact_forces() {
+    if (!(iterate_.force_residual() < balanced)) return;
+    if (!f_.contacts().raise_stiffness(iterate_.x(), f_.model().material().membrane_modulus)) return;
+    step_.factor().invalidate();
+    check_.restart();
+    iterate_.evaluate();
+    iterate_.update_residual();
   }
 
   std::optional<End> requested_end() {
@@ -267,10 +282,11 @@ class Newton {
     if (failed && std::isfinite(result_.force_residual) && (dirichlet_.active() || dirichlet_.infeasible()))
       add_to_message(dirichlet_.message(result_.x));
     add_to_message(end.after_pins);
-    if (failed) add_to_message(weak_barrier(f_.model(), result_.x));
+    if (failed) add_to_message(weak_barrier(f_.model().with_stiffness(f_.contacts().stiffness()), result_.x));
     load_.store_progress(result_);
     result_.seconds += watch_.seconds();
     result_.analyses = step_.factor().analyses();
+    result_.contact_stiffness = f_.contacts().stiffness();
     if (f_.contacts().any()) {
       result_.smallest_gap = f_.contacts().smallest_gap();
       // Collisions are built while energies are evaluated.

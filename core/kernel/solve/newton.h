@@ -18,6 +18,7 @@ struct LevelRun {
   const NewtonState* from = nullptr;         ///< state to resume from; null to start anew
   LoadStepping* load_stepping = nullptr;     ///< null without a schedule
   std::string remark = {};                   ///< beginning of the result's message
+  ContactStiffness stiffness = {};           ///< at least this of each contact model [Pa]
   /// Force residual of a state, prolonged to the next level; 0 if its energy or forces there are not finite.
   std::function<double(const Positions& x)> residual_on_next_level = {};
 };

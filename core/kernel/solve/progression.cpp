@@ -56,6 +56,7 @@ std::vector<LevelResult> solve_progressively(
       result.seconds_by_phase = spent;
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping, remark};
+      if (!results.empty()) run.stiffness = results.back().contact_stiffness;
       std::unique_ptr<Objective> next;
       run.residual_on_next_level = [&](const Positions& x) {
         if (!next) next = objective(l + 1);

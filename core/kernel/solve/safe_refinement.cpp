@@ -30,6 +30,7 @@ class TargetObjective : public Objective {
   TargetObjective(const LevelModel& model, const Positions& from, Positions target)
       : Objective(model), target_(std::move(target)), pattern_(pattern_for(model)), matrix_(pattern_) {
     contacts().disable_friction();
+    contacts().fix_stiffness();
     partition_by_strain_limit(from);
     set_scale(from);
   }

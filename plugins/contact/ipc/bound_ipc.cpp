@@ -29,28 +29,6 @@ const BoundIpc& as_ipc(const BoundContact& contact) {
   return *own;
 }
 
-std::vector<std::array<int, 4>> find_rest_proximity_pairs(const Surface& cloth, const Positions& rest,
-                                                          double dhat) {
-  const Positions none;
-  SweptBoxes boxes;
-  boxes.update(cloth, rest, rest, 0.5 * dhat);
-  const auto tree = make_broad_phase(BroadPhaseKind::bvh);
-  tree->update(boxes.triangles);
-  AdjacencyList rows;
-  // Some ten times the pairs of triangles of a cloth of 200K vertices with d̂ equal to its edge length.
-  constexpr long max_pairs = 50'000'000;
-  if (!tree->overlaps(max_pairs, rows))
-    throw std::runtime_error(
-        "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
-        "within \"dhat\" of each other; lower it to half the length of an edge");
-  BroadPhasePairs found;
-  find_self_pairs(cloth, boxes, rows, {rest, rest, dhat, none, none}, 0, unlimited, found);
-  std::vector<std::array<int, 4>> pairs;
-  for (const ContactPair& pair : found.pairs) pairs.push_back(pair.vertices);
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
 /// The candidates of a linear motion.
 class IpcCandidates final : public CollisionCandidates {
  public:
@@ -103,8 +81,8 @@ class IpcCandidates final : public CollisionCandidates {
     const ContactPair* nearest = nullptr;
     const auto visit = [&](const ContactPair& pair) {
       const PairPositions at = positions_of(pair, x0_, obstacles_.vertices);
-      if (!is_within_dhat(pair, at, barrier_.dhat)) return;
-      const double gap = contact_at(pair, at, barrier_.dhat).gap();
+      if (!is_within_dhat(pair, at)) return;
+      const double gap = contact_at(pair, at).gap();
       if (gap >= smallest.gap) return;
       smallest.gap = gap;
       nearest = &pair;
@@ -133,8 +111,7 @@ class IpcCandidates final : public CollisionCandidates {
 std::shared_ptr<const RestCloth> RestCloth::of(const Level& level, double dhat, bool self_contact) {
   auto cloth =
       std::make_shared<RestCloth>(RestCloth{dhat, self_contact, Surface::of(level.rest, level.topology), {}});
-  if (self_contact)
-    cloth->rest_proximity_pairs = find_rest_proximity_pairs(cloth->surface, level.rest.vertices, dhat);
+  if (self_contact) cloth->layers = RestLayers::of(cloth->surface, level, dhat);
   return cloth;
 }
 
@@ -162,6 +139,24 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const ObstacleTree>
       cloth_(rest_->surface),
       broad_phase_(p.broad_phase),
       cloth_tree_(make_broad_phase(p.broad_phase)) {}
+
+BoundIpc::BoundIpc(const BoundIpc& other, double stiffness)
+    : friction_(other.friction_),
+      min_gap_fraction_(other.min_gap_fraction_),
+      self_contact_(other.self_contact_),
+      barrier_(other.barrier_),
+      obstacle_tree_(other.obstacle_tree_),
+      obstacles_(other.obstacles_),
+      rest_(other.rest_),
+      cloth_(rest_->surface),
+      broad_phase_(other.broad_phase_),
+      cloth_tree_(make_broad_phase(broad_phase_)) {
+  barrier_.stiffness = stiffness;
+}
+
+std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) const {
+  return barrier_.stiffness_is_fixed ? nullptr : std::make_shared<const BoundIpc>(*this, stiffness);
+}
 
 bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits, BroadPhasePairs& found,
                       Counts& counts) const {
@@ -213,10 +208,10 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
   }
   ClassifiedPairs candidates{std::move(found.pairs), {}, std::move(found.vertex_triangles)};
   std::vector<ContactPair>& pairs = candidates.barrier;
-  const auto ccd_only = std::stable_partition(pairs.begin(), pairs.end(), [this](const ContactPair& pair) {
-    return pair.weight > 0 && !std::binary_search(rest_->rest_proximity_pairs.begin(),
-                                                  rest_->rest_proximity_pairs.end(), pair.vertices);
-  });
+  for (ContactPair& pair : pairs)
+    if (pair.obstacle < 0) pair.dhat = rest_->layers.dhat_of(pair.vertices);
+  const auto ccd_only = std::stable_partition(
+      pairs.begin(), pairs.end(), [](const ContactPair& pair) { return pair.weight > 0 && pair.dhat > 0; });
   candidates.ccd_only.assign(ccd_only, pairs.end());
   pairs.erase(ccd_only, pairs.end());
   return std::make_unique<IpcCandidates>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,

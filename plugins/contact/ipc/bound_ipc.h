@@ -8,6 +8,7 @@
 #include "core/kernel/contact/candidates.h"
 #include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/ipc/ipc.h"
+#include "plugins/contact/ipc/rest_layers.h"
 
 namespace drape::ipc {
 
@@ -23,9 +24,9 @@ struct RestCloth {
   double dhat = 0;  ///< d̂ [m]
   bool self_contact = true;
   Surface surface;
-  std::vector<std::array<int, 4>> rest_proximity_pairs;  ///< vertices of self pairs within d̂ at rest, sorted
+  RestLayers layers;  ///< none without self-contact
 
-  /// Throws std::runtime_error if too many pairs are within d̂.
+  /// Throws std::runtime_error if too many pairs are within d̂ at rest.
   static std::shared_ptr<const RestCloth> of(const Level& level, double dhat, bool self_contact);
 };
 
@@ -47,6 +48,9 @@ class BoundIpc final : public BoundContact, public KinematicObstacles, public Sm
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const ObstacleTree> obstacles,
            std::shared_ptr<const RestCloth> rest, const Material& material);
 
+  /// `other` with another barrier stiffness κ [Pa].
+  BoundIpc(const BoundIpc& other, double stiffness);
+
   const std::shared_ptr<const RestCloth>& rest() const { return rest_; }
 
   /// Shortens the motion, and with it max_step, if it has too many candidate pairs (see README.md, "Long
@@ -55,6 +59,9 @@ class BoundIpc final : public BoundContact, public KinematicObstacles, public Sm
                                                         const Positions& x1) const override;
   std::vector<Intersection> intersections(const Positions& x) const override;
   std::vector<TriangleMesh> obstacles() const override;
+  double stiffness() const override { return barrier_.stiffness; }
+  std::shared_ptr<const BoundContact> with_stiffness(double stiffness) const override;
+  std::string remark() const override { return rest_->layers.remark(); }
 
   SmallestGap smallest_gap(const Positions& x) const override;
   StepLimit max_step(const BoundContact& before, const Positions& x) const override;

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/contact/stiffness.h"
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/contact_stiffness.h"
 #include "core/kernel/model/friction.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
@@ -81,6 +81,7 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
   const auto add = [&](ContactPair pair, double weight, double mu) {
     if (weight == 0 || distance(pair) >= dhat) return;
     pair.weight = weight;
+    pair.dhat = dhat;
     pair.friction = mu;
     pairs.push_back(pair);
   };

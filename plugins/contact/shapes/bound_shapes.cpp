@@ -117,6 +117,14 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
     return meshes;
   }
 
+  double stiffness() const override { return scene_->barrier.stiffness; }
+  std::shared_ptr<const BoundContact> with_stiffness(double stiffness) const override {
+    if (scene_->barrier.stiffness_is_fixed) return nullptr;
+    ShapeScene scene = *scene_;
+    scene.barrier.stiffness = stiffness;
+    return std::make_shared<const BoundShapes>(std::move(scene));
+  }
+
   SmallestGap smallest_gap(const Positions& x) const override {
     SmallestGap smallest;
     smallest.dhat = scene_->barrier.dhat;

@@ -78,6 +78,7 @@ class Finder {
       ContactPair pair;
       pair.kind = PairKind::point_triangle;
       pair.offset = features_.offset;
+      pair.dhat = scene_.barrier.dhat;
       pair.obstacle = solid_index_;
       pair.friction = solid_.friction;
       pair.weight =
@@ -100,6 +101,7 @@ class Finder {
       ContactPair pair;
       pair.kind = PairKind::edge_edge;
       pair.offset = features_.offset;
+      pair.dhat = scene_.barrier.dhat;
       pair.obstacle = solid_index_;
       pair.friction = solid_.friction;
       const double length = std::sqrt(scene_.cloth.edge_length_squared[i]);

@@ -1,0 +1,140 @@
+#include "plugins/contact/ipc/rest_layers.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "core/kernel/contact/broad_phase.h"
+#include "core/kernel/contact/candidates.h"
+#include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/linear_algebra/parallel.h"
+
+namespace drape::ipc {
+namespace {
+
+/// Some ten times the pairs of triangles of a cloth of 200K vertices with d̂ equal to its edge length.
+constexpr long max_pairs = 50'000'000;
+/// Two primitives are neighbours if a path along the cloth connects them that stays within this distance, in
+/// d̂, of the middle between their nearest points.
+constexpr double neighbourhood = 2;
+/// The barrier between layers does not end below this gap, in d̂: closer layers are pushed apart. Where the
+/// neighbourhood of a fold ends, they then open by an angle of a sixteenth.
+constexpr double smallest_reach = 0.25;
+constexpr int pairs_per_task = 4096;
+
+BroadPhasePairs pairs_within_dhat(const Surface& cloth, const Positions& rest, double dhat) {
+  const Positions none;
+  SweptBoxes boxes;
+  boxes.update(cloth, rest, rest, 0.5 * dhat);
+  const auto tree = make_broad_phase(BroadPhaseKind::bvh);
+  tree->update(boxes.triangles);
+  AdjacencyList rows;
+  if (!tree->overlaps(max_pairs, rows))
+    throw std::runtime_error(
+        "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
+        "within \"dhat\" of each other; lower it to half the length of an edge");
+  BroadPhasePairs found;
+  find_self_pairs(cloth, boxes, rows, {rest, rest, dhat, none, none}, 0, std::numeric_limits<long>::max(),
+                  found);
+  return found;
+}
+
+/// Searches for paths along the resting cloth from one primitive to another.
+class PathSearch {
+ public:
+  PathSearch(const Level& level, double radius)
+      : level_(level), radius_(radius), visited_by_(level.triangle_count(), -1) {}
+
+  /// Whether a path connects the pair's primitives within the radius of `centre`.
+  bool connects(const ContactPair& pair, const Eigen::Vector3d& centre) {
+    ++search_;
+    open_.clear();
+    const auto& v = pair.vertices;
+    for (const int* t = around(v[0]); t != end_around(v[0]); ++t)
+      if (pair.kind == PairKind::point_triangle || has(*t, v[1])) open(*t);
+    const int last = first_primitive_size(pair.kind);
+    while (!open_.empty()) {
+      const int t = open_.back();
+      open_.pop_back();
+      bool reached = true;
+      for (int k = last; k < 4; ++k) reached = reached && has(t, v[k]);
+      if (reached) return true;
+      for (int k = 0; k < 3; ++k) {
+        const int e = level_.topology.triangle_edges(t, k);
+        if (distance(e, centre) > radius_) continue;
+        for (const int neighbour : {0, 1})
+          if (const int s = level_.topology.edge_triangles(e, neighbour); s >= 0) open(s);
+      }
+    }
+    return false;
+  }
+
+ private:
+  const int* around(int v) const { return level_.topology.vertex_triangles.begin(v); }
+  const int* end_around(int v) const { return level_.topology.vertex_triangles.end(v); }
+  bool has(int t, int v) const { return (level_.rest.triangles.row(t).array() == v).any(); }
+  void open(int t) {
+    if (visited_by_[t] == search_) return;
+    visited_by_[t] = search_;
+    open_.push_back(t);
+  }
+  double distance(int e, const Eigen::Vector3d& centre) const {
+    const Eigen::Vector3d a = level_.rest.vertices.row(level_.topology.edges(e, 0)),
+                          b = level_.rest.vertices.row(level_.topology.edges(e, 1));
+    return (a + nearest_on_segment(b - a, centre - a) * (b - a) - centre).norm();
+  }
+
+  const Level& level_;
+  double radius_;
+  std::vector<int> visited_by_;  // the last search that opened each triangle
+  int search_ = 0;
+  std::vector<int> open_;
+};
+
+}  // namespace
+
+RestLayers RestLayers::of(const Surface& cloth, const Level& level, double dhat) {
+  const Positions& rest = level.rest.vertices;
+  const std::vector<ContactPair> pairs = pairs_within_dhat(cloth, rest, dhat).pairs;
+  std::vector<double> reach(pairs.size());
+  parallel_for(static_cast<int>(pairs.size()), pairs_per_task, [&](int begin, int end) {
+    PathSearch paths(level, neighbourhood * dhat);
+    for (int i = begin; i < end; ++i) {
+      const PairPositions at = positions_of(pairs[i], rest, {});
+      const Closest nearest = closest(pairs[i].kind, at);
+      const Eigen::Vector3d centre = 0.5 * at * nearest.c.cwiseAbs();
+      if (!paths.connects(pairs[i], centre))
+        reach[i] = std::max(connection(at, nearest).norm(), smallest_reach * dhat);
+    }
+  });
+  RestLayers result;
+  result.dhat_ = dhat;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (reach[i] > 0)
+      result.layers_.push_back({pairs[i].vertices, reach[i]});
+    else
+      result.neighbours_.push_back(pairs[i].vertices);
+  std::sort(result.neighbours_.begin(), result.neighbours_.end());
+  std::sort(result.layers_.begin(), result.layers_.end(),
+            [](const Layers& a, const Layers& b) { return a.vertices < b.vertices; });
+  return result;
+}
+
+double RestLayers::dhat_of(const std::array<int, 4>& vertices) const {
+  if (std::binary_search(neighbours_.begin(), neighbours_.end(), vertices)) return 0;
+  const auto layers = std::lower_bound(
+      layers_.begin(), layers_.end(), vertices,
+      [](const Layers& entry, const std::array<int, 4>& wanted) { return entry.vertices < wanted; });
+  return layers != layers_.end() && layers->vertices == vertices ? layers->dhat : dhat_;
+}
+
+std::string RestLayers::remark() const {
+  if (neighbours_.empty()) return "";
+  return std::to_string(neighbours_.size()) +
+         " pairs of the cloth's vertices, edges and triangles are closer than dhat = " + three_digits(dhat_) +
+         " m at rest and neighbours along the cloth: they have no barrier, and collision detection alone "
+         "keeps them apart; a dhat below the shortest edge leaves none";
+}
+
+}  // namespace drape::ipc

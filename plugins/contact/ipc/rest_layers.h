@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/kernel/contact/surface.h"
+#include "core/kernel/model/level.h"
+
+namespace drape::ipc {
+
+/// The pairs of the cloth's primitives that are within d̂ of each other in the rest shape, by what separates
+/// them there.
+///
+/// Pairs that are neighbours along the cloth would be pushed apart at rest, so they have no barrier. Two
+/// layers of a folded or sewn rest shape are not neighbours: they have a barrier that ends at their gap at
+/// rest, so that it does not load the rest shape, but not below a quarter of d̂. Source: this project.
+class RestLayers {
+ public:
+  /// The pairs of the level's rest shape; `cloth` is its surface. Throws std::runtime_error if there are more
+  /// than 50 million.
+  static RestLayers of(const Surface& cloth, const Level& level, double dhat);
+
+  /// d̂ of the self pair with these vertices [m], 0 for a pair without a barrier.
+  double dhat_of(const std::array<int, 4>& vertices) const;
+  /// Names the pairs without a barrier, for messages; empty if there are none.
+  std::string remark() const;
+
+ private:
+  struct Layers {
+    std::array<int, 4> vertices;
+    double dhat;  ///< [m]
+  };
+  double dhat_ = 0;
+  std::vector<std::array<int, 4>> neighbours_;  // ascending
+  std::vector<Layers> layers_;                  // ascending by vertices
+};
+
+}  // namespace drape::ipc

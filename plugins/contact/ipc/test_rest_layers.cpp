@@ -1,0 +1,130 @@
+#include <catch2/catch.hpp>
+
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/mesh/generate.h"
+#include "plugins/contact/ipc/ipc.h"
+#include "tests/support/evaluate.h"
+
+using namespace drape;
+using namespace drape::ipc;
+
+namespace {
+
+constexpr double stiffness = 7, dhat = 1e-3;
+
+std::unique_ptr<BoundContact> bound(const Level& level) {
+  Ipc::Parameters p;
+  p.stiffness = stiffness;
+  p.dhat = dhat;
+  return Ipc(p).bind(level, Material());
+}
+
+std::unique_ptr<Collisions> collisions(const BoundContact& contact, const Positions& x) {
+  return contact.build_candidates(x, x)->build_collisions(x);
+}
+
+/// Two sheets of side 0.1, one `gap` above the other, that nothing connects.
+Level two_sheets(double gap, int columns) {
+  TriangleMesh lower = grid({0.1, 0.1}, columns, columns, Diagonals::one_way), both = lower;
+  const int n = static_cast<int>(lower.vertices.rows()), m = static_cast<int>(lower.triangles.rows());
+  both.vertices.conservativeResize(2 * n, 3);
+  both.vertices.bottomRows(n) = lower.vertices;
+  both.vertices.bottomRows(n).col(2).array() += gap;
+  both.triangles.conservativeResize(2 * m, 3);
+  both.triangles.bottomRows(m) = lower.triangles.array() + n;
+  return Level::of(0, both);
+}
+
+/// The upper sheet moved to `gap` above the lower one.
+Positions with_gap(const Level& sheets, double gap) {
+  Positions x = sheets.rest.vertices;
+  x.bottomRows(x.rows() / 2).col(2).setConstant(gap);
+  return x;
+}
+
+/// A book of two leaves that lie on each other at rest.
+Level shut_book(int columns, double side) {
+  TriangleMesh mesh = grid({2 * side, side}, 2 * columns - 1, columns, Diagonals::one_way);
+  for (int v = 0; v < mesh.vertices.rows(); ++v) mesh.vertices(v, 0) = std::abs(mesh.vertices(v, 0) - side);
+  return Level::of(0, mesh);
+}
+
+/// The same with one leaf turned up about the spine.
+Positions opened(const Level& book, int columns, double side, double angle) {
+  const TriangleMesh flat = grid({2 * side, side}, 2 * columns - 1, columns, Diagonals::one_way);
+  Positions x = book.rest.vertices;
+  for (int v = 0; v < x.rows(); ++v)
+    if (flat.vertices(v, 0) > side)
+      x.row(v) << std::cos(angle) * book.rest.vertices(v, 0), x(v, 1),
+          std::sin(angle) * book.rest.vertices(v, 0);
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("ipc: layers that are near at rest are in equilibrium there, and resist below that gap") {
+  for (const int columns : {4, 21})
+    for (const double gap : {0.9e-3, 0.5e-3, 0.3e-3}) {
+      const Level sheets = two_sheets(gap, columns);
+      const auto contact = bound(sheets);
+      CHECK(collisions(*contact, sheets.rest.vertices)->value(sheets.rest.vertices) == 0);
+      const Positions x = with_gap(sheets, gap / 2);
+      const auto set = collisions(*contact, x);
+      REQUIRE(set->contact_count() > 0);
+      CHECK(set->smallest_gap() == Approx(gap / 2));
+      const Positions g = gradient_of(*set, x);
+      const double lift = -g.bottomRows(g.rows() / 2).col(2).sum(),
+                   pressure = -stiffness * barrier(0.5).first;
+      CAPTURE(columns, gap, lift / (pressure * 0.01));
+      // Vertices lie above vertices, where up to six triangles each count, and edges above edges.
+      CHECK(lift >= pressure * 0.01);
+      CHECK(lift <= 8 * pressure * 0.01);
+      CHECK(contact->remark().empty());
+    }
+}
+
+TEST_CASE("ipc: layers that touch at rest are pushed apart by up to a quarter of dhat") {
+  const Level sheets = two_sheets(0, 6);
+  const auto contact = bound(sheets);
+  for (const double gap : {1e-6, 0.24e-3}) {
+    const Positions x = with_gap(sheets, gap);
+    CHECK(collisions(*contact, x)->contact_count() > 0);
+  }
+  const Positions apart = with_gap(sheets, 0.26e-3);
+  CHECK(collisions(*contact, apart)->contact_count() == 0);
+}
+
+TEST_CASE("ipc: the leaves of a book that is shut at rest have a barrier, but for its spine") {
+  const std::pair<int, double> books[] = {{5, 0.1}, {21, 0.1}, {41, 0.02}};  // edges of 25, 5 and 0.5 mm
+  for (const auto& [columns, side] : books) {
+    const Level book = shut_book(columns, side);
+    const auto contact = bound(book);
+    const Positions x = opened(book, columns, side, 2e-4 / side);
+    const auto set = collisions(*contact, x);
+    CAPTURE(columns);
+    REQUIRE(set->contact_count() > 0);
+    const Positions g = gradient_of(*set, x);
+    for (int v = 0; v < x.rows(); ++v) {
+      // Two millimetres around the spine are one neighbourhood; elsewhere the leaves push each other apart.
+      if (book.rest.vertices(v, 0) > 0.01 && x(v, 2) > 0) CHECK(g(v, 2) < 0);
+      if (book.rest.vertices(v, 0) < 1e-3) CHECK(g.row(v).norm() < 2e-2 * g.rowwise().norm().maxCoeff());
+    }
+    CHECK(contact->remark().empty() == (side == 0.1));
+  }
+}
+
+TEST_CASE("ipc: neighbours along the cloth have no barrier, and the model's remark says so") {
+  Level fine = Level::of(0, grid({0.02, 0.02}, 41, 41, Diagonals::criss_cross));  // edges of half of d̂
+  const auto contact = bound(fine);
+  CHECK(collisions(*contact, fine.rest.vertices)->contact_count() == 0);
+  CHECK_THAT(contact->remark(), Catch::Contains("have no barrier") && Catch::Contains("0.001 m"));
+  // Slivers whose long edges are far above d̂.
+  TriangleMesh slivers;
+  slivers.vertices.resize(5, 3);
+  slivers.vertices << 0, 0, 0, 0.1, 0, 0, 0.05, 3e-4, 0, 0.05, 0.1, 0, 0.05, -3e-4, 0;
+  slivers.triangles.resize(4, 3);
+  slivers.triangles << 0, 1, 2, 0, 2, 3, 2, 1, 3, 1, 0, 4;
+  const Level level = Level::of(0, slivers);
+  CHECK(collisions(*bound(level), level.rest.vertices)->contact_count() == 0);
+  CHECK(bound(Level::of(0, grid({0.1, 0.1}, 21, 21, Diagonals::one_way)))->remark().empty());
+}
