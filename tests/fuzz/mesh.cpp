@@ -1,4 +1,4 @@
-// A mesh file of any format; the first byte chooses which: P for PLY, o for OBJ, O for OFF.
+// A mesh file of any format; the first byte chooses which: P for PLY, S for STL, o for OBJ, O for OFF.
 
 #include <cstdint>
 #include <cstdlib>
@@ -15,6 +15,7 @@ using namespace drape;
 TriangleMesh read(char format, std::string_view bytes) {
   if (format == 'o') return read_obj("fuzz.obj", bytes);
   if (format == 'O') return read_off("fuzz.off", bytes);
+  if (format == 'S') return read_stl("fuzz.stl", bytes);
   return read_ply("fuzz.ply", bytes);
 }
 

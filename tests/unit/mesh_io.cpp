@@ -322,8 +322,8 @@ TEST_CASE("a byte order mark is no part of the first word", "[io]") {
 }
 
 TEST_CASE("unknown formats and missing files name what to do", "[io]") {
-  CHECK_THROWS_WITH(read_mesh("cloth.stl"),
-                    "cloth.stl: unknown mesh format '.stl'; known are .obj, .off, .ply");
+  CHECK_THROWS_WITH(read_mesh("cloth.3ds"),
+                    "cloth.3ds: unknown mesh format '.3ds'; known are .obj, .off, .ply, .stl");
   CHECK_THROWS_WITH(write_mesh("cloth.off", {}),
                     "cloth.off: unknown mesh format '.off'; known are .obj, .ply");
   CHECK_THROWS_WITH(read_mesh("no/such.ply"), "cannot read no/such.ply: No such file or directory");
@@ -427,4 +427,152 @@ TEST_CASE("a ParaView collection lists times and files", "[io]") {
         "<DataSet timestep=\"0\" part=\"0\" file=\"frames/0.vtp\"/>\n"
         "<DataSet timestep=\"0.1\" part=\"0\" file=\"frames/1.vtp\"/>\n"
         "</Collection>\n</VTKFile>\n");
+}
+
+TEST_CASE("lines may end with CR, and OBJ lines go on behind a backslash", "[io]") {
+  const MeshFolder scratch;
+  const std::string obj =
+      "# a square, C:\\cloth\\\nv 0 0 0\nv 1 0 \\\n 0\nv 1 1.5 0\nv 0 1 -.25\nf 1 2\\\n 3 \\\n4\n";
+  const std::string end = GENERATE("\n", "\r", "\r\n");
+  const auto with_end = [&](std::string text) {
+    for (std::size_t at = 0; (at = text.find('\n', at)) != text.npos; at += end.size())
+      text.replace(at, 1, end);
+    return text;
+  };
+  check_square(read_mesh(scratch.file("m.obj", with_end(obj))));
+  check_square(read_mesh(scratch.file(
+      "m.off", with_end("OFF\n4 2 0\n0 0 0\n1 0 0 # second\n1 1.5 0\n0 1 -0.25\n3 0 1 2\n3 0 2 3\n"))));
+  check_square(read_mesh(scratch.file(
+      "m.ply",
+      with_end("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+               "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
+               "0\n1 1.5 0\n0 1 -0.25\n4 0 1 2 3\n"))));
+  const fs::path bad = scratch.file("bad.obj", with_end("v 0 0 0\nv 1 zero 0\n"));
+  CHECK_THROWS_WITH(read_mesh(bad), bad.string() + ":2: 'zero' is not a number");
+}
+
+TEST_CASE("triangle strips of a PLY turn every second triangle over", "[io]") {
+  const MeshFolder scratch;
+  const TriangleMesh mesh = read_mesh(scratch.file(
+      "m.ply",
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement "
+      "tristrips 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n2 1 "
+      "0\n12 0 2 1 3 -1 3 2 4 5 5 4 -1\n"));
+  Triangles expected(4, 3);
+  expected << 0, 2, 1, 1, 2, 3, 3, 2, 4, 4, 2, 5;
+  // (2, 4, 5) is the second of its strip, so turned over; (4, 5, 5) and (5, 5, 4) join.
+  CHECK(mesh.triangles == expected);
+}
+
+TEST_CASE("STL as text and binary, welded at equal points", "[io]") {
+  const MeshFolder scratch;
+  const bool binary = GENERATE(true, false);
+  const float points[2][3][3] = {{{0, 0, 0}, {1, 0, 0}, {1, 1.5, 0}},
+                                 {{-0.0f, 0, 0}, {1, 1.5, 0}, {0, 1, -0.25}}};
+  std::string bytes = binary ? std::string(80, 's') : "solid square\n";
+  if (binary) append(bytes, std::uint32_t{2}, false);
+  for (const auto& triangle : points) {
+    bytes += binary ? std::string(12, '\0') : "facet normal 0 0 1\nouter loop\n";
+    for (const auto& point : triangle) {
+      if (!binary) bytes += "vertex";
+      for (const float x : point) {
+        if (binary)
+          append(bytes, x, false);
+        else
+          bytes += " " + std::to_string(x);
+      }
+      if (!binary) bytes += "\n";
+    }
+    bytes += binary ? std::string(2, '\0') : "endloop\nendfacet\n";
+  }
+  if (!binary) bytes += "endsolid square\n";
+  check_square(read_mesh(scratch.file("m.stl", bytes)));
+  const fs::path cut = scratch.file("cut.stl", bytes.substr(0, bytes.size() - 25));
+  CHECK_THROWS_WITH(read_mesh(cut),
+                    cut.string() + (binary ? ": is no STL file: text begins with 'solid', and a "
+                                             "binary file has 84 bytes and 50 for each of the "
+                                             "triangles that it declares; this one has 159 bytes"
+                                           : ":14: the file ends within a facet"));
+}
+
+TEST_CASE("malformed STL texts are refused with their line", "[io]") {
+  const MeshFolder scratch;
+  const auto [text, message] = GENERATE_COPY(table<std::string, std::string>({
+      {"solid\nvertex 0 0 0\n", ":2: a vertex stands outside a facet"},
+      {"solid\nfacet\nvertex 0 0\n", ":3: a vertex needs three coordinates"},
+      {"solid\nfacet\nvertex 0 0 x\n", ":3: 'x' is not a number"},
+      {"solid\nfacet\nvertex 0 0 0\nendfacet\n", ":4: a facet needs three vertices"},
+      {"solid\nfacet\nfacet\n", ":3: the facet before has no endfacet"},
+      {"solid\nhello\n", ":2: no line of an STL file begins with 'hello'"},
+      {"solid\nendsolid\n", ":2: the file ends without a facet"},
+      {"", ": is empty"},
+  }));
+  const fs::path path = scratch.file("a.stl", text);
+  CHECK_THROWS_WITH(read_mesh(path), path.string() + message);
+}
+
+namespace {
+
+/// A file of one face through the points, in one of the formats.
+fs::path face_file(const MeshFolder& scratch, const std::string& format,
+                   const std::vector<Eigen::Vector3d>& points) {
+  const std::string n = std::to_string(points.size());
+  std::string vertices, from_0, from_1;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    for (const double x : points[k])
+      vertices += (vertices.empty() || vertices.back() == '\n' ? "" : " ") + std::to_string(x);
+    vertices += "\n";
+    from_0 += " " + std::to_string(k);
+    from_1 += " " + std::to_string(k + 1);
+  }
+  if (format == "m.off") return scratch.file(format, "OFF\n" + n + " 1 0\n" + vertices + n + from_0 + "\n");
+  if (format == "m.ply")  // the face before its vertices
+    return scratch.file(
+        format,
+        "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement "
+        "vertex " +
+            n + "\nproperty float x\nproperty float y\nproperty float z\nend_header\n" + n + from_0 + "\n" +
+            vertices);
+  std::string text;
+  std::istringstream lines(vertices);
+  for (std::string line; std::getline(lines, line);) text += "v " + line + "\n";
+  return scratch.file(format, text + "f" + from_1 + "\n");
+}
+
+}  // namespace
+
+TEST_CASE("a concave face is cut into what it covers, in every format", "[io]") {
+  const MeshFolder scratch;
+  const std::string format = GENERATE("m.obj", "m.off", "m.ply");
+  const TriangleMesh mesh = read_mesh(
+      face_file(scratch, format, {{0, 1, 0}, {0, 1, 0.4}, {0, 0.4, 0.4}, {0, 0.4, 1}, {0, 0, 1}, {0, 0, 0}}));
+  REQUIRE(mesh.triangles.rows() == 4);
+  double area = 0;
+  for (const auto& t : mesh.triangles.rowwise()) {
+    const Eigen::RowVector3d a = mesh.vertices.row(t[0]), b = mesh.vertices.row(t[1]),
+                             c = mesh.vertices.row(t[2]);
+    const Eigen::RowVector3d normal = (b - a).cross(c - a);
+    CHECK(normal.x() > 1e-3);
+    area += normal.norm() / 2;
+  }
+  CHECK(area == Approx(0.64));
+}
+
+TEST_CASE("a face that cannot be cut is refused by its number", "[io]") {
+  const MeshFolder scratch;
+  const std::string format = GENERATE("m.obj", "m.off", "m.ply");
+  const auto said = [&](const std::vector<Eigen::Vector3d>& points) -> std::string {
+    try {
+      read_mesh(face_file(scratch, format, points));
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  CHECK_THAT(said({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.1, 0}}),
+             Catch::Contains("face 0 (counted from 0) crosses or touches itself: its sides 0 and 2"));
+  CHECK_THAT(
+      said({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 1}}),
+      Catch::Contains("face 0 (counted from 0) is not planar: its corners lie off their mean plane by "));
 }

@@ -43,7 +43,7 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
   d.add("file", &ClothParameters::file)
       .path()
       .only_with("shape", {"file"})
-      .description("mesh of the rest shape (OBJ, OFF or PLY), relative to this file");
+      .description("mesh of the rest shape (OBJ, OFF, PLY or STL), relative to this file");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
       .only_with("shape", {"square", "rectangle"})

@@ -12,7 +12,7 @@
 namespace drape {
 namespace {
 
-constexpr std::string_view white_space = " \t\r\v\f";
+constexpr std::string_view white_space = " \t\r\n\v\f";
 
 template <class Number>
 std::errc parse(std::string_view word, Number& number) {
@@ -25,8 +25,11 @@ std::string in_quotes(std::string_view word) { return "'" + excerpt(word) + "'";
 
 }  // namespace
 
-TextReader::TextReader(std::filesystem::path path, std::string_view text, char comment)
-    : path_(std::move(path)), text_(text), comment_(comment) {
+TextReader::TextReader(std::filesystem::path path, std::string_view text, char comment, char continuation)
+    : path_(std::move(path)), text_(text), comment_(comment), continuation_(continuation) {
+  if (const std::size_t first = text.find_first_of("\r\n");
+      first != text.npos && text[first] == '\r' && !text.substr(first + 1).starts_with('\n'))
+    line_end_ = '\r';
   if (constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF"; text_.starts_with(byte_order_mark))
     position_ = byte_order_mark.size();
 }
@@ -34,8 +37,8 @@ TextReader::TextReader(std::filesystem::path path, std::string_view text, char c
 bool TextReader::next_line() {
   words_.clear();
   next_ = 0;
-  while (words_.empty() && position_ < text_.size()) {
-    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
+  for (bool goes_on = false; (words_.empty() || goes_on) && position_ < text_.size();) {
+    const std::size_t end = std::min(text_.find(line_end_, position_), text_.size());
     std::string_view line = text_.substr(position_, end - position_);
     position_ = std::min(end + 1, text_.size());
     ++line_;
@@ -45,6 +48,10 @@ bool TextReader::next_line() {
       words_.push_back(line.substr(begin, stop - begin));
       begin = line.find_first_not_of(white_space, stop);
     }
+    goes_on = continuation_ != '\0' && !words_.empty() && words_.back().ends_with(continuation_);
+    if (!goes_on) continue;
+    words_.back().remove_suffix(1);
+    if (words_.back().empty()) words_.pop_back();
   }
   return !words_.empty();
 }

@@ -8,11 +8,13 @@
 
 namespace drape {
 
-/// A text as lines of words, with errors that name file and line. The text must outlive the reader.
+/// A text as lines of words, with errors that name file and line. Lines end with LF, CRLF or CR, whichever
+/// ends the first. The text must outlive the reader.
 class TextReader {
  public:
-  /// `comment` starts a comment that runs to the end of its line; '\0' for none.
-  TextReader(std::filesystem::path path, std::string_view text, char comment);
+  /// `comment` starts a comment that runs to the end of its line, and `continuation` at the end of a line
+  /// joins the next one to it; '\0' for none.
+  TextReader(std::filesystem::path path, std::string_view text, char comment, char continuation = '\0');
 
   /// Moves to the next line that has words; false at the end of the text.
   bool next_line();
@@ -46,7 +48,8 @@ class TextReader {
  private:
   std::filesystem::path path_;
   std::string_view text_;
-  char comment_;
+  char comment_, continuation_;
+  char line_end_ = '\n';
   std::size_t position_ = 0;
   int line_ = 0;
   std::vector<std::string_view> words_;

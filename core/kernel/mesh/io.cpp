@@ -30,7 +30,8 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
   if (extension == ".obj") return read_obj(path, read_file(path));
   if (extension == ".off") return read_off(path, read_file(path));
   if (extension == ".ply") return read_ply(path, read_file(path));
-  throw unknown_extension(path, ".obj, .off, .ply");
+  if (extension == ".stl") return read_stl(path, read_file(path));
+  throw unknown_extension(path, ".obj, .off, .ply, .stl");
 }
 
 void require_fields(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {

@@ -17,11 +17,11 @@ struct VertexField {
 };
 using VertexFields = std::vector<VertexField>;
 
-/// Reads a Wavefront OBJ (v and f), an OFF (text) or a PLY (text, binary little or big endian), by
-/// extension. Polygons are split into fans around their first corner, which suits convex ones.
-/// Vertices keep their order and are not merged. Coordinates are finite; check_mesh checks the rest of the
-/// geometry. Data beyond what the file declares are refused. Throws std::runtime_error with "file:line:
-/// fault" (in binary parts: the element).
+/// Reads a Wavefront OBJ (v and f), an OFF (text), a PLY (text, binary little or big endian) or an STL (text,
+/// binary), by extension. Faces with more than three corners are cut (cut_polygon.h). Vertices keep their
+/// order and are not merged, except those of an STL, which are the different points of its triangles.
+/// Coordinates are finite; check_mesh checks the rest of the geometry. Data beyond what the file declares are
+/// refused. Throws std::runtime_error with "file:line: fault" (in binary parts: the element).
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// All scalar vertex properties of a PLY other than x, y and z, in the file's order.

@@ -12,6 +12,7 @@ namespace drape {
 
 TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes);
+TriangleMesh read_stl(const std::filesystem::path& path, std::string_view bytes);
 TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes);
 VertexFields read_ply_fields(const std::filesystem::path& path, std::string_view bytes);
 std::string obj_text(const TriangleMesh& mesh);

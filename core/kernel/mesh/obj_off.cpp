@@ -58,19 +58,19 @@ bool is_other_obj_line(std::string_view word) {
 }  // namespace
 
 TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes) {
-  TextReader reader(path, bytes, '#');
+  TextReader reader(path, bytes, '#', '\\');
   MeshBuilder builder;
-  std::vector<int> polygon;
+  std::vector<int> face;
   while (reader.next_line()) {
     const auto& words = reader.words();
     if (words[0] == "v") {
       read_vertex(reader, 1, 4, builder);  // a weight, a colour
     } else if (words[0] == "f") {
-      polygon.clear();
+      face.clear();
       for (std::size_t k = 1; k < words.size(); ++k)
-        polygon.push_back(obj_corner(reader, words[k], builder.vertex_count()));
-      if (polygon.size() < 3) reader.fail("a face needs at least three vertices");
-      builder.add_polygon(polygon);
+        face.push_back(obj_corner(reader, words[k], builder.vertex_count()));
+      if (face.size() < 3) reader.fail("a face needs at least three vertices");
+      builder.add_face(face, [&](const std::string& why) { reader.fail(why); });
     } else if (!is_other_obj_line(words[0])) {
       reader.fail("no line of an OBJ file begins with '" + excerpt(words[0]) + "'");
     }
@@ -99,17 +99,17 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     if (!reader.next_line()) reader.fail("the file ends before vertex " + std::to_string(v));
     read_vertex(reader, 0, 9, builder);  // a normal, a colour, texture coordinates
   }
-  std::vector<int> polygon;
+  std::vector<int> face;
   for (int f = 0; f < face_count; ++f) {
     if (!reader.next_line()) reader.fail("the file ends before face " + std::to_string(f));
     const auto& words = reader.words();
     const auto size = static_cast<std::size_t>(reader.count(words[0], "vertices of a face"));
     if (size < 3) reader.fail("a face needs at least three vertices");
     if (words.size() <= size) reader.fail("a face of " + std::to_string(size) + " vertices names fewer");
-    polygon.clear();
-    for (std::size_t k = 1; k <= size; ++k) polygon.push_back(reader.index(words[k], vertex_count, "vertex"));
+    face.clear();
+    for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.index(words[k], vertex_count, "vertex"));
     check_further_numbers(reader, size + 1, 4);  // a colour
-    builder.add_polygon(polygon);
+    builder.add_face(face, [&](const std::string& why) { reader.fail(why); });
   }
   if (reader.next_line()) reader.fail("the file has data after its last face");
   return builder.mesh();

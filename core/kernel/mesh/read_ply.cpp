@@ -101,8 +101,21 @@ class PlyBody {
   int number_ = 0;
 };
 
+/// Faces before they are cut, for which the vertices have to be known.
+struct PlyFaces {
+  std::vector<int> corners;
+  std::vector<std::size_t> end;  ///< of each face's corners
+
+  template <class Corners>
+  void add(const Corners& face) {
+    corners.insert(corners.end(), std::begin(face), std::end(face));
+    end.push_back(corners.size());
+  }
+};
+
 struct PlyContent {
   MeshBuilder mesh;
+  PlyFaces faces;
   std::vector<std::string> names;            ///< scalar vertex properties
   std::vector<std::vector<double>> columns;  ///< their values
 };
@@ -135,9 +148,40 @@ bool holds_corners(const PlyProperty& p) {
   return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
 }
 
-void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, MeshBuilder& mesh) {
+int corner(const PlyBody& body, double v, int vertex_count) {
+  if (!(v >= 0 && v < vertex_count && v == std::floor(v)))
+    body.fail("vertex " + exact_text(v) + " is not in 0 … " + std::to_string(vertex_count - 1));
+  return static_cast<int>(v);
+}
+
+void add_face(const PlyBody& body, const std::vector<double>& values, int vertex_count, PlyFaces& faces) {
+  if (values.size() < 3) body.fail("a face needs at least three vertices");
+  std::vector<int> face;
+  for (const double v : values) face.push_back(corner(body, v, vertex_count));
+  faces.add(face);
+}
+
+/// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
+/// vertex only joins its neighbours.
+void add_strips(const PlyBody& body, const std::vector<double>& values, int vertex_count, PlyFaces& faces) {
+  std::vector<int> strip;
+  for (const double v : values) {
+    if (v == -1) {
+      strip.clear();
+      continue;
+    }
+    strip.push_back(corner(body, v, vertex_count));
+    if (strip.size() < 3) continue;
+    std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
+    if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.add(t);
+  }
+}
+
+/// Reads an element of faces or of strips, whose lists of vertices `add` takes.
+template <class Add>
+void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, PlyFaces& faces, const Add& add) {
   std::vector<double> values;
-  std::vector<int> polygon;
   for (int f = 0; f < element.count; ++f) {
     body.enter(element, f);
     for (const PlyProperty& p : element.properties) {
@@ -146,15 +190,7 @@ void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, Mesh
         continue;
       }
       read_list(body, p, values);
-      if (!holds_corners(p)) continue;
-      if (values.size() < 3) body.fail("a face needs at least three vertices");
-      polygon.clear();
-      for (double v : values) {
-        if (!(v >= 0 && v < vertex_count && v == std::floor(v)))
-          body.fail("vertex " + exact_text(v) + " is not in 0 … " + std::to_string(vertex_count - 1));
-        polygon.push_back(static_cast<int>(v));
-      }
-      mesh.add_polygon(polygon);
+      if (holds_corners(p)) add(body, values, vertex_count, faces);
     }
   }
 }
@@ -179,6 +215,16 @@ std::string counts_of(const PlyHeader& header) {
   return "the header declares " + excerpt(text);
 }
 
+void cut_faces(const std::filesystem::path& path, PlyContent& content) {
+  const PlyFaces& faces = content.faces;
+  std::vector<int> face;
+  for (std::size_t f = 0; f < faces.end.size(); ++f) {
+    face.assign(faces.corners.data() + (f == 0 ? 0 : faces.end[f - 1]), faces.corners.data() + faces.end[f]);
+    content.mesh.add_face(
+        face, [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); });
+  }
+}
+
 PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
   TextReader reader(path, bytes, '\0');
   const PlyHeader header = read_ply_header(reader);
@@ -187,11 +233,10 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
                          [&](const auto& e) { return e.name == name; });
   };
   if (named("vertex") != 1) reader.fail("the header must have one element 'vertex'");
-  if (named("tristrips") != 0) reader.fail("triangle strips are not read; convert them to faces");
   for (const PlyElement& e : header.elements)
-    if (e.name == "face" && e.count > 0 &&
+    if ((e.name == "face" || e.name == "tristrips") && e.count > 0 &&
         std::count_if(e.properties.begin(), e.properties.end(), holds_corners) != 1)
-      reader.fail("element 'face' must have one list 'vertex_indices'");
+      reader.fail("element '" + e.name + "' must have one list 'vertex_indices'");
   reader.set_note(counts_of(header));
 
   PlyContent content;
@@ -203,7 +248,9 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
     if (element.name == "vertex")
       read_vertices(body, element, content);
     else if (element.name == "face")
-      read_faces(body, element, vertex_count, content.mesh);
+      read_faces(body, element, vertex_count, content.faces, add_face);
+    else if (element.name == "tristrips")
+      read_faces(body, element, vertex_count, content.faces, add_strips);
     else
       skip(body, element);
   }
@@ -223,6 +270,7 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
       content.mesh.coordinates[3 * v + axis] = column[v];
     }
   }
+  cut_faces(path, content);
   return content;
 }
 

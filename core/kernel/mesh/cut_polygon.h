@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <string>
+#include <vector>
+
+namespace drape {
+
+/// The triangles of a polygon, as indices of its corners, or why it has none.
+struct CutPolygon {
+  std::vector<std::array<int, 3>> triangles;
+  std::string fault;  ///< continues "face 3 "; empty if the polygon was cut
+};
+
+/// Cuts a polygon of n ≥ 3 corners [m] into n - 2 triangles that face as it does: a fan around corner 0 if
+/// each triangle of it faces so, as in every convex polygon, and ears otherwise. A polygon without area is
+/// cut as a fan too. Refuses a polygon whose corners lie off its mean plane by more than 8 % of its diameter,
+/// and one that crosses or touches itself.
+CutPolygon cut_polygon(const std::vector<Eigen::Vector3d>& corners);
+
+}  // namespace drape

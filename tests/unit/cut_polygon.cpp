@@ -1,0 +1,115 @@
+#include "core/kernel/mesh/cut_polygon.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <set>
+
+using namespace drape;
+using Point = Eigen::Vector3d;
+using Outline = std::vector<Point>;
+using Catch::Contains;
+
+namespace {
+
+Point normal_of(const Outline& outline, const std::array<int, 3>& t) {
+  return (outline[t[1]] - outline[t[0]]).cross(outline[t[2]] - outline[t[0]]) / 2;
+}
+
+/// Checks that n - 2 triangles face up, fill the outline's area and use each of its sides once.
+void check_cut(const Outline& outline) {
+  const CutPolygon cut = cut_polygon(outline);
+  REQUIRE(cut.fault == "");
+  REQUIRE(cut.triangles.size() == outline.size() - 2);
+  Point total = Point::Zero();
+  double area = 0;
+  std::set<std::pair<int, int>> sides;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    total += outline[k].cross(outline[(k + 1) % outline.size()]) / 2;
+  for (const auto& t : cut.triangles) {
+    const Point normal = normal_of(outline, t);
+    CHECK(normal.dot(total) > 0);
+    area += normal.norm();
+    for (int k = 0; k < 3; ++k) CHECK(sides.insert({t[k], t[(k + 1) % 3]}).second);
+  }
+  CHECK(area == Approx(total.norm()).epsilon(1e-9));
+  const int n = static_cast<int>(outline.size());
+  for (int k = 0; k < n; ++k) CHECK(sides.count({k, (k + 1) % n}) == 1);
+}
+
+/// The outline from each of its corners, in a tilted plane far from the origin.
+template <class Visit>
+void from_every_corner(Outline outline, const Visit& visit) {
+  const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, Point(1, 2, 3).normalized()).toRotationMatrix();
+  for (Point& p : outline) p = tilt * p + Point(30, -20, 10);
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    std::rotate(outline.begin(), outline.begin() + 1, outline.end());
+    visit(outline);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a convex polygon is cut as a fan around its first corner") {
+  for (int n = 3; n < 12; ++n) {
+    Outline outline;
+    for (int k = 0; k < n; ++k)
+      outline.emplace_back(std::cos(2 * M_PI * k / n), std::sin(2 * M_PI * k / n), 0.02 * (k % 2));
+    const CutPolygon cut = cut_polygon(outline);
+    REQUIRE(cut.fault == "");
+    REQUIRE(static_cast<int>(cut.triangles.size()) == n - 2);
+    for (int k = 0; k < n - 2; ++k) CHECK(cut.triangles[k] == std::array<int, 3>{0, k + 1, k + 2});
+  }
+}
+
+TEST_CASE("concave polygons are cut into what they cover") {
+  from_every_corner({{0, 0, 0}, {1, 0, 0}, {1, 0.4, 0}, {0.4, 0.4, 0}, {0.4, 1, 0}, {0, 1, 0}}, check_cut);
+  from_every_corner({{0, 0, 0}, {1, 0.8, 0}, {2, 0, 0}, {1, 2, 0}}, check_cut);  // an arrow head
+  from_every_corner({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}}, check_cut);
+  Outline comb{{0, -1, 0}, {20, -1, 0}};  // with corners on one line
+  for (int k = 20; k >= 0; --k) comb.emplace_back(k, k % 2, 0);
+  from_every_corner(comb, check_cut);
+  Outline spiral;
+  for (int k = 0; k <= 40; ++k)
+    spiral.emplace_back((1 + 0.1 * k) * std::cos(0.3 * k), (1 + 0.1 * k) * std::sin(0.3 * k), 0);
+  for (int k = 40; k >= 0; --k)
+    spiral.emplace_back((1.8 + 0.1 * k) * std::cos(0.3 * k), (1.8 + 0.1 * k) * std::sin(0.3 * k), 0);
+  std::reverse(spiral.begin(), spiral.end());
+  check_cut(spiral);
+}
+
+TEST_CASE("random stars are cut, at any scale") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> radius(0.1, 1);
+  for (int round = 0; round < 60; ++round) {
+    const int n = 4 + round % 13;
+    Outline outline;
+    for (int k = 0; k < n; ++k) {
+      const double r = std::pow(10, round % 7 - 3) * radius(random);
+      outline.emplace_back(r * std::cos(2 * M_PI * k / n), r * std::sin(2 * M_PI * k / n), 0);
+    }
+    from_every_corner(outline, [&](const Outline& turned) {
+      if (round % 7 >= 2) check_cut(turned);  // smaller ones are lost to round-off so far from the origin
+    });
+    check_cut(outline);
+  }
+}
+
+TEST_CASE("polygons that cross or touch themselves, or are not planar, are refused with the reason") {
+  CHECK_THAT(cut_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.1, 0}}).fault,
+             Contains("crosses or touches itself"));
+  Outline star;  // five corners, two turns
+  for (int k = 0; k < 5; ++k) star.emplace_back(std::cos(4 * M_PI * k / 5), std::sin(4 * M_PI * k / 5), 0);
+  CHECK_THAT(cut_polygon(star).fault, Contains("crosses or touches itself"));
+  // A corner on another side, and a side that runs back.
+  CHECK_THAT(cut_polygon({{0, 0, 0}, {4, 0, 0}, {4, 2, 0}, {2, 0, 0}, {0, 2, 0}}).fault,
+             Contains("touches itself"));
+  CHECK_THAT(cut_polygon({{0, 0, 0}, {4, 0, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 1, 0}}).fault,
+             Contains("touches itself"));
+  CHECK_THAT(cut_polygon({{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0}}).fault,
+             Contains("is not planar") && Contains("cut it into triangles"));
+  // Bent as the quads of a curved surface are, and without an area, which check_mesh says.
+  CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).fault == "");
+  CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).fault == "");
+}
