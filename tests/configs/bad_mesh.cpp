@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/support/command.h"
@@ -52,8 +53,8 @@ TEST_CASE("a missing or unreadable mesh file") {
   CHECK(ended.exit_code == 2);
   CHECK(ended.err == "error: e.yaml:2:8: cannot read cloth.obj: No such file or directory\n");
   CHECK(!std::filesystem::exists(folder / "out"));
-  CHECK(said_of_mesh("solid", "cloth.stl") ==
-        "error: in/e.yaml:2:8: in/cloth.stl: unknown mesh format '.stl'; known are .obj, .off, .ply\n");
+  CHECK(said_of_mesh("solid", "cloth.3ds") ==
+        "error: in/e.yaml:2:8: in/cloth.3ds: unknown mesh format '.3ds'; known are .obj, .off, .ply, .stl\n");
   CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: file}'") ==
         "error: --set cloth: \"shape: file\" needs \"file\", the mesh to read\n");
   CHECK(said_of_mesh(sheet, "cloth.obj", "--set 'cloth={shape: polygon}'") ==
@@ -80,36 +81,62 @@ TEST_CASE("a malformed mesh file is named with its line") {
 }
 
 TEST_CASE("a mesh that is no surface with one side up is named with the element") {
+  const std::string file = "error: in/e.yaml:2:8: in/cloth.obj: ";
   CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 8 9\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 7) runs in the same direction in triangles 4 and 7 "
-        "(counted from 0): "
-        "one of them is inverted\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (4, 8) runs in the same direction in triangles 6 and 7 "
-        "(counted from 0): "
-        "one of them is inverted\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 7, 8) faces the other way than most of this flat "
-        "mesh (counted from 0)\n");
-  CHECK(said_of_mesh("") == "error: in/e.yaml:2:8: in/cloth.obj: is empty\n");
+        file +
+            "2 edges run in the same direction in both triangles: (4, 7) in triangles 4, 7, (4, 8) in "
+            "triangles "
+            "6, 7 (counted from 0); turn one side over, so that all triangles have the same front side\n");
+  CHECK(said_of_mesh("") == file + "is empty\n");
   CHECK(said_of_mesh("v 0 0 0\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: the mesh has no triangles\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 0 belongs to no triangle (counted from 0)\n");
+        file + "the mesh has no triangles\n" + file +
+            "the mesh is 0 m across; at least 1e-09 m can be computed with\n" + file +
+            "1 vertex belongs to no triangle: 0 (counted from 0); remove them\n");
   CHECK(said_of_mesh(sheet + "v 0 0 1\nf 1 10 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8 (counted from 0)\n");
+        file +
+            "1 edge has more than two triangles: (0, 4) in triangles 0, 1, 8 (counted from 0); a sheet has "
+            "one or "
+            "two at each edge: remove those between its sides, or cut it there\n");
   CHECK(said_of_mesh(replaced(sheet, "f 5 9 8\n", "f 5 9 9\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 8) repeats a vertex (counted from 0)\n");
+        file + "1 triangle repeats a vertex: 7 (4, 8, 8) (counted from 0); remove them\n");
   CHECK(said_of_mesh(replaced(sheet, "v 2 2 0\n", "v 1 1 0\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 6 (4, 5, 8) has no area (counted from 0)\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 7 (4, 8, 7) has no area (counted from 0)\n");
-  CHECK(said_of_mesh(sheet + "f 1 2 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: triangle 8 (0, 1, 4) has the same vertices as triangle 0 "
-        "(counted from 0)\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 1) runs in the same direction in triangles 0 and 8 "
-        "(counted from 0): "
-        "one of them is inverted\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (0, 4) has 3 triangles: 0, 1, 8 (counted from 0)\n"
-        "error: in/e.yaml:2:8: in/cloth.obj: edge (1, 4) has 3 triangles: 0, 3, 8 (counted from 0)\n");
+        file +
+            "2 triangles have no area: 6 (4, 5, 8), 7 (4, 8, 7) (counted from 0); move their vertices apart, "
+            "or "
+            "remove them\n");
+  CHECK(said_of_mesh(sheet + "f 1 2 5\n") == file +
+                                                 "1 triangle has the same vertices as another: 8 (0, 1, 4) "
+                                                 "as 0 (counted from 0); remove one of each "
+                                                 "two\n");
   CHECK(said_of_mesh(sheet + "v 5 5 5\n") ==
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 9 belongs to no triangle (counted from 0)\n");
+        file + "1 vertex belongs to no triangle: 9 (counted from 0); remove them\n");
+}
+
+TEST_CASE("all faults of a mesh are listed at once") {
+  const std::string said =
+      said_of_mesh(sheet + "v 5 5 5\nf 1 2 5\nf 1 1 2\nv 0 0 1\nf 1 11 5\nv 0 0 2\nv 1 0 2\nf 9 12 13\n");
+  for (const std::string fault :
+       {"1 vertex belongs to no triangle: 9", "1 triangle repeats a vertex: 9",
+        "1 triangle has the same vertices as another: 8 ", "1 edge has more than two triangles: (0, 4)",
+        "1 vertex joins separate fans of triangles: 8 of 2 fans"})
+    CHECK_THAT(said, Catch::Matchers::Contains(fault));
+  CHECK(std::count(said.begin(), said.end(), '\n') == 5);
+}
+
+TEST_CASE("a cushion that is flat at rest is valid") {
+  std::string cushion;  // the sheet's border, its middle twice
+  for (const char* middle : {"1 1 0", "1 1 0"}) cushion += "v " + std::string(middle) + "\n";
+  cushion += "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\n";
+  for (int k = 0; k < 4; ++k) {
+    const std::string a = std::to_string(3 + k), b = std::to_string(3 + (k + 1) % 4);
+    cushion += "f 1 " + a + " " + b + "\nf 2 " + b + " " + a + "\n";
+  }
+  const Scratch folder;
+  folder.write("cloth.obj", cushion);
+  folder.write("e.yaml", experiment_with("cloth.obj"));
+  const Ended ended = drape_with("check e.yaml --set contact=none --set refiner=midpoint", folder.path);
+  INFO(ended.err);
+  CHECK(ended.exit_code == 0);
 }
 
 TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
@@ -120,26 +147,26 @@ TEST_CASE("bending for flat rest shapes names where a mesh file is curved") {
 }
 
 TEST_CASE("few faults are listed for any number in a mesh") {
-  std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
-  for (int k = 0; k < 200000; ++k) mesh += " 1 2 3";
+  std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0";
+  for (int k = 0; k < 200000; ++k) mesh += "\nf 1 2 3";
   const std::string said = said_of_mesh(mesh + "\n");
   CHECK(said.size() < 10000);
-  CHECK_THAT(said, Catch::Matchers::Contains("in/cloth.obj: and ") &&
-                       Catch::Matchers::EndsWith("more faults like these\n"));
+  CHECK_THAT(said, Catch::Matchers::Contains(
+                       "in/cloth.obj: 199999 triangles have the same vertices as another: 1 "));
 
   mesh = "v 0 0 0\nv 1 0 0\n";
   for (int k = 0; k < 1000; ++k)
     mesh += "v " + std::to_string(k) + " 1 " + std::to_string(k) + "\nf 1 2 -1\n";
   CHECK_THAT(said_of_mesh(mesh),
-             Catch::Matchers::Contains(
-                 "edge (0, 1) has 1000 triangles: 0, 1, 2, 3, 4, 5, 6, 7, … (counted from 0)\n"));
+             Catch::Matchers::Contains("1 edge has more than two triangles: (0, 1) in triangles 0, 1, 2, 3, "
+                                       "4, 5, 6, 7, … (counted from 0); "));
 }
 
 TEST_CASE("a mesh whose squares overflow is not said to have no area") {
   CHECK(said_of_mesh(replaced(sheet, "v 1 1 0\n", "v 1 1e100 0\n")) ==
-        "error: in/e.yaml:2:8: in/cloth.obj: vertex 4 (counted from 0) has a coordinate of 1e+100 m; at most "
-        "1e+09 m can "
-        "be computed with\n");
+        "error: in/e.yaml:2:8: in/cloth.obj: 1 vertex has too large a coordinate: 4 with 1e+100 m (counted "
+        "from "
+        "0); at most 1e+09 m can be computed with: is the file in metres?\n");
 }
 
 TEST_CASE("a pipe or a device in place of a mesh is refused without blocking") {

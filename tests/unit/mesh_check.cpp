@@ -1,4 +1,6 @@
+#include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "core/kernel/mesh/check.h"
@@ -46,20 +48,20 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
   SECTION("index out of range") {
     mesh.triangles(1, 2) = 4;
     append_triangle(mesh, -1, 1, 3);
-    CHECK(check_mesh(mesh) == Faults{"triangle 1 (2, 1, 4) names vertex 4, but vertices go from 0 to 3",
-                                     "triangle 2 (-1, 1, 3) names vertex -1, but vertices go from 0 to 3"});
+    CHECK(check_mesh(mesh) == Faults{"2 triangles name a vertex that is not there: 1 (2, 1, 4), 2 (-1, 1, 3) "
+                                     "(counted from 0); vertices go from 0 to 3"});
   }
   SECTION("coordinate that is not finite") {
     mesh.vertices(1, 2) = std::numeric_limits<double>::quiet_NaN();
     mesh.vertices(3, 0) = std::numeric_limits<double>::infinity();
-    CHECK(check_mesh(mesh) == Faults{"vertex 1 (counted from 0) has a coordinate that is not finite",
-                                     "vertex 3 (counted from 0) has a coordinate that is not finite"});
+    CHECK(check_mesh(mesh) == Faults{"2 vertices have a coordinate that is not finite: 1, 3 (counted from "
+                                     "0); write the file again"});
   }
   SECTION("coordinates too large, or a mesh too small, to be computed with") {
     mesh.vertices(1, 2) = -1e30;
     CHECK(check_mesh(mesh) ==
-          Faults{
-              "vertex 1 (counted from 0) has a coordinate of 1e+30 m; at most 1e+09 m can be computed with"});
+          Faults{"1 vertex has too large a coordinate: 1 with 1e+30 m (counted from 0); at most 1e+09 m can "
+                 "be computed with: is the file in metres?"});
     mesh.vertices = strip().vertices * 1e-30;
     CHECK(check_mesh(mesh) == Faults{"the mesh is 1.41e-30 m across; at least 1e-09 m can be computed with"});
     mesh.vertices = strip().vertices * 1e8;
@@ -77,54 +79,160 @@ TEST_CASE("every fault is one line that names the element", "[check]") {
   }
   SECTION("vertex without triangle") {
     append_vertex(mesh, 5, 5, 5);
-    CHECK(check_mesh(mesh) == Faults{"vertex 4 belongs to no triangle (counted from 0)"});
+    CHECK(check_mesh(mesh) == Faults{"1 vertex belongs to no triangle: 4 (counted from 0); remove them"});
   }
   SECTION("repeated index") {
     append_triangle(mesh, 1, 3, 1);
-    CHECK(check_mesh(mesh) == Faults{"triangle 2 (1, 3, 1) repeats a vertex (counted from 0)"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"1 triangle repeats a vertex: 2 (1, 3, 1) (counted from 0); remove them"});
   }
   SECTION("no area, at any scale") {
     const double scale = GENERATE(1e-6, 1.0, 1e6);
     mesh.vertices.row(3) << 0.5, 0.5, 1;  // on the edge (1, 2)
     mesh.vertices *= scale;
-    CHECK(check_mesh(mesh) == Faults{"triangle 1 (2, 1, 3) has no area (counted from 0)"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"1 triangle has no area: 1 (2, 1, 3) (counted from 0); move their vertices "
+                 "apart, or remove them"});
     mesh.vertices.row(3) += scale * Eigen::RowVector3d(1e-9, 0, 0);
     CHECK(check_mesh(mesh).empty());
   }
   SECTION("edge with three triangles") {
     append_vertex(mesh, 0, 0, 2);
     append_triangle(mesh, 1, 2, 4);
-    CHECK(check_mesh(mesh) == Faults{"edge (1, 2) has 3 triangles: 0, 1, 2 (counted from 0)"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"1 edge has more than two triangles: (1, 2) in triangles 0, 1, 2 (counted "
+                 "from 0); a sheet has one or two at each edge: remove those between its "
+                 "sides, or cut it there"});
   }
   SECTION("inverted triangle") {
     mesh.triangles.row(1) << 1, 2, 3;
-    CHECK(check_mesh(mesh) == Faults{"edge (1, 2) runs in the same direction in triangles 0 and 1 (counted "
-                                     "from 0): one of them is inverted"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"1 edge runs in the same direction in both triangles: (1, 2) in triangles "
+                 "0, 1 (counted from 0); turn one side over, so that all triangles have "
+                 "the same front side"});
   }
   SECTION("bow-tie") {
     append_vertex(mesh, 2, 1, 1);
     append_vertex(mesh, 2, 2, 1);
     append_triangle(mesh, 3, 4, 5);
-    CHECK(check_mesh(mesh) == Faults{"vertex 3 joins 2 separate fans of triangles (counted from 0)"});
+    CHECK(check_mesh(mesh) ==
+          Faults{"1 vertex joins separate fans of triangles: 3 of 2 fans (counted from 0); "
+                 "give every fan a vertex of its own, or join the fans along an edge"});
   }
   SECTION("duplicate triangle") {
     append_triangle(mesh, 1, 3, 2);
     CHECK(check_mesh(mesh) ==
-          Faults{"triangle 2 (1, 3, 2) has the same vertices as triangle 1 (counted from 0)",
-                 "edge (1, 2) has 3 triangles: 0, 1, 2 (counted from 0)",
-                 "edge (1, 3) runs in the same direction in triangles 1 and 2 (counted from 0): one of them "
-                 "is inverted",
-                 "edge (2, 3) runs in the same direction in triangles 1 and 2 (counted from 0): one of them "
-                 "is inverted"});
+          Faults{"1 triangle has the same vertices as another: 2 (1, 3, 2) as 1 (counted from 0); remove one "
+                 "of each two"});
   }
-  SECTION("flat mesh that folds over") {
-    mesh.vertices.col(2).setZero();
-    CHECK(check_mesh(mesh).empty());
-    append_vertex(mesh, 0.2, 0.2, 0);
-    append_triangle(mesh, 3, 1, 4);  // shares the edge (1, 3) rightly but lies on the other triangles
+  SECTION("the same kind often: its number and a few examples") {
+    for (int k = 0; k < 100; ++k) append_vertex(mesh, k, 5, 5);
+    append_triangle(mesh, 1, 3, 1);
     CHECK(check_mesh(mesh) ==
-          Faults{"triangle 2 (3, 1, 4) faces the other way than most of this flat mesh (counted from 0)"});
+          Faults{"100 vertices belong to no triangle: 4, 5, 6, 7, 8, … (counted from 0); remove them",
+                 "1 triangle repeats a vertex: 2 (1, 3, 1) (counted from 0); remove them"});
   }
+}
+
+namespace {
+
+/// A flat grid of 5 × 5 vertices.
+TriangleMesh flat_sheet() { return grid({1, 1}, 5, 5, Diagonals::one_way); }
+
+/// Two flat sheets at the same place, joined along `joined` of the first one's vertices; the second faces
+/// down.
+TriangleMesh flat_cover(const TriangleMesh& sheet, const std::vector<int>& joined) {
+  TriangleMesh mesh = sheet;
+  std::vector<int> number(sheet.vertices.rows(), -1);
+  for (const int v : joined) number[v] = v;
+  for (int v = 0; v < sheet.vertices.rows(); ++v)
+    if (number[v] < 0) {
+      number[v] = static_cast<int>(mesh.vertices.rows());
+      append_vertex(mesh, sheet.vertices(v, 0), sheet.vertices(v, 1), 0);
+    }
+  for (const auto& t : sheet.triangles.rowwise())
+    append_triangle(mesh, number[t[0]], number[t[2]], number[t[1]]);
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("shapes that are flat at rest are valid: a cushion, a folded sheet, a sheet that faces down",
+          "[check]") {
+  const TriangleMesh sheet = flat_sheet();
+  CHECK(check_mesh(flat_cover(sheet, {0, 5, 10, 15, 20})).empty());
+  TriangleMesh hexagon;
+  append_vertex(hexagon, 0, 0, 0);
+  for (int k = 0; k < 6; ++k) append_vertex(hexagon, std::cos(k * M_PI / 3), std::sin(k * M_PI / 3), 0);
+  for (int k = 0; k < 6; ++k) append_triangle(hexagon, 0, 1 + k, 1 + (k + 1) % 6);
+  CHECK(check_mesh(flat_cover(hexagon, {1, 2, 3, 4, 5, 6})).empty());
+  TriangleMesh down = sheet;
+  down.triangles.col(1).swap(down.triangles.col(2));
+  CHECK(check_mesh(down).empty());
+  TriangleMesh strip_over = strip();
+  strip_over.vertices.col(2).setZero();
+  append_vertex(strip_over, 0.2, 0.2, 0);
+  append_triangle(strip_over, 3, 1, 4);
+  CHECK(check_mesh(strip_over).empty());
+}
+
+TEST_CASE("a vertex of a flat sheet that lies beyond its neighbours turns triangles over", "[check]") {
+  TriangleMesh mesh = flat_sheet();
+  mesh.vertices.row(12) << 0.85, 0.55, 0;  // its neighbour is at 0.75, 0.5
+  const Faults faults = check_mesh(mesh);
+  REQUIRE(faults.size() == 1);
+  CHECK_THAT(faults[0],
+             Catch::Contains(" overlap those around a vertex: each faces the other way than they do: ") &&
+                 Catch::Contains("(12, ") &&
+                 Catch::EndsWith("; move its vertices to where no triangles overlap"));
+}
+
+TEST_CASE("a cloth whose triangles are not joined is to be welded", "[check]") {
+  const TriangleMesh sheet = flat_sheet();
+  const int corners = GENERATE(3, 4);  // triangles, or squares, with vertices of their own
+  TriangleMesh soup;
+  for (int t = 0; t < sheet.triangles.rows(); ++t) {
+    const int first = static_cast<int>(soup.vertices.rows());
+    const bool joins = corners == 4 && t % 2 == 1;
+    std::array<int, 3> v{};
+    for (int k = 0; k < 3; ++k) {
+      v[k] = -1;
+      for (int old = first - 3; joins && old < first; ++old)
+        if (soup.vertices.row(old) == sheet.vertices.row(sheet.triangles(t, k))) v[k] = old;
+      if (v[k] >= 0) continue;
+      v[k] = static_cast<int>(soup.vertices.rows());
+      const auto p = sheet.vertices.row(sheet.triangles(t, k));
+      append_vertex(soup, p[0], p[1], p[2]);
+    }
+    append_triangle(soup, v[0], v[1], v[2]);
+  }
+  CHECK(check_mesh(soup) ==
+        Faults{"32 triangles share no vertices, but lie edge to edge (a triangle soup); weld "
+               "it: merge the vertices that are at the same place"});
+  // Two sheets on one another are two layers.
+  CHECK(check_mesh(flat_cover(sheet, {})).empty());
+}
+
+TEST_CASE("a vertex within an edge of the triangle beside it is a T-junction", "[check]") {
+  TriangleMesh mesh;  // a square whose lower half has a vertex in the middle of the diagonal
+  mesh.vertices.resize(5, 3);
+  mesh.vertices << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 0;
+  mesh.triangles.resize(3, 3);
+  mesh.triangles << 0, 1, 4, 1, 2, 4, 0, 2, 3;
+  const double angle = GENERATE(0, 0.4);
+  for (auto x : mesh.vertices.rowwise()) x = Eigen::RowVector3d(x[0] * cos(angle), x[1], x[0] * sin(angle));
+  const Faults faults = check_mesh(mesh);
+  REQUIRE(faults.size() == 2);
+  CHECK_THAT(faults[0],
+             Catch::Contains("2 vertices join separate fans of triangles: 0 of 2 fans, 2 of 2 fans"));
+  CHECK(faults[1] ==
+        "1 border vertex lies inside a border edge (T-junctions): 4 in (0, 2) (counted from 0); the "
+        "cloth would open there: split the edge's triangle at the vertex");
+  // In another part of the cloth the vertex is that of another sheet.
+  mesh.triangles.row(2) << 5, 6, 3;
+  append_vertex(mesh, 0, 0, 0);
+  append_vertex(mesh, cos(angle), 1, sin(angle));
+  CHECK(check_mesh(mesh).empty());
 }
 
 TEST_CASE("the inner edge of a fan closed around a vertex makes no bow-tie", "[check]") {

@@ -6,54 +6,35 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/extent.h"
-#include "core/kernel/mesh/half_edges.h"
+#include "core/kernel/mesh/flat_overlaps.h"
+#include "core/kernel/mesh/mesh_faults.h"
+#include "core/kernel/mesh/unjoined_borders.h"
 
 namespace drape {
 namespace {
 
-/// The first faults, and how many more there are.
-class Faults {
- public:
-  void push_back(std::string fault) {
-    if (listed_.size() < most_listed)
-      listed_.push_back(std::move(fault));
-    else
-      ++more_;
-  }
-  [[nodiscard]] bool empty() const { return listed_.empty(); }
-  std::vector<std::string> all() && {
-    if (more_ > 0) listed_.push_back("and " + std::to_string(more_) + " more faults like these");
-    return std::move(listed_);
-  }
-
- private:
-  static constexpr std::size_t most_listed = 20;
-  std::vector<std::string> listed_;
-  std::size_t more_ = 0;
-};
+constexpr std::size_t most_examples = 5;  // of each kind of fault
 
 std::string text(int number) { return std::to_string(number); }
 
 /// Ends a text with indices: a mesh file's own, and messages with its lines, may count from 1.
 constexpr const char* from_0 = " (counted from 0)";
 
-std::string triangle_name(const Triangles& triangles, int t) {
-  return "triangle " + text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
+std::string triangle_text(const Triangles& triangles, int t) {
+  return text(t) + " (" + text(triangles(t, 0)) + ", " + text(triangles(t, 1)) + ", " +
          text(triangles(t, 2)) + ")";
 }
 
-std::string edge_name(const HalfEdge& e) {
-  return "edge (" + text(e.smaller()) + ", " + text(e.larger()) + ")";
-}
-
-bool repeats_vertex(const Triangles& triangles, int t) {
-  const auto v = triangles.row(t);
-  return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+std::string edge_text(const FaultyEdge& edge) {
+  constexpr std::size_t most_named = 8;
+  std::string names = "(" + text(edge.smaller) + ", " + text(edge.larger) + ") in triangles";
+  for (std::size_t k = 0; k < std::min(edge.triangles.size(), most_named); ++k)
+    names += (k == 0 ? " " : ", ") + text(edge.triangles[k]);
+  return names + (edge.triangles.size() > most_named ? ", …" : "");
 }
 
 std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, int t) {
@@ -61,143 +42,120 @@ std::array<Eigen::Vector3d, 3> corners(const TriangleMesh& mesh, int t) {
   return {mesh.vertices.row(v[0]), mesh.vertices.row(v[1]), mesh.vertices.row(v[2])};
 }
 
-bool check_indices(const TriangleMesh& mesh, Faults& faults) {
-  const int n = static_cast<int>(mesh.vertices.rows());
-  bool in_range = true;
-  std::vector<char> used(n, 0);
-  for (int t = 0; t < mesh.triangles.rows(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const int v = mesh.triangles(t, k);
-      if (v >= 0 && v < n) {
-        used[v] = 1;
-        continue;
-      }
-      faults.push_back(triangle_name(mesh.triangles, t) + " names vertex " + text(v) +
-                       ", but vertices go from 0 to " + text(n - 1));
-      in_range = false;
-    }
-  for (int v = 0; v < n; ++v)
-    if (!used[v]) faults.push_back("vertex " + text(v) + " belongs to no triangle" + from_0);
-  return in_range;
-}
-
-void check_shapes(const TriangleMesh& mesh, Faults& faults) {
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    if (repeats_vertex(mesh.triangles, t)) {
-      faults.push_back(triangle_name(mesh.triangles, t) + " repeats a vertex" + from_0);
-      continue;
-    }
-    const auto [a, b, c] = corners(mesh, t);
-    const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-    if ((b - a).cross(c - a).norm() <= smallest_height * longest)  // false where a coordinate is NaN
-      faults.push_back(triangle_name(mesh.triangles, t) + " has no area" + from_0);
-  }
-}
-
-void check_duplicates(const Triangles& triangles, Faults& faults) {
-  std::vector<std::pair<std::array<int, 3>, int>> sorted;
-  for (int t = 0; t < triangles.rows(); ++t) {
-    std::array<int, 3> v{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
-    std::sort(v.begin(), v.end());
-    sorted.emplace_back(v, t);
-  }
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t i = 1; i < sorted.size(); ++i)
-    if (sorted[i].first == sorted[i - 1].first)
-      faults.push_back(triangle_name(triangles, sorted[i].second) + " has the same vertices as triangle " +
-                       text(sorted[i - 1].second) + from_0);
-}
-
-/// Sets of triangle corners that are connected across edges; each set is a fan.
-class Fans {
- public:
-  explicit Fans(int corner_count) : parent_(corner_count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int i, int j) { parent_[find(i)] = find(j); }
-
- private:
-  std::vector<int> parent_;
+/// How a kind of fault reads: "3 triangles have no area: 4 (0, 1, 2), … (counted from 0); remove them".
+struct Wording {
+  const char *one, *many, *fault, *remedy;
 };
 
-/// Corner of the half-edge's triangle at its start or end vertex.
-int corner_at(int half_edge, bool end) {
-  return half_edge - half_edge % 3 + (half_edge % 3 + (end ? 2 : 1)) % 3;
-}
+/// A line for each kind of fault, with a few examples.
+class FaultLines {
+ public:
+  explicit FaultLines(std::vector<std::string>& lines) : lines_(lines) {}
 
-void check_edge(const Triangles& triangles, const std::vector<int>& sides, Faults& faults) {
-  const HalfEdge e = HalfEdge::of(triangles, sides[0]);
-  if (sides.size() > 2) {
-    constexpr std::size_t most_named = 8;
-    std::string names;
-    for (std::size_t k = 0; k < std::min(sides.size(), most_named); ++k)
-      names += (names.empty() ? " " : ", ") + text(sides[k] / 3);
-    if (sides.size() > most_named) names += ", …";
-    faults.push_back(edge_name(e) + " has " + text(static_cast<int>(sides.size())) + " triangles:" + names +
-                     from_0);
-  } else if (sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from) {
-    faults.push_back(edge_name(e) + " runs in the same direction in triangles " + text(sides[0] / 3) +
-                     " and " + text(sides[1] / 3) + from_0 + ": one of them is inverted");
-  }
-}
-
-void check_connectivity(const Triangles& triangles, int vertex_count, Faults& faults) {
-  std::vector<int> order = half_edges_by_edge(triangles, vertex_count);
-  std::erase_if(order, [&](int h) { return repeats_vertex(triangles, h / 3); });
-  Fans fans(static_cast<int>(3 * triangles.rows()));
-  std::vector<int> sides;
-  for (std::size_t i = 0; i < order.size(); i += sides.size()) {
-    const HalfEdge e = HalfEdge::of(triangles, order[i]);
-    sides.clear();
-    for (std::size_t j = i; j < order.size() && HalfEdge::of(triangles, order[j]).same_edge(e); ++j)
-      sides.push_back(order[j]);
-    check_edge(triangles, sides, faults);
-    for (int h : sides) {
-      const bool same_direction = HalfEdge::of(triangles, h).from == e.from;
-      fans.unite(corner_at(h, !same_direction), corner_at(sides[0], false));
-      fans.unite(corner_at(h, same_direction), corner_at(sides[0], true));
-    }
+  template <class Elements, class Text>
+  void add(const Elements& elements, const Wording& wording, const Text& text_of) {
+    if (elements.empty()) return;
+    std::string line = std::to_string(elements.size()) + " " +
+                       (elements.size() == 1 ? wording.one : wording.many) + wording.fault;
+    for (std::size_t k = 0; k < std::min(elements.size(), most_examples); ++k)
+      line += (k == 0 ? ": " : ", ") + text_of(elements[k]);
+    if (elements.size() > most_examples) line += ", …";
+    lines_.push_back(line + from_0 + "; " + wording.remedy);
   }
 
-  std::vector<int> fan_count(vertex_count, 0);
-  for (int c = 0; c < 3 * triangles.rows(); ++c)
-    if (fans.find(c) == c && !repeats_vertex(triangles, c / 3)) ++fan_count[triangles(c / 3, c % 3)];
-  for (int v = 0; v < vertex_count; ++v)
-    if (fan_count[v] > 1)
-      faults.push_back("vertex " + text(v) + " joins " + text(fan_count[v]) + " separate fans of triangles" +
-                       from_0);
+ private:
+  std::vector<std::string>& lines_;
+};
+
+/// Appends the triangles that name a vertex out of range. Returns whether all are in range.
+bool check_indices(const TriangleMesh& mesh, std::vector<std::string>& lines) {
+  const int n = static_cast<int>(mesh.vertices.rows());
+  std::vector<int> faulty;
+  for (int t = 0; t < mesh.triangles.rows(); ++t)
+    if (mesh.triangles.row(t).minCoeff() < 0 || mesh.triangles.row(t).maxCoeff() >= n) faulty.push_back(t);
+  const std::string range = "vertices go from 0 to " + text(n - 1);
+  FaultLines(lines).add(faulty,
+                        {"triangle names", "triangles name", " a vertex that is not there", range.c_str()},
+                        [&](int t) { return triangle_text(mesh.triangles, t); });
+  return faulty.empty();
 }
 
-void check_flat_orientation(const TriangleMesh& mesh, Faults& faults) {
-  if (!(mesh.vertices.col(2).array() == 0).all()) return;
-  std::vector<int> up, down;
-  for (int t = 0; t < mesh.triangles.rows(); ++t) {
-    const auto [a, b, c] = corners(mesh, t);
-    const double z = (b - a).cross(c - a).z();
-    if (z > 0) up.push_back(t);
-    if (z < 0) down.push_back(t);
+void check_elements(const MeshFaults& faults, const Triangles& triangles, FaultLines& lines) {
+  const auto triangle = [&](int t) { return triangle_text(triangles, t); };
+  lines.add(faults.loose_vertices, {"vertex belongs", "vertices belong", " to no triangle", "remove them"},
+            text);
+  lines.add(faults.repeating_triangles, {"triangle repeats", "triangles repeat", " a vertex", "remove them"},
+            triangle);
+  lines.add(faults.empty_triangles,
+            {"triangle has", "triangles have", " no area", "move their vertices apart, or remove them"},
+            triangle);
+  lines.add(faults.doubled_triangles,
+            {"triangle has", "triangles have", " the same vertices as another", "remove one of each two"},
+            [&](const MeshFaults::Pair& p) { return triangle(p.element) + " as " + text(p.other); });
+}
+
+void check_connectivity(const MeshFaults& faults, FaultLines& lines) {
+  lines.add(faults.crowded_edges,
+            {"edge has", "edges have", " more than two triangles",
+             "a sheet has one or two at each edge: remove those between its sides, or cut it there"},
+            edge_text);
+  lines.add(faults.inverted_edges,
+            {"edge runs", "edges run", " in the same direction in both triangles",
+             "turn one side over, so that all triangles have the same front side"},
+            edge_text);
+  lines.add(faults.shared_vertices,
+            {"vertex joins", "vertices join", " separate fans of triangles",
+             "give every fan a vertex of its own, or join the fans along an edge"},
+            [](const MeshFaults::Pair& p) { return text(p.element) + " of " + text(p.other) + " fans"; });
+}
+
+/// Appends what shows that triangles beside one another are not joined.
+void check_borders(const TriangleMesh& mesh, std::vector<std::string>& lines) {
+  if (is_soup(mesh)) {
+    lines.push_back(
+        text(static_cast<int>(mesh.triangles.rows())) +
+        " triangles share no vertices, but lie edge to edge (a triangle soup); weld it: merge the "
+        "vertices that are at the same place");
+    return;
   }
-  for (int t : up.size() < down.size() ? up : down)
-    faults.push_back(triangle_name(mesh.triangles, t) + " faces the other way than most of this flat mesh" +
-                     from_0);
+  FaultLines(lines).add(t_junctions(mesh),
+                        {"border vertex lies", "border vertices lie", " inside a border edge (T-junctions)",
+                         "the cloth would open there: split the edge's triangle at the vertex"},
+                        [](const TJunction& j) {
+                          return text(j.vertex) + " in (" + text(j.edge[0]) + ", " + text(j.edge[1]) + ")";
+                        });
+}
+
+void check_overlaps(const TriangleMesh& mesh, std::vector<std::string>& lines) {
+  FaultLines(lines).add(flat_overlaps(mesh),
+                        {"triangle of this flat mesh overlaps", "triangles of this flat mesh overlap",
+                         " those around a vertex: each faces the other way than they do",
+                         "move its vertices to where no triangles overlap"},
+                        [&](int t) { return triangle_text(mesh.triangles, t); });
 }
 
 }  // namespace
 
 std::vector<std::string> check_coordinates(const Positions& x) {
   constexpr double largest_rounding = 1e-6;  // of a coordinate, relative to the diagonal
-  Faults faults;
+  std::vector<std::string> faults;
+  std::vector<int> not_finite, too_large;
   for (int v = 0; v < x.rows(); ++v) {
     const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(largest))
-      faults.push_back("vertex " + text(v) + from_0 + " has a coordinate that is not finite");
+      not_finite.push_back(v);
     else if (largest > largest_coordinate)
-      faults.push_back("vertex " + text(v) + from_0 + " has a coordinate of " + three_digits(largest) +
-                       " m; at most " + three_digits(largest_coordinate) + " m can be computed with");
+      too_large.push_back(v);
   }
-  if (x.rows() == 0 || !faults.empty()) return std::move(faults).all();
+  const std::string at_most =
+      "at most " + three_digits(largest_coordinate) + " m can be computed with: is the file in metres?";
+  FaultLines lines(faults);
+  lines.add(not_finite,
+            {"vertex has", "vertices have", " a coordinate that is not finite", "write the file again"},
+            text);
+  lines.add(too_large, {"vertex has", "vertices have", " too large a coordinate", at_most.c_str()},
+            [&](int v) { return text(v) + " with " + three_digits(x.row(v).cwiseAbs().maxCoeff()) + " m"; });
+  if (x.rows() == 0 || !faults.empty()) return faults;
   const double diagonal = bounding_box_diagonal(x);
   const double distance = x.cwiseAbs().maxCoeff();
   const double rounding = distance * std::numeric_limits<double>::epsilon();
@@ -208,23 +166,30 @@ std::vector<std::string> check_coordinates(const Positions& x) {
     faults.push_back("the mesh is " + three_digits(diagonal) + " m across and " + three_digits(distance) +
                      " m from the origin, where rounding moves vertices by " + three_digits(rounding) +
                      " m; move it nearer");
-  return std::move(faults).all();
+  return faults;
 }
 
 std::vector<std::string> check_mesh(const TriangleMesh& mesh) {
-  Faults faults;
-  if (mesh.vertices.rows() == 0) faults.push_back("the mesh has no vertices");
-  if (mesh.triangles.rows() == 0) faults.push_back("the mesh has no triangles");
-  if (!check_indices(mesh, faults) || mesh.triangles.rows() == 0) return std::move(faults).all();
-  if (const std::vector<std::string> coordinates = check_coordinates(mesh.vertices); !coordinates.empty()) {
-    for (const std::string& fault : coordinates) faults.push_back(fault);
-    return std::move(faults).all();
-  }
-  check_shapes(mesh, faults);
-  check_duplicates(mesh.triangles, faults);
-  check_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), faults);
-  check_flat_orientation(mesh, faults);
-  return std::move(faults).all();
+  std::vector<std::string> lines;
+  if (mesh.vertices.rows() == 0) lines.push_back("the mesh has no vertices");
+  if (mesh.triangles.rows() == 0) lines.push_back("the mesh has no triangles");
+  if (!check_indices(mesh, lines)) return lines;
+  const std::vector<std::string> coordinates = check_coordinates(mesh.vertices);
+  const bool is_sound = coordinates.empty();  // elsewise no shape can be computed
+  lines.insert(lines.end(), coordinates.begin(), coordinates.end());
+
+  MeshFaults faults = MeshFaults::of_elements(mesh);
+  if (!is_sound) faults.empty_triangles.clear();
+  std::vector<char> removed(mesh.triangles.rows(), 0);  // by the remedy of another fault
+  for (const int t : faults.repeating_triangles) removed[t] = 1;
+  for (const MeshFaults::Pair& pair : faults.doubled_triangles) removed[pair.element] = 1;
+  faults.find_connectivity(mesh.triangles, static_cast<int>(mesh.vertices.rows()), removed);
+  FaultLines all(lines);
+  check_elements(faults, mesh.triangles, all);
+  check_connectivity(faults, all);
+  if (is_sound) check_borders(mesh, lines);
+  if (lines.empty()) check_overlaps(mesh, lines);
+  return lines;
 }
 
 double smallest_angle(const TriangleMesh& mesh) {

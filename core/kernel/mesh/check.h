@@ -7,16 +7,13 @@
 
 namespace drape {
 
-/// The faults that keep a mesh from being a cloth or an obstacle, one line each, naming the element
-/// (vertices and triangles count from 0); of many, the first and their number. Empty for a valid mesh.
-/// Checked are:
-/// - an empty mesh; an index out of range; a vertex without triangle; the coordinates, as in
-/// check_coordinates;
-/// - a triangle that repeats a vertex, has no area (height below 1e-12 of its longest edge) or occurs twice;
-/// - an edge with more than two triangles, or two that run along it in the same direction;
-/// - a vertex whose triangles form more than one fan;
-/// - in a flat mesh (all z = 0), a triangle that faces the other way than most.
-/// Connectivity is checked only if all indices are in range.
+/// The faults that keep a mesh from being a cloth: a line for each kind, with its number, examples and a
+/// remedy (vertices and triangles count from 0). Empty for a valid mesh. Checked are:
+/// - an empty mesh; an index out of range, without which nothing more is checked; the coordinates, as in
+///   check_coordinates;
+/// - the elements and the connectivity of mesh_faults.h;
+/// - triangles that are not joined where they meet (unjoined_borders.h);
+/// - in a flat mesh, triangles that overlap those around a vertex (flat_overlaps.h).
 std::vector<std::string> check_mesh(const TriangleMesh& mesh);
 
 /// The faults of coordinates [m]: one that is not finite or too large, a mesh without extent, and a mesh so

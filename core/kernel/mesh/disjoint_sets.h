@@ -1,0 +1,23 @@
+#pragma once
+
+#include <numeric>
+#include <vector>
+
+namespace drape {
+
+/// Sets of the numbers 0 … count - 1, which are united pair by pair.
+class DisjointSets {
+ public:
+  explicit DisjointSets(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  /// The number that stands for i's set.
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int i, int j) { parent_[find(i)] = find(j); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+}  // namespace drape
