@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace drape {
 namespace {
@@ -16,14 +17,17 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   const Eigen::Index n = vertices.rows(), count = surface.edges.rows();
   // The heights of each edge's two triangles, from the edge to the opposite vertex.
   Positions height[2] = {Positions::Zero(count, 3), Positions::Zero(count, 3)};
-  std::vector<char> triangles(count, 0);
+  std::vector<int> triangles(count, 0);
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(count, std::numeric_limits<double>::infinity());
   for (int t = 0; t < surface.triangle_count(); ++t)
     for (int k = 0; k < 3; ++k) {
       const int e = surface.triangle_edges(t, k);
       const Eigen::RowVector3d from = vertices.row(surface.edges(e, 0)),
                                along = vertices.row(surface.edges(e, 1)) - from,
                                to = vertices.row(surface.triangles(t, k)) - from;
-      height[std::min<int>(triangles[e]++, 1)].row(e) = to - to.dot(along) / along.squaredNorm() * along;
+      const int which = std::min(triangles[e]++, 1);
+      height[which].row(e) = to - to.dot(along) / along.squaredNorm() * along;
+      least[e] = std::min(least[e], height[which].row(e).norm());
     }
   Dihedrals d;
   d.edge_angle.resize(count);
@@ -34,10 +38,11 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   d.vertex_on_boundary.assign(n, 0);
   for (int e = 0; e < count; ++e) {
     const Eigen::Vector3d a = height[0].row(e), b = height[1].row(e);
-    d.edge_on_boundary[e] = triangles[e] != 2;
-    d.edge_angle[e] = d.edge_on_boundary[e] ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
+    d.edge_on_boundary[e] = triangles[e] == 1;
+    d.edge_angle[e] = triangles[e] != 2 ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
     if (d.edge_angle[e] < flat_angle) d.edge_angle[e] = 0;
-    if (!d.edge_on_boundary[e]) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
+    if (triangles[e] == 2) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
+    if (triangles[e] > 2) d.edge_curvature[e] = M_PI / least[e];
     for (int k = 0; k < 2; ++k) {
       const int v = surface.edges(e, k);
       d.vertex_angle[v] = std::max(d.vertex_angle[v], d.edge_angle[e]);
@@ -59,14 +64,24 @@ OperatorCoefficients OperatorCoefficients::of(const Surface& surface, const Dihe
   OperatorCoefficients c;
   c.edge.setZero(count);
   c.vertex.setZero(n);
+  std::vector<int> further(count, -1), euler(n, 1);  // triangles of an edge beyond one
+  for (int t = 0; t < surface.triangle_count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      ++further[surface.triangle_edges(t, k)];
+      --euler[surface.triangles(t, k)];
+    }
   for (int e = 0; e < count; ++e) {
-    if (dihedrals.edge_on_boundary[e]) continue;
+    if (further[e] == 0) continue;
     const double reduction = (dhat * dihedrals.edge_curvature[e] - full) / (none - full);
-    c.edge[e] = 1 - std::clamp(reduction, 0.0, 1.0);
-    for (int k = 0; k < 2; ++k)
-      if (const int v = surface.edges(e, k); !dihedrals.vertex_on_boundary[v])
-        c.vertex[v] = std::max(c.vertex[v], c.edge[e]);
+    const double part = 1 - std::clamp(reduction, 0.0, 1.0);
+    c.edge[e] = further[e] * part;
+    for (int k = 0; k < 2; ++k) {
+      const int v = surface.edges(e, k);
+      euler[v] += further[e];
+      c.vertex[v] = std::max(c.vertex[v], part);
+    }
   }
+  for (Eigen::Index v = 0; v < n; ++v) c.vertex[v] *= euler[v];
   return c;
 }
 

@@ -8,9 +8,11 @@ namespace drape {
 
 /// Dihedral angles and curvatures of a surface at its edges and vertices.
 struct Dihedrals {
-  /// Between the normals of each edge's triangles; 0 if flat up to round-off, π on the boundary [rad].
+  /// Between the normals of each edge's triangles; 0 if flat up to round-off; π on the boundary and with more
+  /// than two triangles [rad].
   Eigen::VectorXd edge_angle;
-  Eigen::VectorXd edge_curvature;  ///< angle over the triangles' mean height; 0 on the boundary [1/m]
+  /// Angle over the triangles' mean height, of more than two over their least; 0 on the boundary [1/m].
+  Eigen::VectorXd edge_curvature;
   Eigen::VectorXd vertex_angle, vertex_curvature;  ///< the largest of the vertex's edges
   std::vector<char> edge_on_boundary, vertex_on_boundary;
 
@@ -32,12 +34,15 @@ struct Dihedrals {
 
 /// Coefficients of the improved maximum operator (Li et al. 2023). Triangles have 1; the coefficients of
 /// edges and vertices correct for the points that triangles share. With a function of the distance summed
-/// over triangles, minus edges, plus vertices, a flat region counts once in any triangulation.
+/// over triangles, minus edges, plus vertices, a flat region counts once in any triangulation. The surface
+/// may be any set of triangles: an edge of n triangles has n - 1, a vertex 1 less its triangles plus what its
+/// edges have, by which every point of the surface counts once (inclusion and exclusion).
 struct OperatorCoefficients {
   Eigen::VectorXd edge, vertex;
 
   /// Reduces the coefficients of edges whose radius of curvature is below 4 d̂, to 0 at d̂: around a narrower
-  /// pit the sum could become attractive. A vertex has the largest coefficient of its edges. The nearest
+  /// pit the sum could become attractive. A vertex is reduced as the
+  /// least reduced of its edges. The nearest
   /// feature of a point therefore has a total of at least 1. With equal coefficients the sum is the mean of
   /// those with and without the operator.
   static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double dhat);

@@ -50,7 +50,7 @@ void FeatureSearch::add_edge(const Vector3d& p, int e) {
 }
 
 void FeatureSearch::add_vertex(const Vector3d& p, int v) {
-  if (coefficients_.vertex[v] > 0 && (p - position(v)).squaredNorm() < dhat_ * dhat_)
+  if (coefficients_.vertex[v] != 0 && (p - position(v)).squaredNorm() < dhat_ * dhat_)
     terms_.push_back({Kind::vertex, v, coefficients_.vertex[v]});
 }
 

@@ -20,7 +20,10 @@ void require_indices(const Triangles& triangles, int vertex_count) {
   }
 }
 
-void number_edges(const Triangles& triangles, int vertex_count, Topology& topology) {
+/// Triangles of an edge.
+enum class EdgeTriangles { at_most_two, any };
+
+void number_edges(const Triangles& triangles, int vertex_count, EdgeTriangles allowed, Topology& topology) {
   const std::vector<int> order = half_edges_by_edge(triangles, vertex_count);
   std::vector<int> first(order.size());  // of each half-edge, the earliest on the same edge
   int edge_count = 0;
@@ -45,10 +48,11 @@ void number_edges(const Triangles& triangles, int vertex_count, Topology& topolo
       continue;
     }
     const int e = numbers[h] = numbers[first[h]];
-    if (topology.edge_triangles(e, 1) != -1)
+    if (topology.edge_triangles(e, 1) == -1)
+      topology.edge_triangles(e, 1) = h / 3;
+    else if (allowed == EdgeTriangles::at_most_two)
       throw std::runtime_error("topology: edge (" + std::to_string(topology.edges(e, 0)) + ", " +
                                std::to_string(topology.edges(e, 1)) + ") has more than two triangles");
-    topology.edge_triangles(e, 1) = h / 3;
   }
 }
 
@@ -67,12 +71,10 @@ AdjacencyList transpose(const Table& table, int row_count, Item item) {
   return list;
 }
 
-}  // namespace
-
-Topology Topology::of(const Triangles& triangles, int vertex_count) {
+Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangles allowed) {
   require_indices(triangles, vertex_count);
   Topology topology;
-  number_edges(triangles, vertex_count, topology);
+  number_edges(triangles, vertex_count, allowed, topology);
 
   topology.on_border.assign(vertex_count, 0);
   for (int e = 0; e < topology.edges.rows(); ++e) {
@@ -89,6 +91,16 @@ Topology Topology::of(const Triangles& triangles, int vertex_count) {
     std::sort(neighbours.items.begin() + neighbours.start[v],
               neighbours.items.begin() + neighbours.start[v + 1]);
   return topology;
+}
+
+}  // namespace
+
+Topology Topology::of(const Triangles& triangles, int vertex_count) {
+  return make_topology(triangles, vertex_count, EdgeTriangles::at_most_two);
+}
+
+Topology Topology::of_any(const Triangles& triangles, int vertex_count) {
+  return make_topology(triangles, vertex_count, EdgeTriangles::any);
 }
 
 std::vector<int> Topology::components() const {

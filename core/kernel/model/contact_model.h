@@ -132,6 +132,14 @@ class ContactModel {
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
 };
 
+/// Optional interface of a ContactModel that uses its input otherwise than it stands there, for messages.
+class InputRemarks {
+ public:
+  virtual ~InputRemarks() = default;
+  /// A line each, such as "obstacle scan: dropped 3 loose vertices".
+  virtual std::vector<std::string> input_remarks() const = 0;
+};
+
 /// Optional interface of a ContactModel whose binding is costly, for load stepping.
 class Rebindable {
  public:

@@ -33,12 +33,16 @@ class RefusedParameters : public std::runtime_error {
 };
 
 /// Makes something of every item of a list of parameters. Throws RefusedParameters with the faults of all
-/// items that `make(item, index)` throws for.
+/// items that `make(item, index)` throws for, all of an item's if that is RefusedParameters.
 template <class Items, class Make>
 void for_all_items(const std::string& list, const Items& items, const Make& make) {
   std::vector<ParameterFault> faults;
   for (std::size_t k = 0; k < items.size(); ++k) try {
       make(items[k], k);
+    } catch (const RefusedParameters& refused) {
+      for (const ParameterFault& fault : refused.faults)
+        faults.push_back(
+            {list + "." + std::to_string(k) + (fault.path.empty() ? "" : "." + fault.path), fault.message});
     } catch (const std::exception& error) {
       faults.push_back({list + "." + std::to_string(k), reason_of(error)});
     }

@@ -62,6 +62,13 @@ std::unique_ptr<BoundContact> Ipc::rebind(const Level& level, const Material& ma
   return bind(level, material, rest);
 }
 
+std::vector<std::string> Ipc::input_remarks() const {
+  std::vector<std::string> remarks;
+  for (const ObstacleMeshes& meshes : meshes_)
+    if (!meshes.repair.empty()) remarks.push_back(meshes.repair);
+  return remarks;
+}
+
 }  // namespace drape::ipc
 
 DRAPE_PLUGIN(registry) {

@@ -14,7 +14,7 @@ struct ObstacleTree;
 struct RestCloth;
 
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
-class Ipc final : public ContactModel, public Rebindable {
+class Ipc final : public ContactModel, public Rebindable, public InputRemarks {
  public:
   struct Parameters : ContactParameters {
     bool self_contact = true;
@@ -32,6 +32,8 @@ class Ipc final : public ContactModel, public Rebindable {
   std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const override;
   std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
                                        const BoundContact& before) const override;
+  /// How obstacles were repaired, a line each.
+  std::vector<std::string> input_remarks() const override;
 
  private:
   Ipc(const Parameters& parameters, const Ipc* before);

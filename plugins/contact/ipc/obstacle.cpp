@@ -7,46 +7,32 @@
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/mesh/rotation.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/refused_parameters.h"
 
 namespace drape::ipc {
 namespace {
 
-/// How the triangles of another file differ from those of the first; empty if they do not.
-std::string difference(const Triangles& first, const Triangles& other) {
-  if (first.rows() != other.rows())
-    return "has " + std::to_string(other.rows()) + " triangles and not " + std::to_string(first.rows());
-  for (Eigen::Index t = 0; t < first.rows(); ++t)
-    if (first.row(t) != other.row(t)) return "has other vertices in triangle " + std::to_string(t);
-  return "";
-}
-
-ValidatedMeshes read_animation(const ObstacleParameters& p) {
-  if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
-  ValidatedMeshes frames;
-  for (const std::string& file : p.animation) {
-    frames.push_back(load_validated_mesh(file));
-    if (const auto what = difference(frames[0]->mesh.triangles, frames.back()->mesh.triangles); !what.empty())
-      throw std::runtime_error(file + " " + what + " as " + p.animation[0] +
-                               " has; all files of an animation must have the same triangles");
-  }
-  return frames;
-}
-
-ValidatedMeshes frames_of(const ObstacleParameters& p) {
+LoadedMeshes frames_of(const ObstacleParameters& p) {
   const int named = int(!p.mesh.empty()) + int(p.meshed_shape.has_value()) + int(!p.animation.empty());
   if (named != 1)
     throw std::runtime_error("needs exactly one of \"mesh\", \"meshed_shape\" and \"animation\"");
-  if (p.meshed_shape == "box") return {validated_box()};
-  if (p.meshed_shape == "sphere") return {validated_sphere(p.subdivisions)};
-  return p.animation.empty() ? ValidatedMeshes{load_validated_mesh(p.mesh)} : read_animation(p);
+  if (p.meshed_shape == "box") return {{validated_box()}, {}};
+  if (p.meshed_shape == "sphere") return {{validated_sphere(p.subdivisions)}, {}};
+  if (p.animation.empty()) return load_validated_meshes({p.mesh}, p.strict);
+  if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
+  return load_validated_meshes(p.animation, p.strict);
 }
 
 std::string name_of(const ObstacleParameters& p, int number) {
   return p.name.empty() ? p.meshed_shape.value_or("mesh") + " " + std::to_string(number) : p.name;
 }
 
+std::string fault_text(const std::string& name, const std::string& what) {
+  return "obstacle \"" + name + "\": " + what;
+}
+
 std::runtime_error fault_of(const std::string& name, const std::string& what) {
-  return std::runtime_error("obstacle \"" + name + "\": " + what);
+  return std::runtime_error(fault_text(name, what));
 }
 
 }  // namespace
@@ -58,7 +44,7 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .formerly("file")
       .path()
       .identifies_item()
-      .description("a mesh file (.obj, .off or .ply), relative to this file");
+      .description("a mesh file (.obj, .off, .ply or .stl), relative to this file");
   d.add("meshed_shape", &P::meshed_shape)
       .choices({"box", "sphere"})
       .identifies_item()
@@ -90,6 +76,8 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .at_least(0)
       .at_most(1e6)
       .description("frame of the animation, from 0, interpolated linearly; for a schedule to change");
+  d.add("strict", &P::strict)
+      .description("whether a mesh that a cloth could not have is refused; otherwise it is repaired");
   d.add_section("cages", &P::cages)
       .description("closed surfaces around the obstacle that replace it on coarse levels");
   d.add("scale", &P::scale)
@@ -114,9 +102,15 @@ Positions ObstacleGeometry::local_positions(double frame) const {
 
 ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
   try {
-    ObstacleMeshes meshes{frames_of(p), {}};
+    LoadedMeshes loaded = frames_of(p);
+    ObstacleMeshes meshes{std::move(loaded.meshes), {}, loaded.repair.text()};
+    if (!meshes.repair.empty()) meshes.repair = "obstacle " + name_of(p, number) + ": " + meshes.repair;
     if (p.cages.count > 0) meshes.cages = make_cages(*meshes.frames[0], p.cages);
     return meshes;
+  } catch (const RefusedParameters& refused) {
+    std::vector<ParameterFault> faults = refused.faults;
+    for (ParameterFault& fault : faults) fault.message = fault_text(name_of(p, number), fault.message);
+    throw RefusedParameters(std::move(faults));
   } catch (const std::exception& error) {
     throw fault_of(name_of(p, number), reason_of(error));
   }
@@ -124,7 +118,7 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
 
 bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParameters& b) {
   return a.mesh == b.mesh && a.meshed_shape == b.meshed_shape && a.subdivisions == b.subdivisions &&
-         a.animation == b.animation && a.cages == b.cages;
+         a.animation == b.animation && a.strict == b.strict && a.cages == b.cages;
 }
 
 Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMeshes& meshes, int level) {
@@ -164,7 +158,7 @@ Obstacles Obstacles::of(std::vector<Obstacle> bodies) {
     all.first_vertex.push_back(n + m);
     all.body_friction.push_back(body.friction);
     all.surface.append(Surface::of(body.mesh, body.geometry.frames.empty()
-                                                  ? Topology::of(body.mesh.triangles, m)
+                                                  ? Topology::of_any(body.mesh.triangles, m)
                                                   : body.geometry.frames[0]->topology));
   }
   all.dihedrals = Dihedrals::of(all.surface, all.vertices);

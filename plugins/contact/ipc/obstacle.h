@@ -22,6 +22,7 @@ struct ObstacleParameters : CommonObstacleParameters {
   int subdivisions = 4;
   std::vector<std::string> animation;
   double frame = 0;
+  bool strict = false;  ///< refuse a mesh in place of repairing it
   CageParameters cages;
   double scale = 1;
 
@@ -32,6 +33,7 @@ struct ObstacleParameters : CommonObstacleParameters {
 struct ObstacleMeshes {
   ValidatedMeshes frames;  ///< one mesh, or an animation with the same triangles
   ValidatedMeshes cages;   ///< outermost first
+  std::string repair;      ///< how the mesh was repaired, naming the obstacle; empty if it was not
 
   /// Reads or makes them. Throws std::runtime_error naming the obstacle if its file cannot be read or its
   /// mesh is invalid.

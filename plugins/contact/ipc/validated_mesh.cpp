@@ -7,11 +7,31 @@
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/mesh/primitives.h"
+#include "core/kernel/plugin/refused_parameters.h"
 
 namespace drape::ipc {
 namespace {
 
-namespace fs = std::filesystem;
+/// Throws RefusedParameters with a fault for each line, if there is any.
+void refuse(const std::string& file, const std::vector<std::string>& lines) {
+  std::vector<ParameterFault> faults;
+  for (const std::string& line : lines) faults.push_back({"", file + ": " + line});
+  if (!faults.empty()) throw RefusedParameters(std::move(faults));
+}
+
+/// How the triangles of another frame differ from those of the first; empty if they do not.
+std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
+  if (first.vertices.rows() != other.vertices.rows())
+    return "has " + std::to_string(other.vertices.rows()) + " vertices and not " +
+           std::to_string(first.vertices.rows());
+  if (first.triangles.rows() != other.triangles.rows())
+    return "has " + std::to_string(other.triangles.rows()) + " triangles and not " +
+           std::to_string(first.triangles.rows());
+  for (Eigen::Index t = 0; t < first.triangles.rows(); ++t)
+    if (first.triangles.row(t) != other.triangles.row(t))
+      return "has other vertices in triangle " + std::to_string(t);
+  return "";
+}
 
 bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices.rows() == b.vertices.rows() && a.vertices == b.vertices &&
@@ -21,7 +41,7 @@ bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
 }  // namespace
 
 std::shared_ptr<const ValidatedMesh> ValidatedMesh::of(TriangleMesh mesh) {
-  Topology topology = Topology::of(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
+  Topology topology = Topology::of_any(mesh.triangles, static_cast<int>(mesh.vertices.rows()));
   return std::make_shared<const ValidatedMesh>(ValidatedMesh{std::move(mesh), std::move(topology)});
 }
 
@@ -31,11 +51,24 @@ bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b) {
   });
 }
 
-std::shared_ptr<const ValidatedMesh> load_validated_mesh(const fs::path& file) {
-  TriangleMesh mesh = read_mesh(file);
-  if (const auto faults = check_mesh(mesh); !faults.empty())
-    throw std::runtime_error(file.string() + ": " + faults[0]);
-  return ValidatedMesh::of(std::move(mesh));
+LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, bool strict) {
+  std::vector<TriangleMesh> frames;
+  for (const std::string& file : files) {
+    frames.push_back(read_mesh(file));
+    refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
+    if (const std::string what = difference(frames[0], frames.back()); !what.empty())
+      throw std::runtime_error(file + " " + what + " as " + files[0] +
+                               " has; all files of an animation must have the same triangles");
+  }
+  LoadedMeshes loaded;
+  try {
+    RepairedMesh repaired = repair_mesh(std::move(frames));
+    loaded.repair = repaired.done;
+    for (TriangleMesh& mesh : repaired.frames) loaded.meshes.push_back(ValidatedMesh::of(std::move(mesh)));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(files[0] + ": " + error.what());
+  }
+  return loaded;
 }
 
 std::shared_ptr<const ValidatedMesh> validated_box() { return ValidatedMesh::of(unit_box()); }

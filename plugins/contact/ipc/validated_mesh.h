@@ -1,19 +1,21 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "core/kernel/mesh/repair.h"
 #include "core/kernel/mesh/topology.h"
 
 namespace drape::ipc {
 
-/// A mesh that has passed check_mesh, in local coordinates. Obstacles under different loads share it.
+/// A mesh that contact can take (repair_mesh), in local coordinates. Obstacles under different loads share
+/// it.
 struct ValidatedMesh {
   TriangleMesh mesh;
   Topology topology;
 
-  /// Of a mesh that has passed check_mesh.
+  /// Of a repaired mesh.
   static std::shared_ptr<const ValidatedMesh> of(TriangleMesh mesh);
 };
 
@@ -21,8 +23,14 @@ using ValidatedMeshes = std::vector<std::shared_ptr<const ValidatedMesh>>;
 /// Whether they are the same objects, or have the same vertices and triangles.
 bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b);
 
-/// Reads and checks a mesh file. Throws std::runtime_error naming the file and its first fault.
-std::shared_ptr<const ValidatedMesh> load_validated_mesh(const std::filesystem::path& file);
+/// The meshes of an obstacle's files, and how they were repaired.
+struct LoadedMeshes {
+  ValidatedMeshes meshes;
+  MeshRepair repair;
+};
+/// Reads one mesh file, or the frames of an animation, and repairs them together. A `strict` obstacle is not
+/// repaired. Throws RefusedParameters or std::runtime_error naming the files and their faults.
+LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, bool strict);
 /// unit_box and unit_sphere of core/kernel/mesh/primitives.h.
 std::shared_ptr<const ValidatedMesh> validated_box();
 std::shared_ptr<const ValidatedMesh> validated_sphere(int subdivisions);

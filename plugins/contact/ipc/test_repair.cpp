@@ -1,0 +1,229 @@
+// Obstacles whose meshes no cloth could have: what is dropped, what is kept, and how contact takes it.
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/surface_contacts.h"
+#include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/mesh/io.h"
+#include "core/kernel/plugin/refused_parameters.h"
+#include "plugins/contact/ipc/ipc.h"
+#include "tests/support/command.h"
+#include "tests/support/evaluate.h"
+
+using namespace drape;
+using namespace drape::ipc;
+using Vector = Eigen::Vector3d;
+using Catch::Contains;
+
+namespace {
+
+constexpr double dhat = 0.01;
+
+void append(TriangleMesh& mesh, const std::vector<Vector>& vertices,
+            const std::vector<std::array<int, 3>>& triangles) {
+  for (const Vector& x : vertices) {
+    mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, 3);
+    mesh.vertices.bottomRows(1) = x.transpose();
+  }
+  for (const auto& t : triangles) {
+    mesh.triangles.conservativeResize(mesh.triangles.rows() + 1, 3);
+    mesh.triangles.bottomRows(1) << t[0], t[1], t[2];
+  }
+}
+
+/// A flat sheet of 10 cm with 5 × 5 vertices, 12 the one in its middle.
+TriangleMesh sheet() {
+  TriangleMesh mesh = grid({0.1, 0.1}, 5, 5, Diagonals::one_way);
+  mesh.vertices.rowwise() -= Eigen::RowVector3d(0.05, 0.05, 0);
+  return mesh;
+}
+
+/// The sheet with a wall below its middle row, which shares that row's edges.
+TriangleMesh sheet_with_wall() {
+  TriangleMesh mesh = sheet();
+  for (int k = 0; k < 5; ++k) append(mesh, {{-0.05 + 0.025 * k, 0, -0.05}}, {});
+  for (int k = 0; k < 4; ++k) append(mesh, {}, {{10 + k, 11 + k, 25 + k}, {11 + k, 26 + k, 25 + k}});
+  return mesh;
+}
+
+/// Both sides of the sheet's middle are tips of cones that share it.
+TriangleMesh cones() {
+  TriangleMesh mesh;
+  append(mesh, {{0, 0, 0}}, {});
+  for (const double side : {-1.0, 1.0}) {
+    const int first = static_cast<int>(mesh.vertices.rows());
+    for (int k = 0; k < 6; ++k)
+      append(mesh, {{0.05 * std::cos(k * M_PI / 3), 0.05 * std::sin(k * M_PI / 3), 0.04 * side}},
+             {{0, first + k, first + (k + 1) % 6}});
+  }
+  return mesh;
+}
+
+/// Triangles at random, some of which share vertices or edges.
+TriangleMesh tangle(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> at(-0.02, 0.02);
+  std::uniform_int_distribution<int> which(0, 8);
+  TriangleMesh mesh;
+  for (int v = 0; v < 9; ++v) append(mesh, {{at(random), at(random), at(random)}}, {});
+  for (int t = 0; t < 14; ++t) append(mesh, {}, {{which(random), which(random), which(random)}});
+  return repair_mesh({mesh}).frames[0];
+}
+
+/// One vertex of weight 1 near an obstacle, all of whose triangles are candidates.
+struct Near {
+  Obstacles obstacles;
+  OperatorCoefficients coefficients;
+  std::vector<VertexTriangleCandidate> candidates;
+  Eigen::VectorXd area = Eigen::VectorXd::Ones(1);
+  BarrierParameters parameters;
+
+  explicit Near(const TriangleMesh& mesh) : obstacles(Obstacles::of({{"mesh", mesh, {}}})) {
+    parameters.dhat = dhat;
+    parameters.stiffness = 1 / dhat;
+    coefficients = OperatorCoefficients::of(obstacles.surface, obstacles.dihedrals, dhat);
+    for (int t = 0; t < mesh.triangles.rows(); ++t) candidates.push_back({0, t});
+  }
+  SurfaceContacts contacts(const Vector& p) const {
+    return SurfaceContacts::of(p.transpose(), obstacles, coefficients, candidates, area, 0, dhat);
+  }
+  double value(const Vector& p) const {
+    return make_surface_contacts(contacts(p), parameters)->value(p.transpose());
+  }
+};
+
+ObstacleParameters obstacle(const std::string& file) {
+  ObstacleParameters p;
+  p.name = "scan";
+  p.mesh = file;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("ipc: an obstacle loses what has no surface, and says so once") {
+  const Scratch folder;
+  TriangleMesh mesh = sheet();
+  append(mesh, {{9, 9, 9}, {8, 8, 8}, {7, 7, 7}}, {{0, 6, 1}, {1, 0, 6}, {2, 2, 3}, {0, 1, 2}});
+  append(mesh, {{0, 0, 0.1}, {0.01, 0, 0.1}}, {{12, 28, 29}, {3, 4, 9}});
+  mesh.triangles.bottomRows(1) << 4, 3, 8;  // in the place of a triangle of the sheet, turned over or not
+  const std::string file = (folder / "scan.obj").string();
+  write_mesh(file, mesh);
+  const RepairedMesh repaired = repair_mesh({mesh});
+  CHECK(repaired.frames[0].vertices.rows() == 27);
+  CHECK(repaired.done.loose_vertices == 3);
+  CHECK(repaired.done.empty_triangles == 2);
+  CHECK(repaired.done.doubled_triangles >= 2);
+  CHECK(repaired.done.shared_vertices >= 1);
+  Ipc::Parameters p;
+  p.obstacles = {obstacle(file)};
+  const Ipc model(p);
+  CHECK(model.input_remarks() == std::vector<std::string>{"obstacle scan: " + repaired.done.text()});
+  CHECK_THAT(repaired.done.text(),
+             Contains("dropped 3 loose vertices, ") && Contains("2 triangles without area; kept "));
+
+  // Strict, every fault has a line of its own.
+  p.obstacles[0].strict = true;
+  try {
+    const Ipc refused(p);
+    FAIL("a strict obstacle was repaired");
+  } catch (const RefusedParameters& refused) {
+    CHECK(refused.faults.size() == check_mesh(mesh).size());
+    CHECK(refused.faults.size() >= 4);
+    for (const ParameterFault& fault : refused.faults) {
+      CHECK(fault.path == "obstacles.0");
+      CHECK_THAT(fault.message, Contains("obstacle \"scan\": " + file + ": "));
+    }
+  }
+}
+
+TEST_CASE("ipc: a mesh without faults stays as it is") {
+  const TriangleMesh mesh = sheet();
+  const RepairedMesh repaired = repair_mesh({mesh});
+  CHECK(repaired.frames[0].vertices == mesh.vertices);
+  CHECK(repaired.frames[0].triangles == mesh.triangles);
+  CHECK(repaired.done.text() == "");
+}
+
+TEST_CASE("ipc: the frames of an animation are repaired together") {
+  TriangleMesh first = sheet(), second = sheet();
+  for (TriangleMesh* mesh : {&first, &second})
+    append(*mesh, {{9, 9, 9}, {0, 0, 0}}, {{0, 6, 1}, {12, 13, 26}});
+  second.vertices.col(2).array() += 0.1;
+  first.vertices.row(26) = 0.5 * (first.vertices.row(12) + first.vertices.row(13));
+  second.vertices.row(26) = 0.5 * (second.vertices.row(12) + second.vertices.row(13));
+  const RepairedMesh repaired = repair_mesh({first, second});
+  REQUIRE(repaired.frames.size() == 2);
+  CHECK(repaired.frames[0].triangles == repaired.frames[1].triangles);
+  CHECK(repaired.frames[0].vertices == sheet().vertices);
+  CHECK(repaired.done.empty_triangles == 1);
+  second.vertices(26, 0) += 0.01;
+  second.vertices(26, 1) += 0.01;
+  CHECK_THROWS_WITH(
+      repair_mesh({first, second}),
+      Contains("triangle 33 (counted from 0) has no area in 1 of 2 frames; give it one in all of them"));
+
+  const Scratch folder;
+  write_mesh(folder / "a.obj", first);
+  write_mesh(folder / "b.obj", sheet());
+  ObstacleParameters p;
+  p.animation = {(folder / "a.obj").string(), (folder / "b.obj").string()};
+  CHECK_THROWS_WITH(ObstacleMeshes::of(p, 0), Contains("must have the same triangles"));
+}
+
+TEST_CASE("ipc: a mesh without any area is refused") {
+  TriangleMesh mesh;
+  append(mesh, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}, {0, 0, 1}});
+  CHECK_THROWS_WITH(repair_mesh({mesh}), Contains("no triangle has an area"));
+}
+
+TEST_CASE("ipc: a flat sheet acts as its plane where a wall joins it from below") {
+  TriangleMesh mesh = sheet_with_wall();
+  mesh.vertices *= 10;  // so that its triangles are large against d̂
+  REQUIRE(repair_mesh({mesh}).done.crowded_edges == 4);
+  const Near near(mesh);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> along(-0.6, 0.6), across(-0.015, 0.015), above(1e-6, 1);
+  for (int i = 0; i < 400; ++i) {
+    const Vector p(along(random), i % 3 == 0 ? 0 : across(random), above(random) * dhat);
+    const Vector foot(std::clamp(p.x(), -0.5, 0.5), p.y(), 0);
+    CAPTURE(p.transpose());
+    CHECK(near.value(p) == Approx(barrier((p - foot).norm() / dhat).value).epsilon(1e-9).margin(1e-13));
+  }
+  // Between the wall and the sheet both act, less what they share.
+  for (int i = 0; i < 100; ++i) {
+    const Vector p(0.5 * along(random), 0.3 * dhat + 0.3 * std::abs(across(random)), -above(random) * dhat);
+    const double expected =
+        barrier(p.y() / dhat).value + barrier(-p.z() / dhat).value - barrier(p.tail<2>().norm() / dhat).value;
+    CHECK(near.value(p) == Approx(expected).epsilon(1e-9).margin(1e-13));
+  }
+}
+
+TEST_CASE("ipc: the nearest feature of any triangles counts at least once, and the barrier has no hole") {
+  std::vector<TriangleMesh> meshes = {sheet_with_wall(), cones()};
+  for (unsigned seed = 1; seed < 30; ++seed) meshes.push_back(tangle(seed));
+  std::mt19937 random(7);
+  std::normal_distribution<double> off(0, 1);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    const Near near(meshes[k]);
+    for (int i = 0; i < 200; ++i) {
+      const auto t = meshes[k].triangles.row(i % meshes[k].triangles.rows());
+      const double a = i % 2 ? part(random) : 0, b = i % 3 ? (1 - a) * part(random) : 0;
+      const Vector foot = a * meshes[k].vertices.row(t[0]) + b * meshes[k].vertices.row(t[1]) +
+                          (1 - a - b) * meshes[k].vertices.row(t[2]);
+      const Vector p =
+          foot + 0.3 * std::pow(10, -3 * part(random)) * dhat * Vector(off(random), off(random), off(random));
+      const SurfaceContacts contacts = near.contacts(p);
+      if (contacts.contacts.empty()) continue;
+      const auto nearest = std::ranges::min(contacts.features, {}, &NearestFeature::distance);
+      CAPTURE(k, i, p.transpose(), nearest.distance);
+      CHECK(nearest.coefficient >= 1 - 1e-9);
+      CHECK(near.value(p) >= 0);
+    }
+  }
+}
