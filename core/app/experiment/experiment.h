@@ -33,6 +33,8 @@ struct Experiment {
   const Solver& solver_of(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
   Location location_of(const std::string& key) const;
+  /// What the contact models say of their input, a line each: how an obstacle was repaired.
+  std::vector<std::string> remarks() const;
 };
 
 /// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.

@@ -180,6 +180,14 @@ Location Experiment::location_of(const std::string& key) const {
   return node ? node->where : source.where;
 }
 
+std::vector<std::string> Experiment::remarks() const {
+  std::vector<std::string> all;
+  for (const auto& contact : contacts)
+    if (const auto* remarks = dynamic_cast<const InputRemarks*>(contact.get()))
+      for (std::string& line : remarks->input_remarks()) all.push_back(std::move(line));
+  return all;
+}
+
 void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
   if (e.parameters.cloth.shape == "file" && !e.parameters.cloth.file.empty()) checked_cloth(e, errors);
   if (!e.parameters.start.file.empty()) start_mesh(e, errors);

@@ -101,7 +101,8 @@ std::optional<Verdict> intersection_verdict(const RunData& run) {
 }
 
 std::string troubles(const RunData& run) {
-  std::string items, remarks;
+  std::string items, remarks, on_input;
+  for (const std::string& line : run.remarks) on_input += "<li>" + escape(line) + "</li>\n";
   for (const MethodRecord& method : run.methods) {
     for (const LevelRecord& level : method.levels) {
       const std::string where =
@@ -119,7 +120,8 @@ std::string troubles(const RunData& run) {
   const auto list = [](const std::string& title, const std::string& rows) {
     return rows.empty() ? "" : "<p>" + title + "</p>\n<ul>\n" + rows + "</ul>\n";
   };
-  return list("What did not converge:", items) + list("Remarks on what converged:", remarks);
+  return list("What did not converge:", items) + list("Remarks on what converged:", remarks) +
+         list("Remarks on the input:", on_input);
 }
 
 OptionalNumber final_energy(const RunData& run, const MethodRecord& method) {

@@ -206,6 +206,9 @@ RunData read_run(const std::filesystem::path& folder) {
   if (const Json& obstacles = member_of(json, "obstacles"); obstacles.is_array())
     for (const Json& name : obstacles)
       run.obstacles.push_back(name.is_string() ? name.get<std::string>() : std::string());
+  if (const Json& remarks = member_of(json, "remarks"); remarks.is_array())
+    for (const Json& line : remarks)
+      if (line.is_string()) run.remarks.push_back(line.get<std::string>());
   run.complete = member_of(json, "complete").is_boolean() && member_of(json, "complete").get<bool>();
   run.aborted = text_member(json, "aborted");
   const Json& machine = member_of(json, "machine");

@@ -113,6 +113,7 @@ struct RunData {
   bool complete = false;
   std::string aborted;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
+  std::vector<std::string> remarks;          ///< on the input, such as the repair of an obstacle
   std::vector<std::string> obstacles;        ///< meshes, relative to the folder
   std::vector<DeclaredMetric> metrics;       ///< as declared; plain names if results.json has no declarations
   std::vector<ErrorMeasure> error_measures;  ///< likewise

@@ -39,12 +39,15 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["commit"] = commit();
   results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
+  const std::vector<std::string> remarks = experiment.remarks();
+  if (!remarks.empty()) results_["remarks"] = remarks;
   results_["metrics"] = json_of(declared_metrics(experiment.metrics));
   results_["methods"] = Json::object();
   save();
   write_scene();
   save();
   log({{"event", "run_started"}, {"experiment", p.name}});
+  for (const std::string& line : remarks) log({{"event", "remark"}, {"message", line}});
 }
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,

@@ -262,6 +262,9 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     folder.write_text("config.yaml", begun.config);
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
+    if (options.verbosity != Verbosity::quiet)
+      for (const std::string& line : experiment.remarks())
+        std::fprintf(stderr, "remark: %s\n", printable(line).c_str());
     if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
     begun.files = fingerprints_of_files(config, folder.path());
     return run(experiment, scene, options, folder, recorder, begun, false);
