@@ -4,7 +4,17 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/kernel/linear_algebra/pack.h"
+
 namespace drape {
+
+/// The turn from a dihedral angle at rest to another, in [-π, π]: a hinge that is flat shut at rest, at π or
+/// -π by round-off alone, opens to either side alike.
+template <class T>
+T bend_from(const T& rest, const T& angle) {
+  const T turn = angle - rest;
+  return select(turn > M_PI, turn - 2 * M_PI, select(turn < -M_PI, turn + 2 * M_PI, turn));
+}
 
 /// Signed dihedral angle θ between the normals of triangles (0, 1, 2) and (1, 0, 3), positive if vertex 3
 /// lies behind the first triangle, with its derivatives by e = x₁ - x₀, u = x₂ - x₀ and v = x₃ - x₀. T is

@@ -7,7 +7,7 @@
 
 namespace drape {
 
-/// Discrete hinge c (θ - θ̄)² of the dihedral angle θ. T is double or a Pack.
+/// Discrete hinge c (θ - θ̄)² of the dihedral angle θ, by the shorter turn from θ̄. T is double or a Pack.
 struct HingeKernel {
   static constexpr int vertices = 4;
   static constexpr bool convex = false;
@@ -28,7 +28,7 @@ struct HingeKernel {
 
   template <class T>
   static T value(const Vector<T>* x, const T* rest) {
-    const T bend = angle(x) - rest[1];
+    const T bend = bend_from(rest[1], angle(x));
     return rest[0] * bend * bend;
   }
 
@@ -36,7 +36,7 @@ struct HingeKernel {
   template <class T>
   static T gradient(const Vector<T>* x, const T* rest, Vector<T>* g) {
     const DihedralAngle<T> dihedral(x);
-    const T bend = dihedral.angle() - rest[1];
+    const T bend = bend_from(rest[1], dihedral.angle());
     dihedral.gradient(2.0 * rest[0] * bend, g);
     return rest[0] * bend * bend;
   }
@@ -52,7 +52,7 @@ struct HingeKernel {
   static void hessian(const Vector<T>* x, const T* rest, Eigen::Matrix<T, 9, 9>& h, const Map& map) {
     const DihedralAngle<T> dihedral(x);
     const T scale = 2.0 * rest[0];
-    dihedral.hessian(scale, scale * (dihedral.angle() - rest[1]), h, map);
+    dihedral.hessian(scale, scale * bend_from(rest[1], dihedral.angle()), h, map);
   }
 };
 

@@ -54,6 +54,17 @@ double energy_over_smooth(const Level& level, const Positions& x, double curvatu
 
 }  // namespace
 
+TEST_CASE("hinge: one that is shut at rest opens to either side alike") {
+  for (const double rest_angle : {pi, -pi, 3.0, -3.0}) {
+    const HingeKernel::Rest rest{k, rest_angle};
+    for (const double bend : {0.0, 0.1, -0.1, 0.5, -0.5, 3.0, -3.0}) {
+      const Check::State x = folded(rest_angle + bend);
+      const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
+      CHECK(HingeKernel::value(d, rest.data()) == Approx(k * bend * bend).margin(1e-14));
+    }
+  }
+}
+
 TEST_CASE("hinge: the angle is signed, positive where the second triangle lies behind the first") {
   for (const double angle : {-3.1, -1.0, -1e-9, 0.0, 1e-9, 0.5, 2.0, 3.1})
     CHECK(angle_of(folded(angle)) == Approx(angle).epsilon(1e-14).margin(0));

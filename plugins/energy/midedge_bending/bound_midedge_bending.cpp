@@ -129,7 +129,7 @@ std::vector<double> BoundMidedgeBending::bends(const Positions& x,
             pack.gather(x, d);
             const DihedralAngle<Pack<W>> dihedral(d);
             for (int lane = 0; lane < pack.active; ++lane)
-              result[pack.first + lane] = dihedral.angle()[lane] - rest_angles_[pack.first + lane];
+              result[pack.first + lane] = bend_from(rest_angles_[pack.first + lane], dihedral.angle()[lane]);
             if (!gradients) return;
             dihedral.gradient(Pack<W>(1.0), g);
             for (int lane = 0; lane < pack.active; ++lane) {
