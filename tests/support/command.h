@@ -47,8 +47,10 @@ inline std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-/// Many times what any command of the tests takes.
-inline const TimeLimit command_limit{120 * test_slowdown(), 60};
+/// Many times what any command of the tests takes to end …
+inline const TimeLimit command_limit{120 * test_slowdown(), 40};
+/// … and what one takes to bring about what a test waits for.
+inline const TimeLimit event_limit{40 * test_slowdown(), 40};
 
 /// How a command ended; a signal's exit code is 128 + its number, as in a shell.
 struct Ended {
@@ -56,11 +58,11 @@ struct Ended {
   std::string out, err;
 };
 
-/// A shell command that runs in a folder, in a process group of its own. One still running when the object
-/// goes away is killed.
+/// A shell command that runs in a folder, in a process group of its own. What still runs of the group when
+/// the object goes away is killed.
 class Command {
  public:
-  Command(const std::string& line, const std::filesystem::path& folder) {
+  Command(const std::string& line, const std::filesystem::path& folder) : line_(line) {
     for (const char* stream : {"out", "err"})
       output_.write(stream, "");  // it may be killed before it opens them
     pid_ = fork();
@@ -78,39 +80,46 @@ class Command {
     setpgid(pid_, pid_);  // whoever of the two comes first
   }
   ~Command() {
-    if (pid_ <= 0) return;
     send(SIGKILL);
     waitpid(pid_, nullptr, 0);
   }
   Command(const Command&) = delete;
 
-  /// Nothing where it has ended already.
-  void send(int signal) const {
-    if (pid_ > 0) kill(-pid_, signal);
-  }
+  /// To all processes of the group; nothing where they have ended already.
+  void send(int signal) const { kill(-pid_, signal); }
+  /// To the command alone, without what it has started.
+  void send_alone(int signal) const { kill(pid_, signal); }
   /// Whether a signal that was sent has still to be delivered: until then another of its kind would be lost.
   bool has_pending(int signal) const {
     const std::string status = text_of("/proc/" + std::to_string(pid_) + "/status");
     const std::string mask = "ShdPnd:\t";
     return std::stoull(status.substr(status.find(mask) + mask.size(), 16), nullptr, 16) >> (signal - 1) & 1;
   }
+  /// Processor time of the command's process so far, in seconds: how far it has come, on a busy machine too.
+  double processor_time() const {
+    clockid_t clock;
+    timespec time{};
+    if (clock_getcpuclockid(pid_, &clock) == 0) clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
 
   /// Fails the test case when the command takes more than the limit.
   Ended wait(const TimeLimit& limit = command_limit) {
+    INFO("waiting for the end of: " << line_);
     TimeTaken taken(pid_);
     while (!has_ended()) pause(taken, limit);
-    return {WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_), text_of(output_ / "out"),
-            text_of(output_ / "err")};
+    const int code = ended_.si_code == CLD_EXITED ? ended_.si_status : 128 + ended_.si_status;
+    return {code, text_of(output_ / "out"), text_of(output_ / "err")};
   }
 
   /// Waits until the condition holds that the command is to bring about; fails the test case when the command
   /// ends without, or takes more than the limit.
   void wait_until(const std::string& what, const std::function<bool()>& condition,
-                  const TimeLimit& limit = command_limit) {
-    INFO("waiting until " << what);
+                  const TimeLimit& limit = event_limit) {
+    INFO("waiting until " << what << ", by: " << line_);
     TimeTaken taken(pid_);
     for (bool ended = false; !condition(); ended = has_ended()) {
-      if (ended) FAIL("the command ended before");
+      if (ended) FAIL("the command ended before; it said: " << text_of(output_ / "err"));
       pause(taken, limit);
     }
   }
@@ -121,9 +130,9 @@ class Command {
     return from >= 0 && dup2(from, to) == to;
   }
 
+  /// The ended command stays a zombie, so that its number, which is the group's, is given to no other.
   bool has_ended() {
-    if (pid_ > 0 && waitpid(pid_, &status_, WNOHANG) != 0) pid_ = 0;
-    return pid_ == 0;
+    return waitid(P_PID, id_t(pid_), &ended_, WEXITED | WNOHANG | WNOWAIT) == 0 && ended_.si_pid;
   }
 
   static void pause(TimeTaken& taken, const TimeLimit& limit) {
@@ -133,9 +142,10 @@ class Command {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
 
+  const std::string line_;
   Scratch output_;
   pid_t pid_ = 0;
-  int status_ = 0;
+  siginfo_t ended_{};
 };
 
 inline const std::string drape_command = folders::commands() + "/drape";

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <signal.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -14,48 +13,48 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/processes.h"
+
 /// How many times slower the tests run than they are written for. The presets of the sanitizers set it.
 inline double test_slowdown() {
   const char* const factor = std::getenv("DRAPE_TEST_SLOWDOWN");
   return factor ? std::atof(factor) : 1;
 }
 
-/// What a command may take before it counts as one that never ends, in seconds.
+/// The time that processes may take before they count as ones that never end, in seconds.
 struct TimeLimit {
-  double cpu;   ///< on processors, summed over its processes
-  double idle;  ///< while none of its processes runs, wants to run, or waits for a disk
+  double cpu;   ///< on processors, summed over the processes
+  double idle;  ///< while none of them runs, wants to run, or waits for a disk
 };
 
 /// The time that a process and its descendants have taken. Time in which they want to run and other processes
 /// have the processors is in neither sum: what takes too long here does so on a busy machine and an idle one.
 class TimeTaken {
  public:
-  explicit TimeTaken(pid_t process) : process_(process) {}
+  enum class Of { process_and_descendants, descendants };
+
+  explicit TimeTaken(pid_t process, Of of = Of::process_and_descendants) : process_(process), of_(of) {}
 
   /// Call it again and again while the process runs; it looks at most ten times a second.
   void look() {
     const auto now = Clock::now();
     if (now - looked_ < std::chrono::milliseconds(100)) return;
-    processes_.clear();
-    const Seen seen = see(process_);
+    const Seen seen = see(process_, of_ == Of::process_and_descendants);
     cpu_ = std::max(cpu_, seen.cpu);
     // Of a longer pause, when this process itself got no turn, nothing is known.
     if (!seen.wants_to_run) idle_ += std::min(std::chrono::duration<double>(now - looked_).count(), 0.2);
     looked_ = now;
   }
 
-  /// What is wrong with it, empty while it keeps to the limit.
+  double cpu() const { return cpu_; }
+  double idle() const { return idle_; }
+
+  /// The limit that was exceeded, in words; empty while there is none.
   std::string excess(const TimeLimit& limit) const {
     std::ostringstream text;
     if (cpu_ > limit.cpu) text << "takes more than " << limit.cpu << " s of processor time";
-    if (idle_ > limit.idle) text << "hangs: has done nothing for " << limit.idle << " s";
+    if (idle_ > limit.idle) text << "hangs: was idle for " << limit.idle << " s";
     return text.str();
-  }
-
-  /// Ends it and its descendants.
-  void kill_all() const {
-    kill(process_, SIGKILL);
-    for (const pid_t process : processes_) kill(process, SIGKILL);
   }
 
  private:
@@ -66,45 +65,35 @@ class TimeTaken {
     bool wants_to_run = false;
   };
 
-  static std::string text_of(const std::string& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-  }
-
-  Seen see(pid_t process) {
+  static Seen see(pid_t process, bool itself) {
     const std::string folder = "/proc/" + std::to_string(process);
-    processes_.push_back(process);
     Seen seen;
     // After the command's name, which may hold anything: state, 10 other numbers, then ticks in user mode and
     // in the kernel, the same two of ended children.
-    const std::string stat = text_of(folder + "/stat");
+    const std::string stat = proc_text(folder + "/stat");
     long user = 0, kernel = 0, ended_user = 0, ended_kernel = 0;
     if (const std::size_t name_end = stat.rfind(')'); name_end != std::string::npos)
       std::sscanf(stat.c_str() + name_end + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %ld %ld %ld %ld",
                   &user, &kernel, &ended_user, &ended_kernel);
-    seen.cpu = static_cast<double>(user + kernel + ended_user + ended_kernel) /
-               static_cast<double>(sysconf(_SC_CLK_TCK));
-
-    std::error_code gone;  // processes and threads may end meanwhile
-    for (std::filesystem::directory_iterator thread(folder + "/task", gone), end; !gone && thread != end;
-         thread.increment(gone)) {
-      const std::string thread_stat = text_of(thread->path() / "stat");
-      const std::size_t state = thread_stat.rfind(')') + 2;
-      if (state < thread_stat.size())
-        seen.wants_to_run |= thread_stat[state] == 'R' || thread_stat[state] == 'D';
-      std::istringstream children(text_of(thread->path() / "children"));
-      for (pid_t child; children >> child;) {
-        const Seen of_child = see(child);
-        seen.cpu += of_child.cpu;
-        seen.wants_to_run |= of_child.wants_to_run;
+    const long ticks = ended_user + ended_kernel + (itself ? user + kernel : 0);
+    seen.cpu = static_cast<double>(ticks) / static_cast<double>(sysconf(_SC_CLK_TCK));
+    if (itself)
+      for (const std::string& thread : threads_of(process)) {
+        const std::string thread_stat = proc_text(thread + "/stat");
+        const std::size_t state = thread_stat.rfind(')') + 2;
+        if (state < thread_stat.size())
+          seen.wants_to_run |= thread_stat[state] == 'R' || thread_stat[state] == 'D';
       }
+    for (const pid_t child : children_of(process)) {
+      const Seen of_child = see(child, true);
+      seen.cpu += of_child.cpu;
+      seen.wants_to_run |= of_child.wants_to_run;
     }
     return seen;
   }
 
   const pid_t process_;
+  const Of of_;
   Clock::time_point looked_ = Clock::now();
-  std::vector<pid_t> processes_;
   double cpu_ = 0, idle_ = 0;
 };

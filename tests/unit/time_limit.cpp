@@ -5,11 +5,13 @@
 
 #include <sched.h>
 
+#include <regex>
+
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::Contains, Catch::Matchers::EndsWith, Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -31,7 +33,7 @@ TEST_CASE("a command that burns processor time is cut") {
     INFO(command);
     const Ended ended = limited(command, "0.5", "60");
     CHECK(ended.exit_code == 124);
-    CHECK(ended.err == "\nthe test takes more than 0.5 s of processor time\n");
+    CHECK_THAT(ended.err, StartsWith("\nthe test takes more than 0.5 s of processor time. Its processes:\n"));
   };
   check("sh -c '" + burn + "'");
   check("sh -c '(" + burn + ") & wait'");  // by its child, while it waits itself
@@ -45,9 +47,68 @@ TEST_CASE("a command that hangs is found") {
     const drape::Stopwatch watch;
     const Ended ended = limited(command, "60", "0.5");
     CHECK(ended.exit_code == 124);
-    CHECK(ended.err == "\nthe test hangs: has done nothing for 0.5 s\n");
+    CHECK_THAT(ended.err, StartsWith("\nthe test hangs: was idle for 0.5 s. Its processes:\n  "));
+    CHECK_THAT(ended.err, Contains(" " + std::regex_replace(command, std::regex("'"), "") + "\n"));
     CHECK(watch.seconds() >= 0.5);
   }
+}
+
+TEST_CASE("a test case that hangs is named") {
+  if (std::getenv("DRAPE_TEST_HANGS")) pause();  // for ever, in the process that is started below
+  const Scratch folder;
+  const Ended ended = Command("DRAPE_TEST_HANGS=1 exec " + folders::tests() + "/drape_limited 60 0.5 /proc/" +
+                                  std::to_string(getpid()) + "/exe 'a test case that hangs is named'",
+                              folder.path)
+                          .wait();
+  CHECK(ended.exit_code == 124);
+  CHECK_THAT(ended.err, Contains("the test hangs"));
+  CHECK_THAT(ended.out, Contains("\na test case that hangs is named\n") && Contains("SIGTERM"));
+}
+
+TEST_CASE("what a test leaves running is ended, and makes it fail") {
+  const Scratch folder;
+  const auto end_of = [&](const std::string& command) {
+    return Command("exec " + folders::tests() + "/drape_limited 60 60 sh -c '" + command + "'", folder.path)
+        .wait();
+  };
+  for (const std::string daemon : {"sleep 1000 &", "setsid sleep 1000 &", "(setsid sleep 1000 &) &"}) {
+    INFO(daemon);
+    const Ended passed = end_of(daemon), failed = end_of(daemon + " exit 3");
+    CHECK(passed.exit_code == 123);
+    CHECK(failed.exit_code == 3);
+    CHECK_THAT(passed.err, StartsWith("\nthe test left processes running, which were ended:\n  ") &&
+                               EndsWith(" sleep 1000\n"));
+  }
+  CHECK(end_of("sleep 0.2 &").err == "");  // ends by itself
+}
+
+TEST_CASE("what a test has started ends with the test, however that ends") {
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT}) {
+    const Scratch folder;
+    Command test("exec " + folders::tests() +
+                     "/drape_limited 60 60 sh -c 'setsid sleep 1000 & echo $! > part; mv part number; wait'",
+                 folder.path);
+    test.wait_until("the process runs", [&] { return std::filesystem::exists(folder / "number"); });
+    const pid_t number = std::stoi(text_of(folder / "number"));
+    CHECK(name_of(number) == std::to_string(number) + " sleep 1000");
+    test.send_alone(signal);
+    CHECK(test.wait().exit_code == 128 + signal);
+    // Without a limit of its own: that of this test finds it where the process never ends.
+    while (name_of(number).ends_with(" sleep 1000"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST_CASE("a command's group ends with its object, though the command has ended before") {
+  const Scratch folder;
+  pid_t number = 0;
+  {
+    Command command("sleep 1000 & echo $! > number", folder.path);
+    REQUIRE(command.wait().exit_code == 0);
+    number = std::stoi(text_of(folder / "number"));
+    CHECK(name_of(number).ends_with(" sleep 1000"));
+  }
+  while (name_of(number).ends_with(" sleep 1000")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
 TEST_CASE("a command that others keep from running is not cut") {
