@@ -3,17 +3,12 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
-import {browser, contactConfig, drawnShare, openPage, run, scratch, start, until} from './support.mjs';
+import {contactConfig, drawnShare, newPage, openPage, run, scratch, start, test, until} from './support.mjs';
 
 const folder = scratch();
 // Small steps for ever: at larger ones a level stalls before long.
 const endless = ['force_tolerance=1e-300', 'max_steps=1000000', 'step_size=2e-3', 'step_growth=1']
   .flatMap(set => ['--set', 'newton.' + set]).concat('--method', 'all');
-let chrome;
-
-before(async () => { chrome = await browser(); });
-after(() => chrome.close());
 
 /// A run with a live view, once its address is known.
 async function startViewed(out, ...more) {
@@ -22,7 +17,7 @@ async function startViewed(out, ...more) {
 async function startViewedOf(experiment, out, ...more) {
   const command = start(folder, 'run', experiment, '--out', out, '--quiet', '--threads', '1', '--view', ...more);
   const url = await until('the address', () => /^view: (\S+)\n/.exec(command.text.out)?.[1]);
-  return {...command, url};
+  return Object.assign(command, {url});
 }
 
 function request(url, method, headers = {}) {
@@ -42,7 +37,7 @@ const results = out => JSON.parse(fs.readFileSync(path.join(folder, out, 'result
 test('levels appear and move; "refine now" goes on to the next; "stop" ends the run as Ctrl-C does', async () => {
   const running = await startViewed('stopped', ...endless);
   assert.match(running.url, /^http:\/\/127\.0\.0\.1:\d+\/[0-9a-f]{32}\/$/);
-  const {page, heard, state} = await openPage(chrome, running.url);
+  const {page, heard, state} = await openPage(running.url);
   const status = () => page.locator('#live-status').textContent();
   assert.equal(await status(), 'Running: pcs, level 0 of 1.');
   const first = (await state()).panels[0];
@@ -62,7 +57,7 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.deepEqual(refused, {status: 409, body: 'This is the finest level: there is none to refine to.\n'});
 
   await page.locator('#live-stop').click();
-  const ended = await running.ended;
+  const ended = await running.ended();
   assert.equal(ended.code, 130);
   assert.match(ended.err, /stopped on request; everything up to then is in stopped\n$/);
   await until('the page says so', async () =>
@@ -73,7 +68,6 @@ test('levels appear and move; "refine now" goes on to the next; "stop" ends the 
   assert.deepEqual(levels.map(level => level.status), ['refined_early_on_request', 'cancelled']);
   assert.match(levels[0].message, /^refined on request; force residual /);
   assert.equal(results('stopped').methods.cascadic, undefined);
-  await page.context().close();
 });
 
 test('an obstacle that the schedule moves is shown where it is', async () => {
@@ -91,14 +85,13 @@ schedule: {steps: 100000, equilibrate: true, keys: [
 methods: {newton: {}}
 `);
   const running = await startViewedOf('risen.yaml', 'risen');
-  const {page, heard, state} = await openPage(chrome, running.url);
+  const {page, heard, state} = await openPage(running.url);
   const first = (await state()).panels[0].obstacles;
   await until('it has risen', async () => (await state()).panels[0].obstacles[0] > first[0] + .01);
   assert.equal((await state()).panels[0].obstacles[1], first[1]);
   await page.locator('#live-stop').click();
-  assert.equal((await running.ended).code, 130);
+  assert.equal((await running.ended()).code, 130);
   assert.deepEqual(heard.errors, []);
-  await page.context().close();
 });
 
 test('others can neither look nor stop the run', async () => {
@@ -118,7 +111,7 @@ test('others can neither look nor stop the run', async () => {
   assert.equal((await request(running.url, 'GET', {Host: host})).status, 200);
 
   // A page of another site, in a browser, with the right address.
-  const page = await (await chrome.newContext()).newPage();
+  const page = await newPage();
   await page.goto('data:text/html,<title>elsewhere</title>');
   await page.evaluate(url => fetch(url + 'stop', {method: 'POST', mode: 'no-cors'}).catch(() => {}), running.url);
   await page.context().close();
@@ -126,22 +119,22 @@ test('others can neither look nor stop the run', async () => {
   const before = lines();
   await until('the run goes on', () => lines() > before + 5);
   assert.equal((await request(running.url + 'stop', 'POST', {Origin: origin})).status, 204);
-  assert.equal((await running.ended).code, 130);
+  assert.equal((await running.ended()).code, 130);
 });
 
 test('a run has the same bits with a view, looked at, and without', async () => {
   const short = ['--no-report', '--method', 'pcs,newton', '--set', 'newton.force_tolerance=0.1'];
   const running = await startViewed('viewed', '--view-keep', ...short);
-  const {page, heard} = await openPage(chrome, running.url);
-  await until('the end', () => running.text.out.includes('the view stays at'), 60);
+  const {page, heard} = await openPage(running.url);
+  await until('the end', () => running.text.out.includes('the view stays at'));
   await until('the page says so', async () => /^The run has ended: /.test(await page.locator('#live-status').textContent()));
   assert.equal((await page.evaluate(() => window.drapeViewer.state())).panels.filter(p => p.level === 1).length, 2);
   assert.deepEqual(heard.errors, []);
-  running.child.kill('SIGINT');
-  assert.equal((await running.ended).code, 0);
+  running.kill('SIGINT');
+  assert.equal((await running.ended()).code, 0);
   await page.context().close();
 
-  run(folder, 'run', contactConfig, '--out', 'plain', '--quiet', '--threads', '1', ...short);
+  await run(folder, 'run', contactConfig, '--out', 'plain', '--quiet', '--threads', '1', ...short);
   const read = (out, file) => fs.readFileSync(path.join(folder, out, file));
   for (const method of ['pcs', 'newton'])
     for (const level of [0, 1])

@@ -2,26 +2,22 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
-import {after, before, test} from 'node:test';
+import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {browser, contactConfig, drawnShare, openPage, run, scratch, until} from './support.mjs';
+import {contactConfig, drawnShare, guarded, newPage, openPage, run, scratch, test, until} from './support.mjs';
 
 const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
-let chrome;
 
 /// With small pictures, which are drawn sooner.
-function writeReport(of) {
-  run(folder, 'report', of, '--width', '225');
+async function writeReport(of) {
+  await run(folder, 'report', of, '--width', '225');
 }
 
-before(async () => {
-  run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet', '--threads', '1', '--set', 'snapshots=0');
-  chrome = await browser();
-});
-after(() => chrome.close());
+before(() => guarded('the run that is reported', () => run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet',
+  '--threads', '1', '--set', 'snapshots=0')));
 
 test('opens without a complaint or a request, and draws', async () => {
-  const {page, heard, state} = await openPage(chrome, report);
+  const {page, heard, state} = await openPage(report);
   const shown = await state();
   assert.equal(shown.level, 1);
   assert.deepEqual(shown.panels.map(p => p.method), ['pcs', 'cascadic', 'newton']);
@@ -32,11 +28,10 @@ test('opens without a complaint or a request, and draws', async () => {
   assert.deepEqual(heard.errors, []);
   assert.deepEqual(heard.requests.filter(url => !url.startsWith('data:')), [report]);
   assert.ok(fs.statSync(path.join(folder, 'out/report.html')).size < 8e6);
-  await page.context().close();
 });
 
 test('the level slider changes the mesh, the colours and the legend follow the choice', async () => {
-  const {page, heard, state} = await openPage(chrome, report);
+  const {page, heard, state} = await openPage(report);
   await page.locator('#viewer-level').fill('0');
   await until('level 0', async () => (await state()).panels.every(p => p.level === 0 && p.vertices === 81));
   assert.match(await page.locator('#viewer-level-text').textContent(), /^0, 81 vertices/);
@@ -57,24 +52,22 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await page.locator('#viewer-methods input').nth(1).uncheck();
   await until('two views', async () => (await state()).panels.map(p => p.method).join() === 'pcs,newton');
   assert.deepEqual(heard.errors, []);
-  await page.context().close();
 });
 
 test('a schedule has plots of its own', async () => {
   const schedule = '{steps: 4, keys: [{parameter: material.bending_modulus, times: [0, 1], values: [8e4, 8e5]}]}';
-  run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0',
+  await run(folder, 'run', contactConfig, '--out', 'changing', '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0',
     '--method', 'newton', '--set', 'schedule=' + schedule);
-  writeReport('changing');
-  const {page, heard} = await openPage(chrome, pathToFileURL(path.join(folder, 'changing/report.html')).href);
+  await writeReport('changing');
+  const {page, heard} = await openPage(pathToFileURL(path.join(folder, 'changing/report.html')).href);
   for (const plot of ['#increment-energy', '#increment-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
   assert.deepEqual(heard.errors, []);
-  await page.context().close();
 });
 
 test('the progression plays, snapshots between the levels included', async () => {
   addFrames();
-  writeReport('out');
-  const {page, heard, state} = await openPage(chrome, report);
+  await writeReport('out');
+  const {page, heard, state} = await openPage(report);
   assert.equal((await state()).stops, 5);  // four of level 0, one of level 1
   await page.evaluate(() => {  // in the page, as looking from here could miss one
     const scene = window.drapeViewer.scene, setCloth = scene.setCloth;
@@ -93,11 +86,10 @@ test('the progression plays, snapshots between the levels included', async () =>
   await until('a snapshot', async () => (await state()).stop === 1 && (await state()).panels[0].level === 0);
   assert.match(await page.locator('#viewer-labels').textContent(), /7 iterations, 0.700 s/);
   assert.deepEqual(heard.errors, []);
-  await page.context().close();
 });
 
 test('keys and pointer turn all views together', async () => {
-  const {page, heard, state} = await openPage(chrome, report, {hasTouch: true});
+  const {page, heard, state} = await openPage(report, {hasTouch: true});
   const home = (await state()).camera;
   await page.locator('#viewer-canvas').focus();
   await page.keyboard.press('ArrowLeft');
@@ -124,7 +116,6 @@ test('keys and pointer turn all views together', async () => {
   await page.mouse.wheel(0, 100);
   assert.ok((await state()).camera.distance > home.distance);
   assert.deepEqual(heard.errors, []);
-  await page.context().close();
 });
 
 /// Entries of a plot's legend.
@@ -135,10 +126,10 @@ const wideTables = page => page.evaluate(() => [...document.querySelectorAll('.s
   .filter(frame => frame.scrollWidth > frame.clientWidth).map(frame => frame.querySelector('thead').textContent));
 
 test('opens on fine energy and distance over time, a line a method, and no table is wider than the page', async () => {
-  run(folder, 'run', contactConfig, '--out', 'timed', '--quiet', '--no-report', '--threads', '1', '--method', 'all', '--set', 'snapshots=4');
-  writeReport('timed');
+  await run(folder, 'run', contactConfig, '--out', 'timed', '--quiet', '--no-report', '--threads', '1', '--method', 'all', '--set', 'snapshots=4');
+  await writeReport('timed');
   const timed = pathToFileURL(path.join(folder, 'timed/report.html')).href;
-  const {page, heard} = await openPage(chrome, timed);
+  const {page, heard} = await openPage(timed);
   const methods = ['pcs', 'cascadic', 'newton'];
   for (const id of ['fine-energy', 'errors']) {
     assert.deepEqual(await legendOf(page, id), methods);
@@ -174,15 +165,15 @@ test('opens on fine energy and distance over time, a line a method, and no table
   }
   fs.writeFileSync(file, JSON.stringify(results));
   fs.writeFileSync(errors, more);
-  writeReport('timed');
-  const crowded = await openPage(chrome, timed);
+  await writeReport('timed');
+  const crowded = await openPage(timed);
   assert.deepEqual(await legendOf(crowded.page, 'errors'), [...methods, 'cascadic0', 'cascadic1', '3 more']);
   assert.deepEqual(crowded.heard.errors, []);
   await crowded.page.context().close();
 });
 
 test('dark, narrow, printed, and without WebGL', async () => {
-  const {page, heard} = await openPage(chrome, report, {colorScheme: 'dark', viewport: {width: 400, height: 800}});
+  const {page, heard} = await openPage(report, {colorScheme: 'dark', viewport: {width: 400, height: 800}});
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
   await page.emulateMedia({media: 'print'});
@@ -191,13 +182,12 @@ test('dark, narrow, printed, and without WebGL', async () => {
   assert.deepEqual(heard.errors, []);
   await page.context().close();
 
-  const bare = await (await chrome.newContext()).newPage();
+  const bare = await newPage();
   await bare.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
   await bare.goto(report);
   await bare.locator('#viewer').scrollIntoViewIfNeeded();
   await until('the sentence', async () => (await bare.locator('#viewer-note').textContent()).includes('no WebGL'));
   assert.ok(!(await bare.locator('#viewer-stage').isVisible()));
-  await bare.context().close();
 });
 
 /// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.

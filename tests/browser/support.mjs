@@ -1,15 +1,92 @@
-// What the browser tests share: a scratch folder, the drape command, Chromium, and pixels.
-import {execFileSync, spawn} from 'node:child_process';
+// What the browser tests share: tests that end what they start, the drape command, Chromium, and pixels.
+import {spawn} from 'node:child_process';
 import fs from 'node:fs';
 import {createRequire} from 'node:module';
 import os from 'node:os';
 import path from 'node:path';
+import nodeTest, {after} from 'node:test';
 
-const {chromium} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('playwright-core');
 const drape = path.join(process.env.DRAPE_BIN, 'drape');
 const source = path.resolve(path.dirname(new URL(import.meta.url).pathname), '../..');
 
 export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml');
+
+/// The most that a step of a test may take, as tests/support/limited.cpp measures it [s]; without limits by hand.
+const patience = {cpu: 40 * (process.env.DRAPE_TEST_SLOWDOWN || 1), idle: Number(process.env.DRAPE_TEST_PATIENCE || 40)};
+let at = {test: '', step: '', begun: taken()};
+const commands = new Set();
+let chrome;
+
+function taken() {
+  const file = process.env.DRAPE_TEST_TIME;
+  const [cpu, idle] = file ? fs.readFileSync(file, 'utf8').trim().split(/\s+/).map(Number) : [0, 0];
+  return {cpu, idle};
+}
+
+function begin(step) {
+  at = {...at, step, begun: taken()};
+}
+
+function excess() {
+  const now = taken();
+  for (const what of ['cpu', 'idle'])
+    if (now[what] - at.begun[what] > patience[what]) return `${patience[what]} s of ${what === 'cpu' ? 'processor' : 'idle'} time`;
+  return '';
+}
+
+/// Runs part of a test. It fails when a step of it exceeds the patience, and names the step; what it has started ends with it.
+export async function guarded(name, body) {
+  at = {test: name};
+  begin('its beginning');
+  let timer;
+  const overdue = new Promise((_, reject) => {
+    timer = setInterval(() => { if (excess()) reject(new Error(`in vain for ${excess()}: ${at.step}`)); }, 200);
+  });
+  try {
+    await Promise.race([body(), overdue]);
+  } finally {
+    clearInterval(timer);
+    at = {...at, test: ''};
+    begin(`the end of what "${name}" has started`);
+    endCommands();
+    if (chrome) await Promise.all((await chrome).contexts().map(context => context.close()));
+  }
+}
+
+/// node:test's `test`, guarded.
+export function test(name, body) {
+  nodeTest(name, () => guarded(name, body));
+}
+
+function endCommands() {
+  for (const command of commands) command.kill('SIGKILL');
+  commands.clear();
+}
+
+after(async () => { if (chrome) await (await chrome).close(); });
+process.on('exit', endCommands);
+for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
+  process.on(signal, () => {
+    console.error(`${signal} in "${at.test}", waiting for: ${at.step}`);
+    process.exit(1);
+  });
+
+/// Waits until the condition holds, which it looks up again and again, ever less often; the step ends then.
+export async function until(step, condition) {
+  const {test} = at;
+  begin(step);
+  for (let pause = 20; ; pause = Math.min(1.5 * pause, 500)) {
+    const value = await condition();
+    if (test !== at.test) throw new Error(`the test has ended: ${test}`);
+    if (value) {
+      begin('the step after: ' + step);
+      return value;
+    }
+    for (const {line, result, awaited} of commands)
+      if (result && !awaited) throw new Error(`${line} has ended with ${result.code} before: ${step}\n${result.err}`);
+    await new Promise(resolve => setTimeout(resolve, pause));
+  }
+}
 
 export function scratch() {
   const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'drape_browser_'));
@@ -17,44 +94,56 @@ export function scratch() {
   return folder;
 }
 
-/// Runs the command to its end; throws if it does not end well.
-export function run(folder, ...args) {
-  return execFileSync(drape, args, {cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe']});
-}
-
-/// Starts it; `ended` resolves to {code, out, err}.
+/// Starts the command, in a process group of its own. `ended()` resolves to its {code, out, err}.
 export function start(folder, ...args) {
-  const child = spawn(drape, args, {cwd: folder, stdio: ['ignore', 'pipe', 'pipe']});
-  const text = {out: '', err: ''};
-  child.stdout.on('data', data => { text.out += data; });
-  child.stderr.on('data', data => { text.err += data; });
-  const ended = new Promise(resolve => child.on('close', code => resolve({code, ...text})));
-  process.on('exit', () => child.kill('SIGKILL'));
-  return {child, text, ended};
+  return startProgram(folder, drape, ...args);
 }
 
-export async function until(what, condition, seconds = 20) {
-  const end = Date.now() + 1000 * seconds;
-  for (;;) {
-    const value = await condition();
-    if (value) return value;
-    if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}`);
-    await new Promise(resolve => setTimeout(resolve, 50));
-  }
+export function startProgram(folder, program, ...args) {
+  const child = spawn(program, args, {cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], detached: true});
+  const command = {line: [path.basename(program), ...args].join(' '), text: {out: '', err: ''}, result: null, awaited: false};
+  command.kill = signal => {
+    try { process.kill(-child.pid, signal); } catch { /* it has ended */ }
+  };
+  command.ended = () => {
+    command.awaited = true;
+    return until('the end of: ' + command.line, () => command.result);
+  };
+  child.stdout.on('data', data => { command.text.out += data; });
+  child.stderr.on('data', data => { command.text.err += data; });
+  child.on('close', code => { command.result = {code, ...command.text}; });
+  commands.add(command);
+  return command;
 }
 
-export async function browser() {
-  return chromium.launch({
-    executablePath: process.env.DRAPE_CHROMIUM || '/usr/bin/chromium',
+/// Runs the command to its end; throws if it does not end well.
+export async function run(folder, ...args) {
+  const command = start(folder, ...args);
+  const {code, err} = await command.ended();
+  commands.delete(command);
+  if (code !== 0) throw new Error(`${command.line} has ended with ${code}:\n${err}`);
+}
+
+/// Chromium, one for all tests of a file.
+export function browser() {
+  const {chromium} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('playwright-core');
+  chrome ??= chromium.launch({
+    executablePath: process.env.DRAPE_CHROMIUM || '/usr/bin/chromium', timeout: 0,
     args: ['--headless=new', '--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
       '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'],
   });
+  return chrome;
+}
+
+export async function newPage(options = {}) {
+  const context = await (await browser()).newContext(options);
+  context.setDefaultTimeout(0);  // the step's patience is the limit
+  return context.newPage();
 }
 
 /// A page that takes down everything it complains about and every address it asks for.
-export async function openPage(chrome, url, options = {}) {
-  const context = await chrome.newContext({viewport: {width: 1200, height: 900}, ...options});
-  const page = await context.newPage();
+export async function openPage(url, options = {}) {
+  const page = await newPage({viewport: {width: 1200, height: 900}, ...options});
   const heard = {errors: [], requests: []};
   page.on('console', message => { if (['error', 'warning'].includes(message.type())) heard.errors.push(message.text()); });
   page.on('pageerror', error => heard.errors.push(String(error)));
