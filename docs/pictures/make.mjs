@@ -3,7 +3,7 @@
 import {execFileSync} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
-import {browser, openPage, run, scratch} from '../../tests/browser/support.mjs';
+import {browser, newPage, openPage, run, scratch} from '../../tests/browser/support.mjs';
 
 const here = path.dirname(new URL(import.meta.url).pathname);
 const results = path.resolve(process.argv[2]);
@@ -11,8 +11,8 @@ const methods = JSON.parse(fs.readFileSync(path.join(results, 'results.json'), '
 const folder = scratch();
 
 /// Parts of the report as they look on the page.
-async function reportPictures(chrome) {
-  const {page} = await openPage(chrome, 'file://' + path.join(results, 'report.html'),
+async function reportPictures() {
+  const {page} = await openPage('file://' + path.join(results, 'report.html'),
     {viewport: {width: 1100, height: 900}, deviceScaleFactor: 1.5});
   const picture = async (selector, name, margin = 12) => {
     await page.locator(selector).scrollIntoViewIfNeeded();
@@ -32,14 +32,17 @@ async function reportPictures(chrome) {
 }
 
 /// A figure of the hero: a state as `drape export` draws it.
-function figure(name, caption, ...options) {
-  run(folder, 'export', results, '--to', name, ...options);
+async function figure(name, caption, ...options) {
+  await run(folder, 'export', results, '--to', name, ...options);
   return `<figure><img src="${name}" alt=""><figcaption>${caption}</figcaption></figure>`;
 }
 
-function levelsOf(method) {
-  return methods[method].levels.map(({level, vertices}) => figure(`${method}_l${level}.png`,
-    `${vertices.toLocaleString('en-US')} vertices`, '--method', method, '--level', String(level), '--width', '900')).join('');
+async function levelsOf(method) {
+  let all = '';
+  for (const {level, vertices} of methods[method].levels)
+    all += await figure(`${method}_l${level}.png`, `${vertices.toLocaleString('en-US')} vertices`, '--method', method, '--level',
+      String(level), '--width', '900');
+  return all;
 }
 
 function outlineOf(method, caption) {
@@ -48,7 +51,7 @@ function outlineOf(method, caption) {
 
 /// The levels of PCS above those of the direct method, and each preview's outline on its own fine result: 2400 pixels wide,
 /// on the colour that is behind the cloth in every picture, which reads on light and dark pages.
-async function hero(chrome) {
+async function hero() {
   const html = `<!DOCTYPE html><meta charset="utf-8"><style>
     body { margin: 0; background: #fbfbfb; color: #1b2027; font: 17px/1.3 "Noto Sans", "DejaVu Sans", sans-serif; }
     main { box-sizing: border-box; width: 1200px; padding: 12px 20px; background: #fbfbfb; }
@@ -58,21 +61,20 @@ async function hero(chrome) {
     figure { margin: 0; text-align: center; color: #5a6472; }
     img { display: block; width: 100%; }
     </style><main>
-    <h2>Progressive (PCS), coarse to fine</h2><div>${levelsOf('pcs')}</div>
-    <h2>Direct Newton, each level on its own</h2><div>${levelsOf('newton')}</div>
+    <h2>Progressive (PCS), coarse to fine</h2><div>${await levelsOf('pcs')}</div>
+    <h2>Direct Newton, each level on its own</h2><div>${await levelsOf('newton')}</div>
     <h2>Outline of the coarsest level, in blue, on the finest</h2>
-    <div class="outlines">${outlineOf('pcs', 'progressive')}${outlineOf('newton', 'direct')}</div></main>`;
+    <div class="outlines">${await outlineOf('pcs', 'progressive')}${await outlineOf('newton', 'direct')}</div></main>`;
   fs.writeFileSync(path.join(folder, 'hero.html'), html);
-  const context = await chrome.newContext({viewport: {width: 1200, height: 900}, deviceScaleFactor: 2});
-  const page = await context.newPage();
+  const page = await newPage({viewport: {width: 1200, height: 900}, deviceScaleFactor: 2});
   await page.goto('file://' + path.join(folder, 'hero.html'));
   await page.locator('main').screenshot({path: path.join(here, 'hero.png')});
 }
 
 /// The snapshots of PCS, coarse to fine, as an animation that rests at the end of every level.
-function progression() {
+async function progression() {
   const most = 3e6;  // [bytes]
-  run(folder, 'export', results, '--to', 'frame.png', '--method', 'pcs', '--frames', '--width', '640');
+  await run(folder, 'export', results, '--to', 'frame.png', '--method', 'pcs', '--frames', '--width', '640');
   const frames = fs.readdirSync(folder).filter(name => name.startsWith('frame_')).sort();
   const ends = new Set();
   methods.pcs.levels.reduce((count, level) => {
@@ -89,8 +91,7 @@ function progression() {
   throw new Error(`${file} is larger than ${most} bytes`);
 }
 
-const chrome = await browser();
-await reportPictures(chrome);
-await hero(chrome);
-await chrome.close();
-progression();
+await reportPictures();
+await hero();
+await progression();
+await (await browser()).close();

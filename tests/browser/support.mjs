@@ -15,7 +15,7 @@ export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml'
 const patience = {cpu: 40 * (process.env.DRAPE_TEST_SLOWDOWN || 1), idle: Number(process.env.DRAPE_TEST_PATIENCE || 40)};
 let at = {test: '', step: '', begun: taken()};
 const commands = new Set();
-let chrome;
+let chrome, closes = false;
 
 function taken() {
   const file = process.env.DRAPE_TEST_TIME;
@@ -55,6 +55,8 @@ export async function guarded(name, body) {
 
 /// node:test's `test`, guarded.
 export function test(name, body) {
+  if (!closes) after(async () => { if (chrome) await (await chrome).close(); });
+  closes = true;
   nodeTest(name, () => guarded(name, body));
 }
 
@@ -63,7 +65,6 @@ function endCommands() {
   commands.clear();
 }
 
-after(async () => { if (chrome) await (await chrome).close(); });
 process.on('exit', endCommands);
 for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
   process.on(signal, () => {

@@ -9,8 +9,10 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from waiting import InVain, wait_until  # noqa: E402
 
 SKIPPED = 77
 PROGRAMS = ["slurmctld", "slurmd", "munged", "sbatch", "squeue", "scancel"]
@@ -86,7 +88,7 @@ class Cluster:
         self.folder.chmod(0o755)
         self.environment = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"))
         self.mark = f"SLURM_CONF={self.folder}/slurm.conf".encode()
-        self.daemons = {}
+        self.daemons, self.killed = {}, set()
 
     def __enter__(self):
         try:
@@ -95,7 +97,7 @@ class Cluster:
             self.start("slurmctld", ["slurmctld", "-D"])
             for node in self.nodes:
                 self.start(node, ["slurmd", "-D", "-N", node])
-            self.wait_until(lambda: self.states().count("idle") == 2, 30, "both nodes are idle")
+            self.wait_until("both nodes are idle", lambda: self.states().count("idle") == 2)
         except BaseException:
             self.__exit__()
             raise
@@ -104,11 +106,10 @@ class Cluster:
     def __exit__(self, *_):
         for name in reversed(list(self.daemons)):
             self.daemons[name].terminate()
-        deadline = time.time() + 10
-        for daemon in self.daemons.values():
-            try:
-                daemon.wait(max(0.1, deadline - time.time()))
-            except subprocess.TimeoutExpired:
+        try:
+            wait_until("the daemons have ended", lambda: all(d.poll() is not None for d in self.daemons.values()), idle=10)
+        except InVain:
+            for daemon in self.daemons.values():
                 daemon.kill()
                 daemon.wait()
         for pid in processes():  # steps and their runs: all that knows of this cluster
@@ -135,7 +136,7 @@ class Cluster:
         self.start("munged", ["setpriv", "--reuid=munge", "--regid=munge", "--clear-groups", "munged",
                               "--foreground", "--force", f"--socket={self.socket}", f"--key-file={munge}/key",
                               f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed"])
-        self.wait_until(self.socket.exists, 10, "munged listens")
+        self.wait_until("munged listens", self.socket.exists)
 
     def configure(self):
         ports = free_ports(3)
@@ -182,12 +183,16 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf
     def states(self):
         return self.call("sinfo", "--noheader", "--Node", "--format=%T").stdout.split()
 
-    def wait_until(self, holds, seconds, what):
-        deadline = time.time() + seconds
-        while not holds():
-            if time.time() > deadline:
-                raise RuntimeError(f"waited {seconds} s, and it is not so that {what}; logs:\n{self.logs()}")
-            time.sleep(0.02)
+    def wait_until(self, what, holds):
+        def holds_with_all_daemons():
+            for name, daemon in self.daemons.items():
+                if daemon.poll() is not None and name not in self.killed:
+                    raise RuntimeError(f"{name} has ended before: {what}; logs:\n{self.logs()}")
+            return holds()
+        try:
+            wait_until(what, holds_with_all_daemons, cpu=80, idle=80)  # Slurm takes its time
+        except InVain as fault:
+            raise RuntimeError(f"{fault}; logs:\n{self.logs()}") from None
 
     def logs(self):
         return "".join(f"--- {log.name}\n{log.read_text(errors='replace')[-3000:]}\n"
@@ -203,6 +208,7 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0,sched_interval=1,bf
         tasks = self.tasks_on(node)
         steps = [int(Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1]) for pid in tasks
                  if Path(f"/proc/{pid}/stat").exists()]
+        self.killed.add(node)
         self.daemons[node].kill()
         self.daemons[node].wait()
         for pid in steps + tasks + self.tasks_on(node):
