@@ -1,18 +1,18 @@
 """The studies of `make results`, in the order in which they run.
 
-A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or
-only its iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take all cores;
+A study: `what` it is; whether its times are compared (`timed`: one process at a time, all cores, on an idle machine) or only
+its iterations and flops (one thread a run, a run a core); the `threads` of a timed one that does not take all cores;
 `starts`; the commands that `run` it in {out}, which go on where they were cut; those that `gather` its records, a first word
-">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of data/ that it needs; what else it `needs`
-in {build}, and how to get it; commands to `attempt`, whose failure is what is recorded; whether a run that is refused, or
-exceeds its sweep's time limit, is one of the `failures` that it records; whether its record may be `partial`, of the scenes
-that have run; whether what `gather` prints is a table of `scenes`.
+">FILE" storing what the rest prints; its `records` in benchmarks/results; `meshes` of data/ that it needs; what else it
+`needs` in {build}, and how to get it; a command that is to `check` what others have built, and says what is missing; commands
+to `attempt`, whose failure is what is recorded; whether a run that is refused, or exceeds its sweep's time limit, is one of
+the `failures` that it records; whether its record may be `partial`, of the scenes that have run; whether what `gather` prints
+is a table of `scenes`.
 """
 
 MESHES = ["bunny.ply", "armadillo.ply"]
 ALL_MESHES = [*MESHES, "bear.ply", "dragon.ply"]
 MODULE = {"python/drape": "the Python module: run `make python`"}
-CODIM_IPC = {"codim_ipc/Drivers": "Codim-IPC: build it, see benchmarks/codim_ipc/CMakeLists.txt"}
 RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 
 
@@ -46,8 +46,9 @@ STUDIES = {
         "run": [["env", "PYTHONPATH={build}/python", "/usr/bin/python3", "benchmarks/python", "{drape}", "{out}/python.json"]],
         "gather": [["cp", "{out}/python.json", "{results}/"]], "records": ["python.json"]},
     "codim_ipc": {
-        "what": "direct Newton beside Codim-IPC", "timed": True, "threads": 1, "starts": 3, "needs": {**MODULE, **CODIM_IPC},
-        "run": [["env", "PYTHONPATH={build}/python", "benchmarks/codim_ipc/compare", "{build}/codim_ipc", "{out}/codim_ipc.json"]],
+        "what": "direct Newton beside Codim-IPC", "timed": True, "threads": 1, "starts": 3, "needs": MODULE,
+        "check": ["benchmarks/codim_ipc/installation.py"],
+        "run": [["env", "PYTHONPATH={build}/python", "benchmarks/codim_ipc/compare", "{out}/codim_ipc.json"]],
         "gather": [["cp", "{out}/codim_ipc.json", "{results}/"]], "records": ["codim_ipc.json"]},
     "scale": {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
