@@ -15,6 +15,11 @@ test('waits in vain', async () => {
   await until('the thaw', () => false);
 });
 
+test('waits in vain for one at work', async () => {
+  startProgram(folder, 'sh', '-c', 'while :; do :; done');
+  await until('the harvest', () => false);
+});
+
 test('waits for a command that has ended', async () => {
   startProgram(folder, 'sh', '-c', 'echo no such road >&2; exit 3');
   await until('the arrival', () => false);

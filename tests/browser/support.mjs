@@ -11,8 +11,10 @@ const source = path.resolve(path.dirname(new URL(import.meta.url).pathname), '..
 
 export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml');
 
-/// The most that a step of a test may take, as tests/support/limited.cpp measures it [s]; without limits by hand.
-const patience = {cpu: 40 * (process.env.DRAPE_TEST_SLOWDOWN || 1), idle: Number(process.env.DRAPE_TEST_PATIENCE || 40)};
+/// The most that a step of a test may take in its processes' time, as tests/support/limited.cpp measures it [s]; without limits
+/// by hand. And what is enough for an event to come: so many looks, and so much work of the commands that run [s].
+const factor = Number(process.env.DRAPE_TEST_PATIENCE || 1);
+const patience = {cpu: 100 * factor, idle: 40 * factor, looks: 60 * factor, work: 10 * factor};
 let at = {test: '', step: '', begun: taken()};
 const commands = new Set();
 let chrome, closes = false;
@@ -72,11 +74,22 @@ for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
     process.exit(1);
   });
 
-/// Waits until the condition holds, which it looks up again and again, ever less often; the step ends then.
-export async function until(step, condition) {
-  const {test} = at;
+/// Processor time of a process [s].
+function processorTime(pid) {
+  try {
+    const fields = fs.readFileSync(`/proc/${pid}/stat`, 'utf8').replace(/^.*\) /s, '').split(' ');
+    return (Number(fields[11]) + Number(fields[12])) / 100;
+  } catch {
+    return 0;  // it has ended
+  }
+}
+
+/// Waits until the condition holds, which it looks up again and again, ever less often; the step ends then. Fails after enough looks
+/// and enough work of the commands: both take longer on a busy machine, as the event itself does.
+export async function until(step, condition, looks = patience.looks) {
+  const {test} = at, begun = new Map([...commands].map(command => [command, processorTime(command.pid)]));
   begin(step);
-  for (let pause = 20; ; pause = Math.min(1.5 * pause, 500)) {
+  for (let look = 1, pause = 20; ; ++look, pause = Math.min(1.5 * pause, 500)) {
     const value = await condition();
     if (test !== at.test) throw new Error(`the test has ended: ${test}`);
     if (value) {
@@ -85,6 +98,8 @@ export async function until(step, condition) {
     }
     for (const {line, result, awaited} of commands)
       if (result && !awaited) throw new Error(`${line} has ended with ${result.code} before: ${step}\n${result.err}`);
+    if (look > looks && [...begun].every(([{pid, result}, time]) => result || processorTime(pid) > time + patience.work))
+      throw new Error(`in vain for ${look} looks and ${patience.work} s of work: ${step}`);
     await new Promise(resolve => setTimeout(resolve, pause));
   }
 }
@@ -102,13 +117,13 @@ export function start(folder, ...args) {
 
 export function startProgram(folder, program, ...args) {
   const child = spawn(program, args, {cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], detached: true});
-  const command = {line: [path.basename(program), ...args].join(' '), text: {out: '', err: ''}, result: null, awaited: false};
+  const command = {pid: child.pid, line: [path.basename(program), ...args].join(' '), text: {out: '', err: ''}, result: null, awaited: false};
   command.kill = signal => {
     try { process.kill(-child.pid, signal); } catch { /* it has ended */ }
   };
   command.ended = () => {
     command.awaited = true;
-    return until('the end of: ' + command.line, () => command.result);
+    return until('the end of: ' + command.line, () => command.result, Infinity);
   };
   child.stdout.on('data', data => { command.text.out += data; });
   child.stderr.on('data', data => { command.text.err += data; });

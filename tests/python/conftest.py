@@ -1,8 +1,10 @@
 """What the tests of the Python module share. PYTHONPATH names the module's folder, DRAPE_BIN that of the command."""
 
 import copy
+import faulthandler
 import os
 import pathlib
+import signal
 import sys
 
 import pytest
@@ -10,7 +12,7 @@ import pytest
 import drape
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(pathlib.Path(__file__).parent))
+sys.path[:0] = [str(pathlib.Path(__file__).parent), str(SOURCE / "tests/support")]
 
 # A square of 6×6 vertices on two corners, two levels: solved in milliseconds.
 SMALL = {
@@ -24,6 +26,11 @@ SMALL = {
     "methods": {"pcs": {}, "cascadic": {}, "newton": {}},
     "reference": "newton",
 }
+
+
+def pytest_configure():
+    """A test that hangs is sent SIGTERM (tests/support/limited.cpp): it says where it is, past pytest's capture of the output."""
+    faulthandler.register(signal.SIGTERM, file=os.fdopen(os.dup(sys.__stderr__.fileno()), "w"), chain=True)
 
 
 @pytest.fixture

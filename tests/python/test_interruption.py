@@ -2,10 +2,10 @@
 
 import os
 import signal
-import subprocess
 import threading
 
 import pytest
+from waiting import completed, wait_until
 
 import drape
 
@@ -44,7 +44,7 @@ def test_an_exception_in_a_callback_is_raised(experiment, where, tmp_path, comma
 
     with pytest.raises(Luck, match="out of luck"):
         experiment.run(out=tmp_path / "r", report=False, progress=False, **{where: fail})
-    ended = subprocess.run([command, "run", "--resume", tmp_path / "r", "-q", "--no-report"])
+    ended = completed([command, "run", "--resume", tmp_path / "r", "-q", "--no-report"])
     assert ended.returncode == 0
     plain = experiment.run(progress=False)["pcs"].levels[-1].x
     assert drape.read_run(tmp_path / "r")["pcs"].levels[-1].x.tobytes() == plain.tobytes()
@@ -57,17 +57,24 @@ def test_what_a_callback_may_not_be_or_return(experiment):
         experiment.run(on_iteration=lambda i: "on", progress=False)
 
 
-def test_ctrl_c_raises_keyboard_interrupt(small):
+def test_ctrl_c_raises_keyboard_interrupt(small, tmp_path):
     small["cloth"].update(columns=20, rows=20)
     small["levels"] = 3
-    small["newton"] = {"force_tolerance": 1e-13, "max_steps": 100000}  # never ends by itself
-    experiment = drape.Experiment(small)
-    timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
+    small["newton"] = {"force_tolerance": 1e-300, "step_size": 1e-3, "step_growth": 1, "max_steps": 10**8}  # ends by Ctrl-C
+    experiment, steps = drape.Experiment(small), tmp_path / "r/steps.csv"
+
+    def interrupt():
+        try:
+            wait_until("the run makes steps", lambda: steps.exists() and steps.read_text().count("\n") > 5)
+        finally:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    other = threading.Thread(target=interrupt)
+    other.start()
     with pytest.raises(KeyboardInterrupt):
-        while True:  # a run that happens to end is begun again
-            experiment.run(progress=False)
-    timer.join()
+        experiment.run(out=steps.parent, report=False, progress=False)
+    other.join()
+    assert steps.read_text().count("\n") > 5
     drape.Experiment(small).check()
 
 

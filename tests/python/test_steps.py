@@ -2,12 +2,12 @@
 
 import gc
 import pathlib
-import subprocess
 import sys
 import threading
 
 import numpy
 import pytest
+from waiting import completed
 
 import drape
 
@@ -97,7 +97,7 @@ small["energies"][0] = "springs"
 solver = drape.Experiment(small).solver("newton")
 next(solver)
 """
-    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=100)
+    ended = completed([sys.executable, "-c", script])
     assert (ended.returncode, ended.stderr) == (0, "")
 
 

@@ -79,8 +79,7 @@ class Test {
   /// Waits for the command; returns its status, as of waitpid.
   int wait(const TimeLimit& limit) {
     while (reap()) {
-      taken_.look();
-      time_file_.write({taken_.cpu(), taken_.idle()});
+      if (taken_.look()) time_file_.write({taken_.cpu(), taken_.idle()});
       const std::string excess = taken_.excess(limit);
       if (!excess.empty()) {
         std::cerr << "\nthe test " << excess << ". Its processes:\n" << list() << std::flush;

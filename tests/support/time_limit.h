@@ -35,15 +35,16 @@ class TimeTaken {
 
   explicit TimeTaken(pid_t process, Of of = Of::process_and_descendants) : process_(process), of_(of) {}
 
-  /// Call it again and again while the process runs; it looks at most ten times a second.
-  void look() {
+  /// Call it again and again while the process runs; it looks at most ten times a second. True if it looked.
+  bool look() {
     const auto now = Clock::now();
-    if (now - looked_ < std::chrono::milliseconds(100)) return;
+    if (now - looked_ < std::chrono::milliseconds(100)) return false;
     const Seen seen = see(process_, of_ == Of::process_and_descendants);
     cpu_ = std::max(cpu_, seen.cpu);
     // Of a longer pause, when this process itself got no turn, nothing is known.
     if (!seen.wants_to_run) idle_ += std::min(std::chrono::duration<double>(now - looked_).count(), 0.2);
     looked_ = now;
+    return true;
   }
 
   double cpu() const { return cpu_; }
