@@ -56,7 +56,7 @@ Observed observed(Watch& watch, const Overrides& overrides = {}) {
   const LiveClient client(address.port);
   REQUIRE(
       client.send(address.request("GET", address.path + "news?version=0&rows=0", "Connection: close\r\n")));
-  const std::string answer = client.answer(30).value_or("");
+  const std::string answer = client.answer();
   return {read_run(options.out),
           nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4))["outcome"]};
 }

@@ -148,6 +148,13 @@ class Command {
   siginfo_t ended_{};
 };
 
+/// Waits for what no command of the test itself brings about. The test's own limit ends a wait in vain
+/// (tests/support/limited.cpp), and Catch2 then names the test case.
+inline void wait_until(const std::string& what, const std::function<bool()>& condition) {
+  INFO("waiting until " << what);
+  while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
 inline const std::string drape_command = folders::commands() + "/drape";
 
 /// `drape` with these arguments, in that folder, to its end.

@@ -16,9 +16,9 @@ namespace drape {
 struct ConnectionLimits {
   int threads = 16;              ///< concurrent connections
   std::size_t waiting = 64;      ///< connections that may wait for a thread; further ones are closed at once
-  double reading = 5;            ///< for a request to arrive [s]
+  double reading = 0;            ///< for a request to arrive [s]
   double reading_in_queue = .2;  ///< the same while others wait [s]
-  double writing = 5;            ///< for a peer to take any part of an answer [s]
+  double writing = 0;            ///< for a peer to take any part of an answer [s]
   std::size_t request = 32768;   ///< largest request, with its headers [bytes]
 };
 

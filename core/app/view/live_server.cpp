@@ -55,7 +55,11 @@ constexpr std::size_t largest_body = 1024;  // [bytes]; no request of the page h
 /// byte now and then would block a thread and the shutdown for ever.
 class BoundedServer final : public httplib::Server {
  public:
-  BoundedServer() {
+  explicit BoundedServer(double patience)
+      : connections_({.reading = patience, .writing = patience}, [this](httplib::Stream& stream) {
+          bool closed = false;
+          process_request(stream, true, closed, nullptr);
+        }) {
     // The listening thread only passes connections on.
     struct AtOnce final : httplib::TaskQueue {
       void enqueue(std::function<void()> task) override { task(); }
@@ -74,10 +78,7 @@ class BoundedServer final : public httplib::Server {
     return true;
   }
 
-  Connections connections_{{}, [this](httplib::Stream& stream) {
-                             bool closed = false;
-                             process_request(stream, true, closed, nullptr);
-                           }};
+  Connections connections_;
 };
 
 /// Why the request's body is refused; empty if it is not. The library accepts "-1" as a length.
@@ -100,6 +101,8 @@ std::string fault_of_body(const Request& request) {
 }  // namespace
 
 struct LiveServer::Impl {
+  explicit Impl(double patience) : server(patience) {}
+
   BoundedServer server;
   std::thread thread;
   std::atomic<bool> ended = false;
@@ -114,7 +117,8 @@ struct LiveServer::Impl {
   }
 };
 
-LiveServer::LiveServer(int port, const LiveAnswers& answers) : impl_(std::make_unique<Impl>()) {
+LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
+    : impl_(std::make_unique<Impl>(patience)) {
   httplib::Server& server = impl_->server;
   // The library's default would let two programs listen on one port.
   server.set_socket_options([](socket_t socket) {

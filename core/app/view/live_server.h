@@ -21,8 +21,9 @@ struct LiveAnswers {
 /// ConnectionLimits).
 class LiveServer {
  public:
-  /// Starts to listen; port 0 takes any free one. Throws std::runtime_error if the port is not available.
-  LiveServer(int port, const LiveAnswers& answers);
+  /// Starts to listen; port 0 takes any free one. A peer has `patience` seconds for its request, and as many
+  /// to take any part of the answer. Throws std::runtime_error if the port is not available.
+  LiveServer(int port, const LiveAnswers& answers, double patience = 5);
   ~LiveServer();
 
   const std::string& url() const { return url_; }
