@@ -6,8 +6,8 @@ import path from 'node:path';
 import {contactConfig, drawnShare, newPage, openPage, run, scratch, start, test, until} from './support.mjs';
 
 const folder = scratch();
-// Small steps for ever: at larger ones a level stalls before long.
-const endless = ['force_tolerance=1e-300', 'max_steps=1000000', 'step_size=2e-3', 'step_growth=1']
+// Small steps for ever: at larger ones a level stalls before long, and a busy machine lets no page ask for the next one before.
+const endless = ['force_tolerance=1e-300', 'max_steps=100000000', 'step_size=2e-4', 'step_growth=1']
   .flatMap(set => ['--set', 'newton.' + set]).concat('--method', 'all');
 
 /// A run with a live view, once its address is known.

@@ -372,9 +372,9 @@ void interrupt_sheets(const Scratch& folder) {
 TEST_CASE("A run that is killed at twenty random moments resumes every time, with equal results") {
   const Scratch folder;
   write_sheets(folder);
-  const Stopwatch watch;
-  REQUIRE(drape_with("check e.yaml", folder.path).exit_code == 0);
-  const double to_begin = watch.seconds();
+  Command check("exec " + drape_command + " check e.yaml", folder.path);
+  REQUIRE(check.wait().exit_code == 0);
+  const double to_begin = check.processor_time();
   REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
   const long all_steps = rows_in(folder / "whole/steps.csv");
 
@@ -388,7 +388,8 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
     // Half of them while it begins, half after some steps more than it had, at most a twentieth of all.
     const double part = static_cast<double>(random() % 1000) / 1000;
     if (kill % 2)
-      std::this_thread::sleep_for(std::chrono::duration<double>(part * to_begin));
+      command.wait_until("a part of its beginning",
+                         [&] { return command.processor_time() > part * to_begin; });
     else
       wait_for_steps(command, folder / "out",
                      static_cast<int>(rows_in(folder / "out/steps.csv") + part * all_steps / 20));

@@ -347,8 +347,7 @@ TEST_CASE("view writes the page if it is missing or old, and opens it, or prints
   folder.write("xdg-open", "#!/bin/sh\necho \"$1\" > opened.part && mv opened.part opened\n");
   fs::permissions(folder / "xdg-open", fs::perms::owner_all);
   CHECK(view("DISPLAY=:7 PATH=" + folder.path.string() + ":$PATH") == "report: a run/report.html\n");
-  for (int k = 0; k < 2000 && !fs::exists(folder / "opened"); ++k)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  wait_until("the page is opened", [&] { return fs::exists(folder / "opened"); });
   CHECK(fs::path(replaced(text_of(folder / "opened"), "\n", "")) ==
         fs::canonical(folder.path) / "a run/report.html");
   const Ended nothing = drape_with("view nowhere", folder.path, none);

@@ -93,9 +93,7 @@ TEST_CASE("what a test has started ends with the test, however that ends") {
     CHECK(name_of(number) == std::to_string(number) + " sleep 1000");
     test.send_alone(signal);
     CHECK(test.wait().exit_code == 128 + signal);
-    // Without a limit of its own: that of this test finds it where the process never ends.
-    while (name_of(number).ends_with(" sleep 1000"))
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    wait_until("the process has ended", [&] { return !name_of(number).ends_with(" sleep 1000"); });
   }
 }
 
@@ -108,7 +106,7 @@ TEST_CASE("a command's group ends with its object, though the command has ended 
     number = std::stoi(text_of(folder / "number"));
     CHECK(name_of(number).ends_with(" sleep 1000"));
   }
-  while (name_of(number).ends_with(" sleep 1000")) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  wait_until("the process has ended", [&] { return !name_of(number).ends_with(" sleep 1000"); });
 }
 
 TEST_CASE("a command that others keep from running is not cut") {
@@ -144,4 +142,22 @@ TEST_CASE("waiting for what a command is to bring about ends when the command ha
   Command command("sleep 0.2; touch made", folder.path);
   command.wait_until("the file is made", [&] { return std::filesystem::exists(folder / "made"); });
   CHECK(command.wait().exit_code == 0);
+}
+
+TEST_CASE("a command's processor time is that of its process, after its end too") {
+  const Scratch folder;
+  Command command("i=0; while [ $i -lt 20000 ]; do i=$((i + 1)); done", folder.path);
+  command.wait_until("it has run", [&] { return command.processor_time() > 1e-3; });
+  REQUIRE(command.wait().exit_code == 0);
+  CHECK(command.processor_time() > 1e-3);
+  CHECK(command.processor_time() < 20);
+}
+
+TEST_CASE("a wait in Python has the limits of the time that its test takes") {
+  const Ended ended = limited("python3 -c 'import sys; sys.path.insert(0, \"" + folders::source() +
+                                  "/tests/support\"); import waiting; "
+                                  "waiting.wait_until(\"the thaw\", lambda: False, idle=0.5)'",
+                              "60", "60");
+  CHECK(ended.exit_code == 1);
+  CHECK_THAT(ended.err, EndsWith("waiting.InVain: in vain for 0.5 s of idle time: the thaw\n"));
 }
