@@ -14,7 +14,7 @@ export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml'
 /// The most that a step of a test may take in its processes' time, as tests/support/limited.cpp measures it [s]; without limits
 /// by hand. And what is enough for an event to come: so many looks, and so much work of the commands that run [s].
 const factor = Number(process.env.DRAPE_TEST_PATIENCE || 1);
-const patience = {cpu: 100 * factor, idle: 40 * factor, looks: 60 * factor, work: 10 * factor};
+const patience = {cpu: 100 * factor, idle: 40 * factor, looks: 30 * factor, work: 10 * factor};
 let at = {test: '', step: '', begun: taken()};
 const commands = new Set();
 let chrome, closes = false;
