@@ -113,3 +113,29 @@ TEST_CASE("polygons that cross or touch themselves, or are not planar, are refus
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).fault == "");
   CHECK(cut_polygon({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).fault == "");
 }
+
+TEST_CASE("corners at one place, as at the poles of a sphere of quads, get triangles without area") {
+  Outline outline = {{0, 0, 0},     {1, 0, 0}, {1, 1, 0},     {1, 1, 0},
+                     {0.2, 0.2, 0}, {0, 1, 0}, {0, 1, 1e-15}, {0, 0, 0}};
+  for (std::size_t turn = 0; turn < outline.size(); ++turn) {
+    std::rotate(outline.begin(), outline.begin() + 1, outline.end());
+    const CutPolygon cut = cut_polygon(outline);
+    REQUIRE(cut.fault == "");
+    REQUIRE(cut.triangles.size() == outline.size() - 2);
+    std::set<std::pair<int, int>> sides;
+    double area = 0;
+    int empty = 0;
+    for (const auto& t : cut.triangles) {
+      CHECK(normal_of(outline, t).z() >= -1e-15);
+      area += normal_of(outline, t).norm();
+      empty += normal_of(outline, t).norm() < 1e-12;
+      for (int k = 0; k < 3; ++k) CHECK(sides.insert({t[k], t[(k + 1) % 3]}).second);
+    }
+    CHECK(empty == 3);
+    CHECK(area == Approx(0.6));
+    for (int k = 0; k < 8; ++k) CHECK(sides.count({k, (k + 1) % 8}) == 1);
+  }
+  for (const Outline& pole : {Outline{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                              Outline{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}})
+    CHECK(cut_polygon(pole).triangles.size() == 2);
+}

@@ -121,6 +121,30 @@ std::vector<std::array<int, 3>> ears(const Outline& outline) {
   return triangles;
 }
 
+/// Corners that do not coincide with the one before; the last not with the first either.
+std::vector<int> different_corners(const Outline& outline) {
+  constexpr double same = 1e-12;
+  std::vector<int> kept;
+  for (int k = 0; k < static_cast<int>(outline.size()); ++k)
+    if (kept.empty() || (outline[k] - outline[kept.back()]).norm() > same) kept.push_back(k);
+  while (kept.size() > 1 && (outline[kept.back()] - outline[kept[0]]).norm() <= same) kept.pop_back();
+  return kept;
+}
+
+/// The triangles of the corners `kept`, and for each other corner k one without area that joins it to k + 1.
+std::vector<std::array<int, 3>> with_all_corners(std::vector<std::array<int, 3>> triangles,
+                                                 const std::vector<int>& kept, int corner_count) {
+  for (auto& t : triangles)
+    for (int& k : t) k = kept[k];
+  for (int k = 0, at = -1; k < corner_count; ++k) {
+    if (at + 1 < static_cast<int>(kept.size()) && kept[at + 1] == k)
+      ++at;
+    else
+      triangles.push_back({kept[at], k, (k + 1) % corner_count});
+  }
+  return triangles;
+}
+
 CutPolygon refused(const std::string& why) { return {{}, why}; }
 
 }  // namespace
@@ -135,14 +159,18 @@ CutPolygon cut_polygon(const std::vector<Vector3d>& corners) {
     return refused("is not planar: its corners lie off their mean plane by " +
                    std::to_string(static_cast<int>(std::round(100 * flat.bend))) +
                    " % of its diameter; cut it into triangles");
-  if (is_fan(flat.outline)) return fan;
-  if (corners.size() > most_corners)
-    return refused("is concave and has " + std::to_string(corners.size()) + " corners, of at most " +
+  const std::vector<int> kept = different_corners(flat.outline);
+  Outline outline;
+  for (const int k : kept) outline.push_back(flat.outline[k]);
+  const bool is_simple_fan = is_fan(outline);
+  if (is_simple_fan && kept.size() == corners.size()) return fan;
+  if (!is_simple_fan && outline.size() > most_corners)
+    return refused("is concave and has " + std::to_string(outline.size()) + " corners, of at most " +
                    std::to_string(most_corners) + "; cut it into triangles");
-  if (const auto [i, j] = meeting_sides(flat.outline); i >= 0)
-    return refused("crosses or touches itself: its sides " + std::to_string(i) + " and " + std::to_string(j) +
-                   " (counted from 0) meet; cut it into faces that do not");
-  CutPolygon cut{ears(flat.outline), {}};
+  if (const auto [i, j] = is_simple_fan ? std::array{-1, -1} : meeting_sides(outline); i >= 0)
+    return refused("crosses or touches itself: its sides " + std::to_string(kept[i]) + " and " +
+                   std::to_string(kept[j]) + " (counted from 0) meet; cut it into faces that do not");
+  CutPolygon cut{with_all_corners(ears(outline), kept, static_cast<int>(corners.size())), {}};
   if (cut.triangles.size() != corners.size() - 2)
     return refused("cannot be cut: some of its corners lie on one line to round-off; cut it into triangles");
   return cut;

@@ -15,8 +15,9 @@ struct CutPolygon {
 
 /// Cuts a polygon of n ≥ 3 corners [m] into n - 2 triangles that face as it does: a fan around corner 0 if
 /// each triangle of it faces so, as in every convex polygon, and ears otherwise. A polygon without area is
-/// cut as a fan too. Refuses a polygon whose corners lie off its mean plane by more than 8 % of its diameter,
-/// and one that crosses or touches itself.
+/// cut as a fan too, and a corner at the place of the one before gets a triangle without area. Refuses a
+/// polygon whose corners lie off its mean plane by more than 8 % of its diameter, and one that crosses or
+/// touches itself.
 CutPolygon cut_polygon(const std::vector<Eigen::Vector3d>& corners);
 
 }  // namespace drape

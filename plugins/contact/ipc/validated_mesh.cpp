@@ -21,12 +21,12 @@ void refuse(const std::string& file, const std::vector<std::string>& lines) {
 
 /// How the triangles of another frame differ from those of the first; empty if they do not.
 std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
-  if (first.vertices.rows() != other.vertices.rows())
-    return "has " + std::to_string(other.vertices.rows()) + " vertices and not " +
-           std::to_string(first.vertices.rows());
   if (first.triangles.rows() != other.triangles.rows())
     return "has " + std::to_string(other.triangles.rows()) + " triangles and not " +
            std::to_string(first.triangles.rows());
+  if (first.vertices.rows() != other.vertices.rows())
+    return "has " + std::to_string(other.vertices.rows()) + " vertices and not " +
+           std::to_string(first.vertices.rows());
   for (Eigen::Index t = 0; t < first.triangles.rows(); ++t)
     if (first.triangles.row(t) != other.triangles.row(t))
       return "has other vertices in triangle " + std::to_string(t);
