@@ -63,9 +63,7 @@ class Handles final : public Energy {
       const double stiffness = handle.stiffness.value_or(material.membrane_modulus);
       for (int v : own)
         terms.push_back(
-            {v,
-             handle.has_transform() ? handle.target(level.rest.vertices.row(v))
-                                    : Eigen::Vector3d(placed_[level.index].row(v)),
+            {v, target_of(handle, v, level, placed_[level.index]),
              stiffness * material.area_density() * level.vertex_area[v] * coarse_area / own_area});
     }
     return std::make_unique<PositionPenalty>(std::move(terms));
@@ -122,6 +120,12 @@ std::vector<int> selected_vertices(const VertexSelection& selection, const Level
   return selected;
 }
 
+Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
+                          const Positions& placed) {
+  return selection.has_transform() ? selection.target(level.rest.vertices.row(vertex))
+                                   : Eigen::Vector3d(placed.row(vertex));
+}
+
 void check_boundary_conditions(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
   const ExperimentParameters& p = e.parameters;
   const auto location = [&](const char* key, std::size_t k) { return e.source.find(key)->items[k].where; };
@@ -147,10 +151,7 @@ std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, c
     const std::vector<int> selected = selected_vertices(p.pins[k], level, coarsest);
     require_vertices(selected, "pin " + std::to_string(k), level);
     for (const int v : selected)
-      by_vertex[v] = {v,
-                      p.pins[k].has_transform() ? p.pins[k].target(level.rest.vertices.row(v))
-                                                : Eigen::Vector3d(placed.row(v)),
-                      static_cast<int>(k)};
+      by_vertex[v] = {v, target_of(p.pins[k], v, level, placed), static_cast<int>(k)};
   }
   std::vector<DirichletVertex> dirichlet;
   for (const DirichletVertex& d : by_vertex)

@@ -9,6 +9,11 @@ namespace drape {
 std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest);
 
+/// The target [m] of a vertex that a pin or handle selects; without a transform, its position in `placed`
+/// (n×3) [m].
+Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
+                          const Positions& placed);
+
 /// Appends an error for every pin and handle that selects no vertex of a level, or one that does not exist.
 void check_boundary_conditions(const Experiment& experiment, const std::vector<Level>& levels,
                                ConfigErrors& errors);
@@ -19,9 +24,9 @@ void check_pin(const ExperimentParameters& parameters, std::size_t k, const Loca
 void check_handle(const ExperimentParameters& parameters, std::size_t k, const Location& where,
                   const std::vector<Level>& levels, ConfigErrors& errors);
 
-/// The Dirichlet vertices of a level with their targets [m]. The last pin that selects a vertex decides; a
-/// pin without a transform keeps it at its position in `placed` (n×3) [m]. Throws std::runtime_error naming a
-/// pin that selects no vertex.
+/// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
+/// one counts; they agree on its target (check_shared_vertices). Throws std::runtime_error naming a pin that
+/// selects no vertex.
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& parameters, const Level& level,
                                                 const Level& coarsest, const Positions& placed);
 

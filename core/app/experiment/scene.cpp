@@ -8,6 +8,7 @@
 #include "core/app/experiment/reference_file.h"
 #include "core/app/experiment/schedule_check.h"
 #include "core/app/experiment/schedule_stepping.h"
+#include "core/app/experiment/shared_vertices.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/same_entries.h"
@@ -220,6 +221,8 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   scene->energies = e.energies;
   for (const Level& level : scene->hierarchy.levels)
     scene->placed.push_back(make_start(level.rest.vertices, shapes[level.index], p.start, 0));
+  check_shared_vertices(e, scene->hierarchy.levels, scene->placed, errors);
+  if (!errors.empty()) return nullptr;
   if (auto handles = handles_energy(p, coarsest, scene->placed))
     scene->energies.push_back({"handles", std::move(handles)});
   for (const Level& level : scene->hierarchy.levels) {
