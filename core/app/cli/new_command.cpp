@@ -18,7 +18,8 @@ namespace {
 
 /// The experiment, less its name.
 constexpr const char* first_experiment = R"yaml(
-# The coarsest mesh: a flat pattern (square, rectangle, disc, polygon), or `shape: file` with `file: mesh.obj`.
+# The coarsest mesh: a flat pattern (square, rectangle, disc, polygon), or `shape: file` with `file: mesh.obj`, and with
+# `unit: mm` and `up: y` if the file is not in metres with z up.
 cloth: {shape: square, side: 1, vertices: 900}
 
 # Every level has four times the triangles of the one before: 900, 3.5K and 14K vertices here.

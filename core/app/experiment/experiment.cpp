@@ -35,6 +35,17 @@ void check_vertex_counts(const Experiment& e, ConfigErrors& errors) {
   }
 }
 
+/// `unit` and `up` of a start without a file would not be read.
+void check_start_coordinates(const Experiment& e, ConfigErrors& errors) {
+  const StartParameters& start = e.parameters.start;
+  if (!start.file.empty() || (!start.unit && !start.up)) return;
+  const std::string key = start.unit ? "unit" : "up";
+  errors.push_back({e.source.find("start")->find(key)->where,
+                    "\"" + key +
+                        "\" in start says how its \"file\" is read, and it has none; leave it out, "
+                        "or set it in cloth if the cloth is of a file"});
+}
+
 }  // namespace
 
 void check_name(const std::string& what, const std::string& name, const Location& where,
@@ -71,6 +82,7 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
   check_vertex_counts(e, errors);
+  check_start_coordinates(e, errors);
   make_plugins(registry, errors, e);
   check_schedule(e, errors);
   if (!errors.empty()) check_mesh_files(e, errors);

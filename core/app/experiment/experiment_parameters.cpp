@@ -44,6 +44,16 @@ void ClothParameters::declare(Declaration<ClothParameters>& d) {
       .path()
       .only_with("shape", {"file"})
       .description("mesh of the rest shape (OBJ, OFF, PLY or STL), relative to this file");
+  declare_file_coordinates(d);
+  for (const char* key : {"unit", "up"}) d.declared(key).only_with("shape", {"file"});
+  declare_scale(d)
+      .only_with("shape", {"file"})
+      .description("scale factor on the file's mesh, and so on the rest shape, applied before `rotate`");
+  declare_rotate(d)
+      .only_with("shape", {"file"})
+      .description(
+          "rotation of the file's mesh about the x, then y, then z axis; regions of pins count from the "
+          "result");
   d.add("triangulation", &ClothParameters::triangulation)
       .choices({"one_way", "criss_cross", "equilateral", "random"})
       .only_with("shape", {"square", "rectangle"})
@@ -75,6 +85,9 @@ void StartParameters::declare(Declaration<StartParameters>& d) {
       .description(
           "mesh with the coarsest level's triangles that replaces the rest shape as start; finer levels "
           "split it at edge midpoints");
+  declare_file_coordinates(d);
+  d.declared("unit").description("unit of the start's file; null: that of the cloth's file");
+  d.declared("up").description("axis of the start's file that points up; null: that of the cloth's file");
   d.add("scale", &StartParameters::scale)
       .at_least(-bounds::largest_scale)
       .at_most(bounds::largest_scale)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/mesh/file_coordinates.h"
 #include "core/kernel/model/material.h"
 #include "core/kernel/plugin/parameters.h"
 #include "core/kernel/solve/newton_parameters.h"
@@ -17,14 +18,17 @@ struct LoopParameters {
   static void declare(Declaration<LoopParameters>& d);
 };
 
-/// The coarsest level: a flat pattern or a mesh file.
-struct ClothParameters {
+/// The coarsest level: a flat pattern, or a mesh file that is read by its FileCoordinates, scaled, then
+/// rotated.
+struct ClothParameters : FileCoordinates {
   std::string shape = "square";
   double side = 1;
   Eigen::Vector2d size{1, 1};
   double radius = 0.5;
   std::vector<LoopParameters> loops;
   std::string file;
+  double scale = 1;
+  Eigen::Vector3d rotate{0, 0, 0};
   std::string triangulation = "one_way";
   int vertices = 1024;
   int columns = 0, rows = 0;
@@ -35,6 +39,7 @@ struct ClothParameters {
 /// The initial state: the rest shape, or that of a file, scaled, then rotated, then translated.
 struct StartParameters {
   std::string file;
+  std::optional<std::string> unit, up;  ///< of the file; without a value, those of the cloth's file
   Eigen::Vector3d scale{1, 1, 1};
   Eigen::Vector3d rotate{0, 0, 0};
   Eigen::Vector3d translate{0, 0, 0};
@@ -43,6 +48,10 @@ struct StartParameters {
   int seed = 1;
   /// The initial position of a vertex; `noise` is normal to the pattern [m].
   Eigen::Vector3d transformed(const Eigen::Vector3d& rest, double noise = 0) const;
+  /// How the start's file is read beside this cloth.
+  FileCoordinates file_coordinates(const ClothParameters& cloth) const {
+    return {unit.value_or(cloth.unit), up.value_or(cloth.up)};
+  }
   static void declare(Declaration<StartParameters>& d);
 };
 

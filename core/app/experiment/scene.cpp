@@ -15,6 +15,7 @@
 #include "core/kernel/mesh/check.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/rotation.h"
 
 namespace drape {
 
@@ -27,11 +28,19 @@ TriangleMesh make_grid(const ClothParameters& c, const Eigen::Vector2d& size) {
               c.triangulation == "one_way" ? Diagonals::one_way : Diagonals::criss_cross);
 }
 
+TriangleMesh read_cloth(const ClothParameters& c) {
+  TriangleMesh mesh = read_mesh(c.file);
+  c.convert(mesh.vertices);
+  mesh.vertices *= c.scale;
+  if (!c.rotate.isZero(0)) mesh.vertices *= rotation_matrix(c.rotate).transpose();
+  return mesh;
+}
+
 TriangleMesh make_cloth(const Experiment& e) {
   const ClothParameters& c = e.parameters.cloth;
   if (c.shape == "file") {
     if (c.file.empty()) throw std::runtime_error("\"shape: file\" needs \"file\", the mesh to read");
-    return read_mesh(c.file);
+    return read_cloth(c);
   }
   if (c.shape == "disc") return disc(c.radius, c.vertices);
   if (c.shape == "polygon") {
@@ -96,6 +105,7 @@ std::optional<TriangleMesh> start_mesh(const Experiment& e, ConfigErrors& errors
   const std::string& file = e.parameters.start.file;
   try {
     TriangleMesh mesh = read_mesh(file);
+    e.parameters.start.file_coordinates(e.parameters.cloth).convert(mesh.vertices);
     const std::vector<std::string> faults = check_coordinates(mesh.vertices);
     for (const std::string& fault : faults) errors.push_back({e.location_of("start"), file + ": " + fault});
     if (faults.empty()) return mesh;

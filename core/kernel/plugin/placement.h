@@ -5,15 +5,44 @@
 
 namespace drape {
 
-/// Declares `rotate` and `translate`, the members by which a struct places the cloth or an obstacle: scaled
-/// where it has a scale, then rotated about the origin, then translated. Returns the handle of `translate`.
+/// Declares `unit` and `up`: how a mesh file that the struct names is read (core/kernel/mesh/
+/// file_coordinates.h).
 template <class Struct>
-ParameterHandle declare_placement(Declaration<Struct>& d) {
-  d.add("rotate", &Struct::rotate)
+void declare_file_coordinates(Declaration<Struct>& d) {
+  d.add("unit", &Struct::unit)
+      .choices({"mm", "cm", "m", "inch"})
+      .description("unit of the file's coordinates, which are converted to metres before `scale`");
+  d.add("up", &Struct::up)
+      .choices({"y", "z"})
+      .description(
+          "axis of the file that points up; with y, its (x, y, z) is read as (x, -z, y), before `rotate`");
+}
+
+/// Declares `scale`, one factor on all coordinates of a mesh.
+template <class Struct>
+ParameterHandle declare_scale(Declaration<Struct>& d) {
+  return d.add("scale", &Struct::scale)
+      .unit("1")
+      .at_least(1 / bounds::largest_scale)
+      .at_most(bounds::largest_scale)
+      .description("scale factor, applied before `rotate` and `translate`");
+}
+
+/// Declares `rotate`, a rotation about the origin.
+template <class Struct>
+ParameterHandle declare_rotate(Declaration<Struct>& d) {
+  return d.add("rotate", &Struct::rotate)
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
       .description("rotation about the x, then y, then z axis, applied before `translate`");
+}
+
+/// Declares `rotate` and `translate`, the members by which a struct places the cloth or an obstacle: scaled
+/// where it has a scale, then rotated about the origin, then translated. Returns the handle of `translate`.
+template <class Struct>
+ParameterHandle declare_placement(Declaration<Struct>& d) {
+  declare_rotate(d);
   return d.add("translate", &Struct::translate)
       .unit("m")
       .at_least(-bounds::largest_coordinate)

@@ -16,11 +16,14 @@ LoadedMeshes frames_of(const ObstacleParameters& p) {
   const int named = int(!p.mesh.empty()) + int(p.meshed_shape.has_value()) + int(!p.animation.empty());
   if (named != 1)
     throw std::runtime_error("needs exactly one of \"mesh\", \"meshed_shape\" and \"animation\"");
+  if (p.meshed_shape && FileCoordinates(p) != FileCoordinates())
+    throw std::runtime_error(
+        "\"unit\" and \"up\" say how a mesh file is read; a meshed_shape is in metres: leave them out");
   if (p.meshed_shape == "box") return {{validated_box()}, {}};
   if (p.meshed_shape == "sphere") return {{validated_sphere(p.subdivisions)}, {}};
-  if (p.animation.empty()) return load_validated_meshes({p.mesh}, p.strict);
+  if (p.animation.empty()) return load_validated_meshes({p.mesh}, p, p.strict);
   if (p.cages.count > 0) throw std::runtime_error("\"cages\" need a mesh without \"animation\"");
-  return load_validated_meshes(p.animation, p.strict);
+  return load_validated_meshes(p.animation, p, p.strict);
 }
 
 std::string name_of(const ObstacleParameters& p, int number) {
@@ -80,11 +83,8 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
       .description("whether a mesh that a cloth could not have is refused; otherwise it is repaired");
   d.add_section("cages", &P::cages)
       .description("closed surfaces around the obstacle that replace it on coarse levels");
-  d.add("scale", &P::scale)
-      .unit("1")
-      .at_least(1 / bounds::largest_scale)
-      .at_most(bounds::largest_scale)
-      .description("scale factor, applied before `rotate` and `translate`");
+  declare_file_coordinates(d);
+  declare_scale(d);
 }
 
 Eigen::Matrix3d Pose::linear() const { return scale * rotation_matrix(rotate); }
@@ -118,7 +118,8 @@ ObstacleMeshes ObstacleMeshes::of(const ObstacleParameters& p, int number) {
 
 bool ObstacleMeshes::are_same(const ObstacleParameters& a, const ObstacleParameters& b) {
   return a.mesh == b.mesh && a.meshed_shape == b.meshed_shape && a.subdivisions == b.subdivisions &&
-         a.animation == b.animation && a.strict == b.strict && a.cages == b.cages;
+         a.animation == b.animation && a.strict == b.strict && FileCoordinates(a) == FileCoordinates(b) &&
+         a.cages == b.cages;
 }
 
 Obstacle Obstacle::of(const ObstacleParameters& p, int number, const ObstacleMeshes& meshes, int level) {

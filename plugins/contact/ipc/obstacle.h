@@ -7,14 +7,15 @@
 
 #include "core/kernel/contact/obstacle_parameters.h"
 #include "core/kernel/contact/obstacle_surface.h"
+#include "core/kernel/mesh/file_coordinates.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 
 namespace drape::ipc {
 
 /// One obstacle in a config: a mesh and its transform. Exactly one of `mesh`, `meshed_shape` and `animation`
-/// says which mesh.
-struct ObstacleParameters : CommonObstacleParameters {
+/// says which mesh. Files are read by the FileCoordinates.
+struct ObstacleParameters : CommonObstacleParameters, FileCoordinates {
   std::string mesh;                         ///< a file
   std::optional<std::string> meshed_shape;  ///< "box" or "sphere"
   Eigen::Vector3d size{1, 1, 1};

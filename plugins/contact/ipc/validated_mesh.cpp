@@ -51,10 +51,12 @@ bool are_equal(const ValidatedMeshes& a, const ValidatedMeshes& b) {
   });
 }
 
-LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, bool strict) {
+LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
+                                   bool strict) {
   std::vector<TriangleMesh> frames;
   for (const std::string& file : files) {
     frames.push_back(read_mesh(file));
+    coordinates.convert(frames.back().vertices);
     refuse(file, strict ? check_mesh(frames.back()) : check_coordinates(frames.back().vertices));
     if (const std::string what = difference(frames[0], frames.back()); !what.empty())
       throw std::runtime_error(file + " " + what + " as " + files[0] +

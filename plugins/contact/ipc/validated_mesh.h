@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/kernel/mesh/file_coordinates.h"
 #include "core/kernel/mesh/repair.h"
 #include "core/kernel/mesh/topology.h"
 
@@ -28,9 +29,11 @@ struct LoadedMeshes {
   ValidatedMeshes meshes;
   MeshRepair repair;
 };
-/// Reads one mesh file, or the frames of an animation, and repairs them together. A `strict` obstacle is not
-/// repaired. Throws RefusedParameters or std::runtime_error naming the files and their faults.
-LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, bool strict);
+/// Reads one mesh file, or the frames of an animation, converts their coordinates, and repairs them together.
+/// A `strict` obstacle is not repaired. Throws RefusedParameters or std::runtime_error naming the files and
+/// their faults.
+LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
+                                   bool strict);
 /// unit_box and unit_sphere of core/kernel/mesh/primitives.h.
 std::shared_ptr<const ValidatedMesh> validated_box();
 std::shared_ptr<const ValidatedMesh> validated_sphere(int subdivisions);
