@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/plausibility.h"
 #include "core/app/run/start_repair.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/parameters.h"
@@ -85,7 +86,15 @@ Loaded::Loaded(const ConfigArguments& arguments, const Registry& registry) {
         build_scene(*experiment, errors,
                     arguments.allow_start_repair ? IntersectingStart::allowed : IntersectingStart::refused);
   if (scene && arguments.allow_start_repair) repair(errors);
-  if (!errors.empty()) exit_code = report_errors(errors);
+  if (!errors.empty()) {
+    exit_code = report_errors(errors);
+    return;
+  }
+  summary = summary_of(*scene);
+  std::vector<std::string> warnings;
+  for (const ConfigError& warning : plausibility_warnings(*experiment, *scene, summary))
+    warnings.push_back(warning.text());
+  warn_of(warnings);
 }
 
 void Loaded::repair(ConfigErrors& errors) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/app/experiment/experiment.h"
+#include "core/app/experiment/scene_summary.h"
 #include "core/app/experiment/size_estimate.h"
 
 namespace drape {
@@ -38,10 +39,12 @@ struct ConfigArguments {
   LargeMemory large_memory() const { return allow_memory ? LargeMemory::allowed : LargeMemory::refused; }
 };
 
-/// An experiment and its scene; both empty, with errors printed, if they are not valid.
+/// An experiment and its scene; both empty, with errors printed, if they are not valid. Warns of what is not
+/// plausible.
 struct Loaded {
   std::optional<Experiment> experiment;
   std::unique_ptr<Scene> scene;
+  SceneSummary summary;
   int exit_code = 0;
 
   Loaded(const ConfigArguments& arguments, const Registry& registry);

@@ -3,6 +3,7 @@
 
 #include "core/app/experiment/experiment_path.h"
 #include "core/app/experiment/method_choice.h"
+#include "core/app/experiment/plausibility.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/python/callbacks.h"
@@ -68,6 +69,17 @@ class ExperimentHandle {
   ConfigNode source_;
 };
 
+/// Issues a UserWarning for everything about the scene that no fabric has.
+void warn_of_implausible(const SceneHandle& s) {
+  ConfigErrors warnings;
+  {
+    const py::gil_scoped_release released;  // binding energies may call prototypes
+    warnings = plausibility_warnings(*s.experiment, *s.scene, summary_of(*s.scene));
+  }
+  for (const ConfigError& warning : warnings)
+    if (PyErr_WarnEx(PyExc_UserWarning, warning.text().c_str(), 1) != 0) throw py::error_already_set();
+}
+
 std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
                               const std::optional<std::vector<std::string>>& methods,
                               const std::optional<std::filesystem::path>& out, const py::object& on_iteration,
@@ -75,6 +87,7 @@ std::shared_ptr<RunStore> run(const ExperimentHandle& handle,
                               bool allow_memory) {
   Callbacks callbacks(on_iteration, on_level);
   const SceneHandle scene = handle.scene(allow_memory);
+  warn_of_implausible(scene);
   const auto folder =
       out ? std::make_shared<const RunFolderHandle>(*out) : std::make_shared<const RunFolderHandle>();
   RunOptions options;
@@ -133,11 +146,11 @@ void bind_experiment(py::module_& m) {
            "Override one value, as `drape run --set KEY=VALUE` does; a str is read as YAML. Raises "
            "ConfigError for a path that is none. The key and the value are checked by `check` and `run`.")
       .def(
-          "check", [](const ExperimentHandle& e, bool allow_memory) { e.scene(allow_memory); },
+          "check",
+          [](const ExperimentHandle& e, bool allow_memory) { warn_of_implausible(e.scene(allow_memory)); },
           py::arg("allow_memory") = false,
           "Validate the experiment without running it. Raises ConfigError with every fault and its file, "
-          "line "
-          "and column.")
+          "line and column. Warns of what no fabric has, as `run` does.")
       .def_property_readonly(
           "resolved", [](const ExperimentHandle& e) { return value_of(e.read()->resolved); },
           "The experiment as a dict with every parameter of every plugin.")

@@ -7,6 +7,7 @@
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
 #include "core/kernel/contact/surface_contacts.h"
+#include "core/kernel/contact/surface_gap.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 
 namespace drape::ipc {
@@ -220,6 +221,16 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
 
 SmallestGap BoundIpc::smallest_gap(const Positions& x) const {
   return static_cast<const IpcCandidates&>(*build_candidates(x, x)).smallest_gap();
+}
+
+std::vector<ObstacleGap> BoundIpc::obstacle_gaps(const Positions& x) const {
+  const TriangleMesh cloth{x, cloth_.triangles};
+  std::vector<ObstacleGap> gaps;
+  for (const Obstacle& body : obstacles_->bodies) {
+    const Eigen::Vector3d connection = shortest_connection(cloth, body.mesh);
+    gaps.push_back({body.name, connection.norm(), connection.normalized()});
+  }
+  return gaps;
 }
 
 StepLimit BoundIpc::max_step(const BoundContact& before, const Positions& x) const {

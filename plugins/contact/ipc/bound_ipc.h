@@ -6,6 +6,7 @@
 
 #include "core/kernel/contact/broad_phase.h"
 #include "core/kernel/contact/candidates.h"
+#include "core/kernel/model/obstacle_gap.h"
 #include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
@@ -43,7 +44,10 @@ struct ObstacleTree {
 };
 
 /// The contact model `ipc` bound to one level.
-class BoundIpc final : public BoundContact, public KinematicObstacles, public SmallestGapProvider {
+class BoundIpc final : public BoundContact,
+                       public KinematicObstacles,
+                       public SmallestGapProvider,
+                       public ObstacleGapProvider {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const ObstacleTree> obstacles,
            std::shared_ptr<const RestCloth> rest, const Material& material);
@@ -64,6 +68,7 @@ class BoundIpc final : public BoundContact, public KinematicObstacles, public Sm
   std::string remark() const override { return rest_->layers.remark(); }
 
   SmallestGap smallest_gap(const Positions& x) const override;
+  std::vector<ObstacleGap> obstacle_gaps(const Positions& x) const override;
   StepLimit max_step(const BoundContact& before, const Positions& x) const override;
   Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override;
 

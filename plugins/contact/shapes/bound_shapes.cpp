@@ -1,6 +1,7 @@
 #include "plugins/contact/shapes/bound_shapes.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "core/kernel/contact/nonlinear_ccd.h"
 #include "core/kernel/contact/vertex_contacts.h"
 #include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/model/obstacle_gap.h"
 #include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
@@ -91,7 +93,10 @@ class ShapesCandidates final : public CollisionCandidates {
   CandidatePairs candidates_;
 };
 
-class BoundShapes final : public BoundContact, public KinematicObstacles, public SmallestGapProvider {
+class BoundShapes final : public BoundContact,
+                          public KinematicObstacles,
+                          public SmallestGapProvider,
+                          public ObstacleGapProvider {
  public:
   explicit BoundShapes(ShapeScene scene) : scene_(std::make_shared<const ShapeScene>(std::move(scene))) {}
 
@@ -136,6 +141,19 @@ class BoundShapes final : public BoundContact, public KinematicObstacles, public
       smallest.between = triangle_name(pair.triangle) + " and " + scene_->solids[pair.solid].name;
     }
     return smallest;
+  }
+
+  std::vector<ObstacleGap> obstacle_gaps(const Positions& x) const override {
+    std::vector<ObstacleGap> gaps;
+    for (const Solid& solid : scene_->solids) {
+      Separation nearest{{}, std::numeric_limits<double>::infinity()};
+      for (int t = 0; t < scene_->cloth.triangles.rows(); ++t) {
+        const Separation separation = separate(solid, scene_->corners(t, x));
+        if (separation.gap < nearest.gap) nearest = separation;
+      }
+      gaps.push_back({solid.name, nearest.gap, nearest.normal});
+    }
+    return gaps;
   }
 
   StepLimit max_step(const BoundContact& before, const Positions& x) const override {

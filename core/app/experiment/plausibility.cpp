@@ -1,0 +1,173 @@
+#include "core/app/experiment/plausibility.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace drape {
+
+namespace {
+
+// What no fabric and no scene with one exceeds, by a wide margin: a warning has to be a mistake.
+constexpr double smallest_cloth = 5e-3, largest_cloth = 50;     // diagonal [m]
+constexpr double least_weight = 3e-3, largest_weight = 10;      // [kg/m²]
+constexpr double shortest_bending = 2e-4, longest_bending = 2;  // bending length [m]
+constexpr double fewest_edges = 0.02, most_edges = 1000;        // bending length over an edge
+constexpr double largest_dhat = 1.5;                            // d̂ over an edge
+constexpr double largest_obstacle = 100;                        // diagonal [m]
+constexpr double largest_ratio = 50;                            // of that to the cloth's
+constexpr double largest_stretch = 2;                           // of the start, or its inverse
+
+class Warnings {
+ public:
+  Warnings(const Experiment& e, ConfigErrors& all) : e_(e), all_(all) {}
+  void add(const std::string& key, const std::string& message) {
+    all_.push_back({e_.location_of(key), message});
+  }
+
+ private:
+  const Experiment& e_;
+  ConfigErrors& all_;
+};
+
+void check_size(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
+  const double size = s.size.norm();
+  const bool file = p.cloth.shape == "file";
+  if (size > largest_cloth)
+    warnings.add("cloth", "the cloth is " + size_text(s.size) +
+                              "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
+                              (file ? "if its file is in millimetres or centimetres, add \"unit: mm\" or "
+                                      "\"unit: cm\""
+                                    : "if these are millimetres, divide every length by 1000"));
+  else if (size < smallest_cloth)
+    warnings.add("cloth", "the cloth is " + size_text(s.size) +
+                              "; fabric is usually between 0.05 and 10 m wide, and lengths are in metres; " +
+                              (file ? "choose the file's \"unit\" or \"scale\"" : "choose a larger size"));
+}
+
+void check_material(const ExperimentParameters& p, const SceneSummary& s, Warnings& warnings) {
+  const double weight = p.material.area_density();
+  if (weight < least_weight || weight > largest_weight)
+    warnings.add("material", "a square metre of the cloth has " + rounded_text(weight, 2) +
+                                 " kg (density × thickness); fabric usually has 0.02 to 2 kg; density is in "
+                                 "kg/m³, and thickness in metres: 0.3 mm is 3e-4");
+  if (!s.bending_length) return;
+  const double length = *s.bending_length, edges = length / s.median_edge;
+  const std::string on = " of level " + std::to_string(s.level);
+  const std::string moduli = "\"bending_modulus\" (in Pa) and \"thickness\" (in metres, to the third power)";
+  if (length < shortest_bending || length > longest_bending)
+    warnings.add("material", "weight bends this cloth over a length of " + length_text(length) +
+                                 "; the bending length of fabric is usually 5 to 100 mm; check " + moduli);
+  else if (edges > most_edges)
+    warnings.add("material", "the bending length of " + length_text(length) + " is " +
+                                 rounded_text(edges, 2) + " edges" + on +
+                                 "; 2 to 20 are usual; take fewer vertices or levels, or check " + moduli);
+  else if (edges < fewest_edges && s.size.norm() <= largest_cloth)
+    warnings.add("cloth", "the bending length of " + length_text(length) + " is " + rounded_text(edges, 2) +
+                              " edges" + on +
+                              ", so no fold of the cloth can form; 2 to 20 are usual; take more vertices or "
+                              "levels, or check " +
+                              moduli);
+}
+
+void check_contact(const SceneSummary& s, Warnings& warnings) {
+  if (s.dhat > largest_dhat * s.median_edge)
+    warnings.add("contact", "the contact distance dhat of " + length_text(s.dhat) +
+                                " is longer than most edges"
+                                " of level " +
+                                std::to_string(s.level) + " (" + length_text(s.median_edge) +
+                                "); a tenth to a half of an edge is usual; lower \"dhat\", or take fewer "
+                                "vertices or levels");
+  for (std::size_t i = 0; i < s.obstacles.size(); ++i)
+    if (const double size = s.obstacle_sizes[i].norm();
+        size > largest_obstacle && size > largest_ratio * s.size.norm())
+      warnings.add("obstacles", "the obstacle " + s.obstacles[i].obstacle + " is " +
+                                    size_text(s.obstacle_sizes[i]) + " and the cloth " + size_text(s.size) +
+                                    "; lengths are in metres: if its file is in millimetres or centimetres, "
+                                    "add \"unit: mm\" or \"unit: cm\"");
+}
+
+/// The median of each edge's length in the start over that at rest.
+double start_stretch(const Level& level, const Positions& start) {
+  const auto& edges = level.topology.edges;
+  std::vector<double> stretch(edges.rows());
+  for (Eigen::Index e = 0; e < edges.rows(); ++e) {
+    const auto length = [&](const Positions& x) { return (x.row(edges(e, 0)) - x.row(edges(e, 1))).norm(); };
+    stretch[e] = length(start) / length(level.rest.vertices);
+  }
+  const auto middle = stretch.begin() + std::ssize(stretch) / 2;
+  std::nth_element(stretch.begin(), middle, stretch.end());
+  return *middle;
+}
+
+void check_start(const Experiment& e, const Scene& scene, Warnings& warnings) {
+  const double stretch = start_stretch(scene.hierarchy.levels[0], scene.placed[0]);
+  if (stretch <= largest_stretch && stretch >= 1 / largest_stretch) return;
+  const StartParameters& start = e.parameters.start;
+  warnings.add("start",
+               "the start has " + rounded_text(stretch, 2) +
+                   " times the lengths of the rest shape, so the cloth begins strained; 1 is usual; " +
+                   (start.file.empty() ? "\"scale\" of a mesh file belongs to cloth, which scales the "
+                                         "rest shape too"
+                                       : "give the \"unit\" of the start's file, or its \"scale\""));
+}
+
+/// Two border vertices at one place, and how many border vertices lie on another one.
+struct Coincidence {
+  int first = -1, second = -1, count = 0;
+};
+
+/// Compares each border vertex with those in the 27 cells around it, of a grid as fine as the tolerance.
+Coincidence coincident_border(const Level& level, double tolerance) {
+  using Cell = std::array<double, 3>;
+  const Positions& x = level.rest.vertices;
+  std::multimap<Cell, int> seen;
+  Coincidence found;
+  for (int v = 0; v < level.vertex_count(); ++v) {
+    if (!level.topology.on_border[v]) continue;
+    Cell cell;
+    for (int c = 0; c < 3; ++c) cell[c] = std::floor(x(v, c) / tolerance);
+    int on = -1;
+    for (int n = 0; n < 27 && on < 0; ++n) {
+      const Cell near{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
+      const auto [begin, end] = seen.equal_range(near);
+      for (auto it = begin; it != end && on < 0; ++it)
+        if ((x.row(v) - x.row(it->second)).norm() < tolerance) on = it->second;
+    }
+    seen.emplace(cell, v);
+    if (on < 0) continue;
+    if (found.count++ == 0) found = {on, v, 1};
+  }
+  return found;
+}
+
+void check_welded(const Experiment& e, const Level& coarsest, double median_edge, Warnings& warnings) {
+  if (e.parameters.cloth.shape != "file") return;
+  constexpr double same_place = 1e-4;  // of an edge: files round coordinates
+  const Coincidence found = coincident_border(coarsest, same_place * median_edge);
+  if (found.count == 0) return;
+  const Eigen::RowVector3d at = coarsest.rest.vertices.row(found.first);
+  warnings.add("cloth", std::to_string(found.count) +
+                            (found.count == 1 ? " border vertex lies" : " border vertices lie") +
+                            " on another one, as " + std::to_string(found.second) + " on " +
+                            std::to_string(found.first) + " (counted from 0) at (" + rounded_text(at.x(), 3) +
+                            ", " + rounded_text(at.y(), 3) + ", " + rounded_text(at.z(), 3) +
+                            "): the cloth is not joined there; if it should be, weld them in the file");
+}
+
+}  // namespace
+
+ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, const SceneSummary& s) {
+  ConfigErrors all;
+  Warnings warnings(e, all);
+  check_size(e.parameters, s, warnings);
+  check_welded(e, scene.hierarchy.levels[0], s.median_edge, warnings);
+  check_material(e.parameters, s, warnings);
+  check_start(e, scene, warnings);
+  check_contact(s, warnings);
+  return all;
+}
+
+}  // namespace drape

@@ -1,0 +1,135 @@
+#include "core/app/experiment/scene_summary.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/kernel/elements/bending_stiffness.h"
+#include "core/kernel/files/number_text.h"
+#include "core/kernel/model/smallest_gap.h"
+
+namespace drape {
+
+namespace {
+
+Eigen::Vector3d extents(const Positions& x) { return x.colwise().maxCoeff() - x.colwise().minCoeff(); }
+
+/// The acceleration that energies give to all masses alike [m/s²]; 0 without one.
+double gravity_of(const LevelModel& model, const std::vector<NamedEnergy>& energies) {
+  const Positions origin = Positions::Zero(model.level().vertex_count(), 3);
+  double gravity = 0;
+  for (const NamedEnergy& named : energies) {
+    if (named.energy->role() != EnergyRole::external) continue;
+    const auto energy = named.energy->bind(model.level(), model.material());
+    if (energy->stencils().rows() > 0) continue;  // it depends on the state
+    Positions force = Positions::Zero(origin.rows(), 3);
+    energy->add_gradient(origin, force);
+    const Positions each = model.masses().cwiseInverse().asDiagonal() * force;
+    const double first = each.row(0).norm();
+    if ((each.rowwise() - each.row(0)).rowwise().norm().maxCoeff() <= 1e-6 * first)
+      gravity = std::max(gravity, first);
+  }
+  return gravity;
+}
+
+void add_edges(const Level& level, SceneSummary& summary) {
+  const auto& edges = level.topology.edges;
+  std::vector<double> lengths(edges.rows());
+  for (Eigen::Index e = 0; e < edges.rows(); ++e)
+    lengths[e] = (level.rest.vertices.row(edges(e, 0)) - level.rest.vertices.row(edges(e, 1))).norm();
+  const auto middle = lengths.begin() + std::ssize(lengths) / 2;
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  summary.median_edge = *middle;
+  summary.longest_edge = *std::max_element(middle, lengths.end());
+  summary.shortest_edge = *std::min_element(lengths.begin(), middle + 1);
+  summary.level = level.index;
+}
+
+void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
+  for (const auto& contact : model.contacts()) {
+    if (const auto* gaps = dynamic_cast<const SmallestGapProvider*>(contact.get()))
+      summary.dhat = std::max(summary.dhat, gaps->smallest_gap(start).dhat);
+    const auto* obstacles = dynamic_cast<const ObstacleGapProvider*>(contact.get());
+    if (!obstacles) continue;
+    for (ObstacleGap& gap : obstacles->obstacle_gaps(start)) summary.obstacles.push_back(std::move(gap));
+    for (const TriangleMesh& mesh : contact->obstacles())
+      summary.obstacle_sizes.push_back(extents(mesh.vertices));
+  }
+}
+
+std::string edges_text(double length, const SceneSummary& s) {
+  return length_text(length) + " (" + rounded_text(length / s.median_edge, 2) + " edges)";
+}
+
+/// Two lengths of one unit: "8–31 mm".
+std::string range_text(double from, double to) {
+  const bool small = to < 0.1;
+  const std::string low = rounded_text(small ? 1e3 * from : from, 2),
+                    high = rounded_text(small ? 1e3 * to : to, 2);
+  return (low == high ? low : low + "–" + high) + (small ? " mm" : " m");
+}
+
+std::string mass_text(double mass) {
+  return mass < 0.01 ? rounded_text(1e3 * mass, 2) + " g" : rounded_text(mass, 2) + " kg";
+}
+
+}  // namespace
+
+SceneSummary summary_of(const Scene& scene) {
+  const LevelModel& coarsest = scene.model(0);
+  const Material& material = coarsest.material();
+  SceneSummary summary;
+  summary.size = extents(coarsest.level().rest.vertices);
+  summary.parts = static_cast<int>(coarsest.level().topology.components().size());
+  summary.mass = coarsest.masses().sum();
+  add_edges(scene.hierarchy.levels.back(), summary);
+  const bool bends = std::any_of(scene.energies.begin(), scene.energies.end(), [](const NamedEnergy& named) {
+    return named.energy->role() == EnergyRole::bending;
+  });
+  const double gravity = gravity_of(coarsest, scene.energies), stiffness = 2 * bending_stiffness(material);
+  if (bends && gravity > 0 && stiffness > 0)
+    summary.bending_length = std::cbrt(stiffness / (material.area_density() * gravity));
+  add_contacts(coarsest, scene.starts[0], summary);
+  return summary;
+}
+
+std::string text_of(const SceneSummary& s) {
+  std::string text = size_text(s.size) + ", " + std::to_string(s.parts) +
+                     (s.parts == 1 ? " part" : " parts") + ", edges " +
+                     range_text(s.shortest_edge, s.longest_edge) +
+                     (s.level > 0 ? " on level " + std::to_string(s.level) : "") + ", " + mass_text(s.mass);
+  if (s.bending_length) text += ", bending length " + edges_text(*s.bending_length, s);
+  if (s.dhat > 0) text += ", d̂ " + edges_text(s.dhat, s);
+  const auto nearest =
+      std::min_element(s.obstacles.begin(), s.obstacles.end(),
+                       [](const ObstacleGap& a, const ObstacleGap& b) { return a.gap < b.gap; });
+  if (nearest == s.obstacles.end()) return text;
+  constexpr double steep = 0.5;  // the sine of 30°
+  const double up = nearest->direction.z();
+  return text + ", starts " + length_text(nearest->gap) +
+         (up > steep    ? " above "
+          : up < -steep ? " below "
+                        : " beside ") +
+         nearest->obstacle;
+}
+
+std::string size_text(const Eigen::Vector3d& size) {
+  const bool small = size.maxCoeff() < 0.1;
+  std::string text;
+  for (const double extent : size)
+    if (extent > 1e-5 * size.maxCoeff())
+      text += (text.empty() ? "" : " × ") + rounded_text(small ? 1e3 * extent : extent, 3);
+  return text + (small ? " mm" : " m");
+}
+
+std::string length_text(double length) {
+  return length < 0.1 ? rounded_text(1e3 * length, 2) + " mm" : rounded_text(length, 2) + " m";
+}
+
+std::string rounded_text(double value, int digits) {
+  const double size = std::abs(value);
+  if (!(size >= std::pow(10.0, digits - 0.5)) || size > 1e15) return general_text(value, digits);
+  const double unit = std::pow(10.0, std::floor(std::log10(size)) - digits + 1);
+  return fixed_text(unit > 1 ? std::round(value / unit) * unit : value, 0);
+}
+
+}  // namespace drape

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+
+#include "core/app/experiment/experiment.h"
+#include "core/kernel/model/obstacle_gap.h"
+
+namespace drape {
+
+/// The quantities of a scene that a person can judge, and that a wrong unit or axis changes.
+struct SceneSummary {
+  Eigen::Vector3d size;  ///< of the rest shape's bounding box on the coarsest level [m]
+  int parts = 0;         ///< number of connected parts
+  int level = 0;         ///< the finest, whose edges at rest these are [m]:
+  double shortest_edge = 0, median_edge = 0, longest_edge = 0;
+  double mass = 0;                       ///< [kg]
+  std::optional<double> bending_length;  ///< (D/(ρ d g))^⅓ [m]; none without bending or uniform gravity
+  double dhat = 0;                       ///< the largest d̂ of the contact models [m]; 0 without one
+  std::vector<ObstacleGap> obstacles;    ///< the gap of each obstacle at the coarsest level's start
+  std::vector<Eigen::Vector3d> obstacle_sizes;  ///< of their bounding boxes [m], in the same order
+};
+
+SceneSummary summary_of(const Scene& scene);
+
+/// One line such as "0.62 × 0.7 m, 1 part, edges 8–31 mm, 0.19 kg, bending length 12 mm (2.1 edges), d̂ 1 mm
+/// (0.04 edges), starts 20 mm above body". Leaves out what the scene does not have.
+std::string text_of(const SceneSummary& summary);
+
+/// The extents of a bounding box; without the third, if it is flat: "0.62 × 0.7 m".
+std::string size_text(const Eigen::Vector3d& size);
+
+/// A length with two significant digits, in millimetres below 0.1 m: "31 mm", "0.25 m".
+std::string length_text(double length);
+
+/// A number with so many significant digits and without exponent, from 1e-4 to 1e15.
+std::string rounded_text(double value, int digits);
+
+}  // namespace drape
