@@ -164,6 +164,8 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  const std::string with_uv =
+      ply.substr(0, ply.find("end_header")) + "property list uchar float texcoord\nend_header\n";
   const std::string counts = " (the header declares 3 vertex, 1 face)";
   const auto [name, text, message] = GENERATE_COPY(table<std::string, std::string, std::string>({
       {"a.obj", "v 0 0 0\nv 1 zero 0\n", ":2: 'zero' is not a number"},
@@ -172,6 +174,13 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
       {"a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 -3\n", ":3: face names vertex -3, but 2 vertices precede it"},
       {"a.obj", "v 0 0 0\nf 0 1 1\n", ":2: face names vertex 0, but 1 vertices precede it"},
       {"a.obj", "v 0 0 0\nf 1 1\n", ":2: a face needs at least three vertices"},
+      {"a.obj", "v 0 0 0\nvt 0 0\n\nf 1/1 1/2 1/1\n", ":4: face names vt 2, but 1 vt lines precede it"},
+      {"a.obj", "v 0 0 0\nvt 0 0\nf 1/1 1/1/1 1/-2\n", ":3: face names vt -2, but 1 vt lines precede it"},
+      {"a.obj", "v 0 0 0\nf 1/1 1/1 1/1\nvt 0 0\n", ":2: face names vt 1, but 0 vt lines precede it"},
+      {"a.obj", "v 0 0 0\nvt 0 0\nf 1/0 1/1 1/1\n", ":3: face names vt 0, but 1 vt lines precede it"},
+      {"a.obj", "v 0 0 0\nvt 0 0\nf 1/1 1 1/1\n", ":3: a face has a vt at every corner or at none"},
+      {"a.obj", "v 0 0 0\nvt\n", ":2: texture coordinates need one to three numbers"},
+      {"a.obj", "v 0 0 0\nvt 0 x\n", ":2: 'x' is not a number"},
       {"a.obj", "v 0 0 0\nf 1 a/1 1\n", ":2: 'a' is not an integer"},
       {"a.off", "", ": is empty"},
       {"a.obj", "", ": is empty"},
@@ -209,6 +218,10 @@ TEST_CASE("malformed files are refused with file and line", "[io]") {
        ":13: face 0: a face needs at least three vertices" + counts},
       {"a.ply", ply + "0 0 0\n1 0 0\n0 1 0\n3 0 1\n", ":13: the file ends where face 0 is expected" + counts},
       {"a.ply", ply + "0 0 0\n1 x 0\n0 1 0\n3 0 1 2\n", ":11: 'x' is not a number" + counts},
+      {"a.ply", with_uv + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 5 0 0 1 0 1\n",
+       ":14: face 0: list 'texcoord' needs two finite numbers for each corner" + counts},
+      {"a.ply", with_uv + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 1 nan\n",
+       ":14: face 0: list 'texcoord' needs two finite numbers for each corner" + counts},
   }));
   const fs::path path = scratch.file(name, text);
   CHECK_THROWS_WITH(read_mesh(path), path.string() + message);

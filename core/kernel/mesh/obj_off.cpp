@@ -1,5 +1,6 @@
 // Wavefront OBJ and OFF.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <iterator>
 
@@ -7,6 +8,7 @@
 #include "core/kernel/files/text_reader.h"
 #include "core/kernel/mesh/io_formats.h"
 #include "core/kernel/mesh/mesh_builder.h"
+#include "core/kernel/mesh/texture_coordinates.h"
 
 namespace drape {
 namespace {
@@ -26,32 +28,53 @@ void read_vertex(const TextReader& reader, std::size_t first_word, std::size_t m
   check_further_numbers(reader, first_word + 3, most_further);
 }
 
-/// Vertex index, from 0, of one corner of an OBJ face: "v", "v/vt", "v//vn" or "v/vt/vn", v from 1 or,
-/// negative, counted back from the last vertex so far.
-int obj_corner(const TextReader& reader, std::string_view word, int vertex_count) {
-  const std::size_t slash = word.find('/');
-  const long long v = reader.integer(word.substr(0, slash));
-  if (slash != word.npos) {
-    const std::string_view further = word.substr(slash + 1);
-    const std::size_t second = std::min(further.find('/'), further.size());
-    for (const std::string_view index :
-         {further.substr(0, second), further.substr(std::min(second + 1, further.size()))})
-      if (!index.empty()) reader.integer(index);
-  }
-  if (v == 0 || v > vertex_count || v < -static_cast<long long>(vertex_count))
-    reader.fail("face names vertex " + std::to_string(v) + ", but " + std::to_string(vertex_count) +
-                " vertices precede it");
-  return static_cast<int>(v > 0 ? v - 1 : vertex_count + v);
+/// An index of an OBJ face, from 0: written from 1 or, negative, counted back from the last of `count` so
+/// far.
+int obj_index(const TextReader& reader, std::string_view word, int count, const std::string& one,
+              const std::string& several) {
+  const long long i = reader.integer(word);
+  if (i == 0 || i > count || i < -static_cast<long long>(count))
+    reader.fail("face names " + one + " " + std::to_string(i) + ", but " + std::to_string(count) + " " +
+                several + " precede it");
+  return static_cast<int>(i > 0 ? i - 1 : count + i);
+}
+
+/// The corner of an OBJ face: indices from 0 of its vertex and of its texture coordinates, -1 without.
+struct ObjCorner {
+  int vertex = 0, uv = -1;
+};
+
+/// Reads "v", "v/vt", "v//vn" or "v/vt/vn".
+ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex_count, int uv_count) {
+  const std::size_t slash = std::min(word.find('/'), word.size());
+  ObjCorner corner{obj_index(reader, word.substr(0, slash), vertex_count, "vertex", "vertices")};
+  if (slash == word.size()) return corner;
+  const std::string_view further = word.substr(slash + 1);
+  const std::size_t second = std::min(further.find('/'), further.size());
+  if (second + 1 < further.size()) reader.integer(further.substr(second + 1));
+  if (second > 0) corner.uv = obj_index(reader, further.substr(0, second), uv_count, "vt", "vt lines");
+  return corner;
+}
+
+/// The u and v of a vt line; v is 0 if it has u alone.
+std::array<double, 2> obj_uv(const TextReader& reader) {
+  const auto& words = reader.words();
+  if (words.size() < 2) reader.fail("texture coordinates need one to three numbers");
+  std::array<double, 2> uv{};
+  for (std::size_t k = 0; k < std::min<std::size_t>(words.size() - 1, 2); ++k)
+    uv[k] = reader.coordinate(words[k + 1]);
+  check_further_numbers(reader, 3, 1);
+  return uv;
 }
 
 /// Whether OBJ defines such a keyword, other than those of vertices and faces.
 bool is_other_obj_line(std::string_view word) {
   constexpr std::string_view known[] = {
-      "vt",    "vn",       "vp",       "vc",     "p",      "l",      "g",          "s",
-      "o",     "mg",       "usemtl",   "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj",
-      "bevel", "c_interp", "d_interp", "lod",    "cstype", "deg",    "bmat",       "step",
-      "curv",  "curv2",    "surf",     "parm",   "trim",   "hole",   "scrv",       "sp",
-      "end",   "con",      "ctech",    "stech",  "call",   "csh"};
+      "vn",       "vp",       "vc",     "p",      "l",      "g",          "s",         "o",
+      "mg",       "usemtl",   "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj", "bevel",
+      "c_interp", "d_interp", "lod",    "cstype", "deg",    "bmat",       "step",      "curv",
+      "curv2",    "surf",     "parm",   "trim",   "hole",   "scrv",       "sp",        "end",
+      "con",      "ctech",    "stech",  "call",   "csh"};
   return std::find(std::begin(known), std::end(known), word) != std::end(known);
 }
 
@@ -61,16 +84,27 @@ TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes)
   TextReader reader(path, bytes, '#', '\\');
   MeshBuilder builder;
   std::vector<int> face;
+  std::vector<std::array<double, 2>> uv;
+  std::vector<double> face_uv;
   while (reader.next_line()) {
     const auto& words = reader.words();
     if (words[0] == "v") {
       read_vertex(reader, 1, 4, builder);  // a weight, a colour
+    } else if (words[0] == "vt") {
+      uv.push_back(obj_uv(reader));
     } else if (words[0] == "f") {
       face.clear();
-      for (std::size_t k = 1; k < words.size(); ++k)
-        face.push_back(obj_corner(reader, words[k], builder.vertex_count()));
+      face_uv.clear();
+      for (std::size_t k = 1; k < words.size(); ++k) {
+        const ObjCorner corner =
+            obj_corner(reader, words[k], builder.vertex_count(), static_cast<int>(uv.size()));
+        face.push_back(corner.vertex);
+        if (corner.uv >= 0) face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
+      }
       if (face.size() < 3) reader.fail("a face needs at least three vertices");
-      builder.add_face(face, [&](const std::string& why) { reader.fail(why); });
+      if (!face_uv.empty() && face_uv.size() < 2 * face.size())
+        reader.fail("a face has a vt at every corner or at none");
+      builder.add_face(face, face_uv, [&](const std::string& why) { reader.fail(why); });
     } else if (!is_other_obj_line(words[0])) {
       reader.fail("no line of an OBJ file begins with '" + excerpt(words[0]) + "'");
     }
@@ -109,7 +143,7 @@ TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes)
     face.clear();
     for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.index(words[k], vertex_count, "vertex"));
     check_further_numbers(reader, size + 1, 4);  // a colour
-    builder.add_face(face, [&](const std::string& why) { reader.fail(why); });
+    builder.add_face(face, {}, [&](const std::string& why) { reader.fail(why); });
   }
   if (reader.next_line()) reader.fail("the file has data after its last face");
   return builder.mesh();
@@ -125,9 +159,17 @@ std::string obj_text(const TriangleMesh& mesh) {
   for (int v = 0; v < mesh.vertices.rows(); ++v)
     text += "v " + exact_text(mesh.vertices(v, 0)) + ' ' + exact_text(mesh.vertices(v, 1)) + ' ' +
             exact_text(mesh.vertices(v, 2)) + '\n';
-  for (int t = 0; t < mesh.triangles.rows(); ++t)
-    text += "f " + std::to_string(mesh.triangles(t, 0) + 1) + ' ' + std::to_string(mesh.triangles(t, 1) + 1) +
-            ' ' + std::to_string(mesh.triangles(t, 2) + 1) + '\n';
+  const UvVertices corners = split_at_seams(mesh);
+  for (Eigen::Index i = 0; i < corners.uv.rows(); ++i)
+    text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    text += 'f';
+    for (int k = 0; k < 3; ++k) {
+      text += ' ' + std::to_string(mesh.triangles(t, k) + 1);
+      if (corners.uv.rows() > 0) text += '/' + std::to_string(corners.triangles(t, k) + 1);
+    }
+    text += '\n';
+  }
   return text;
 }
 

@@ -104,12 +104,14 @@ class PlyBody {
 /// Faces before they are cut, for which the vertices have to be known.
 struct PlyFaces {
   std::vector<int> corners;
-  std::vector<std::size_t> end;  ///< of each face's corners
+  std::vector<std::size_t> end;         ///< of each face's corners
+  std::vector<std::vector<double>> uv;  ///< of each face's corners, u and v; empty for faces without
 
   template <class Corners>
-  void add(const Corners& face) {
+  void add(const Corners& face, const std::vector<double>& face_uv) {
     corners.insert(corners.end(), std::begin(face), std::end(face));
     end.push_back(corners.size());
+    uv.push_back(face_uv);
   }
 };
 
@@ -154,16 +156,21 @@ int corner(const PlyBody& body, double v, int vertex_count) {
   return static_cast<int>(v);
 }
 
-void add_face(const PlyBody& body, const std::vector<double>& values, int vertex_count, PlyFaces& faces) {
+void add_face(const PlyBody& body, const std::vector<double>& values, const std::vector<double>& uv,
+              int vertex_count, PlyFaces& faces) {
   if (values.size() < 3) body.fail("a face needs at least three vertices");
   std::vector<int> face;
   for (const double v : values) face.push_back(corner(body, v, vertex_count));
-  faces.add(face);
+  const bool finite = std::all_of(uv.begin(), uv.end(), [](double number) { return std::isfinite(number); });
+  if (!uv.empty() && (uv.size() != 2 * face.size() || !finite))
+    body.fail("list 'texcoord' needs two finite numbers for each corner");
+  faces.add(face, uv);
 }
 
 /// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
 /// vertex only joins its neighbours.
-void add_strips(const PlyBody& body, const std::vector<double>& values, int vertex_count, PlyFaces& faces) {
+void add_strips(const PlyBody& body, const std::vector<double>& values, const std::vector<double>&,
+                int vertex_count, PlyFaces& faces) {
   std::vector<int> strip;
   for (const double v : values) {
     if (v == -1) {
@@ -174,24 +181,27 @@ void add_strips(const PlyBody& body, const std::vector<double>& values, int vert
     if (strip.size() < 3) continue;
     std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
     if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
-    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.add(t);
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.add(t, {});
   }
 }
 
-/// Reads an element of faces or of strips, whose lists of vertices `add` takes.
+/// Reads an element of faces or of strips, whose lists of vertices and texture coordinates `add` takes.
 template <class Add>
 void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, PlyFaces& faces, const Add& add) {
-  std::vector<double> values;
+  std::vector<double> values, corners, uv;
   for (int f = 0; f < element.count; ++f) {
     body.enter(element, f);
+    uv.clear();
     for (const PlyProperty& p : element.properties) {
       if (!p.count_type) {
         body.next(p.type);
         continue;
       }
       read_list(body, p, values);
-      if (holds_corners(p)) add(body, values, vertex_count, faces);
+      if (holds_corners(p)) corners = values;
+      if (p.name == "texcoord") uv = values;
     }
+    add(body, corners, uv, vertex_count, faces);
   }
 }
 
@@ -220,8 +230,9 @@ void cut_faces(const std::filesystem::path& path, PlyContent& content) {
   std::vector<int> face;
   for (std::size_t f = 0; f < faces.end.size(); ++f) {
     face.assign(faces.corners.data() + (f == 0 ? 0 : faces.end[f - 1]), faces.corners.data() + faces.end[f]);
-    content.mesh.add_face(
-        face, [&](const std::string& why) { throw std::runtime_error(path.string() + ": " + why); });
+    content.mesh.add_face(face, faces.uv[f], [&](const std::string& why) {
+      throw std::runtime_error(path.string() + ": " + why);
+    });
   }
 }
 
@@ -274,10 +285,31 @@ PlyContent read_content(const std::filesystem::path& path, std::string_view byte
   return content;
 }
 
+/// Texture coordinates that the file has at vertices, under the names that Blender, MeshLab or PCL write.
+void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
+  const auto column = [&](const char* name) -> const std::vector<double>* {
+    const auto found = std::find(content.names.begin(), content.names.end(), name);
+    return found == content.names.end() ? nullptr : &content.columns[found - content.names.begin()];
+  };
+  for (const auto& [u, v] : {std::pair("s", "t"), {"texture_u", "texture_v"}, {"u", "v"}}) {
+    const std::vector<double>*us = column(u), *vs = column(v);
+    if (!us || !vs) continue;
+    mesh.uv.resize(mesh.triangles.rows(), 6);
+    for (Eigen::Index t = 0; t < mesh.uv.rows(); ++t)
+      for (int k = 0; k < 3; ++k)
+        mesh.uv.block<1, 2>(t, 2 * k) << (*us)[mesh.triangles(t, k)], (*vs)[mesh.triangles(t, k)];
+    if (mesh.uv.allFinite()) return;
+    mesh.uv.resize(0, 6);
+  }
+}
+
 }  // namespace
 
 TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes) {
-  return read_content(path, bytes).mesh.mesh();
+  const PlyContent content = read_content(path, bytes);
+  TriangleMesh mesh = content.mesh.mesh();
+  if (mesh.uv.rows() == 0) set_uv_of_vertices(content, mesh);
+  return mesh;
 }
 
 VertexFields read_ply_fields(const std::filesystem::path& path) {

@@ -15,10 +15,15 @@ inline double bounding_box_diagonal(const Positions& x) {
 /// m×3 vertex indices, one row a triangle, counter-clockwise.
 using Triangles = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
+/// m×6 texture coordinates u, v of the three corners of each triangle, v upwards. Corners at one vertex that
+/// differ make a seam.
+using CornerUv = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
 /// Vertices and triangles; a plain value.
 struct TriangleMesh {
   Positions vertices;   ///< n×3 [m]
   Triangles triangles;  ///< m×3
+  CornerUv uv = {};     ///< m×6, or without rows
 };
 
 }  // namespace drape

@@ -26,8 +26,11 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
                       std::to_string(mesh.vertices.rows()) +
                       "\nproperty double x\nproperty double y\nproperty double z\n";
   for (const VertexField& field : fields) bytes += "property double " + field.name + "\n";
-  bytes += "element face " + std::to_string(mesh.triangles.rows()) +
-           "\nproperty list uchar int vertex_indices\nend_header\n";
+  bytes +=
+      "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
+  const bool with_uv = mesh.uv.rows() > 0;
+  if (with_uv) bytes += "property list uchar double texcoord\n";
+  bytes += "end_header\n";
   for (int v = 0; v < mesh.vertices.rows(); ++v) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(v, k));
     for (const VertexField& field : fields) append(bytes, field.values[v]);
@@ -35,6 +38,9 @@ std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
   for (int t = 0; t < mesh.triangles.rows(); ++t) {
     append(bytes, std::uint8_t{3});
     for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
+    if (!with_uv) continue;
+    append(bytes, std::uint8_t{6});
+    for (int k = 0; k < 6; ++k) append(bytes, mesh.uv(t, k));
   }
   return bytes;
 }

@@ -81,7 +81,7 @@ class BoundContact {
                                                                 const Positions& x1) const = 0;
   /// Pairs of primitives that intersect or touch at x. Meshes are tested with exact predicates.
   virtual std::vector<Intersection> intersections(const Positions& x) const = 0;
-  /// The obstacles as meshes, for drawing.
+  /// The obstacles as meshes, in the order of the model's parameters: for drawing, and for pins to follow.
   virtual std::vector<TriangleMesh> obstacles() const = 0;
 
   /// The barrier stiffness κ [Pa]; 0 for a model without a barrier.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/kernel/mesh/check.h"
+#include "core/kernel/mesh/texture_coordinates.h"
 #include "core/kernel/model/midpoint.h"
 #include "core/kernel/model/rest_interpolation.h"
 
@@ -73,7 +74,9 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
     const Level& coarse = hierarchy.levels.back();
     Refinement finer = refined(coarse, refiner);
     require_subdivision(coarse, finer);
-    Level fine = checked_level(l, {finer.weights * coarse.rest.vertices, std::move(finer.triangles)});
+    CornerUv uv = refined_uv(coarse.rest, coarse.topology, finer.triangles);
+    Level fine =
+        checked_level(l, {finer.weights * coarse.rest.vertices, std::move(finer.triangles), std::move(uv)});
     hierarchy.midpoints.push_back(midpoint_refinement(coarse).weights);
     hierarchy.linear.push_back(rest_interpolation(coarse, fine.rest.vertices));
     hierarchy.prolongations.push_back(std::move(finer.weights));

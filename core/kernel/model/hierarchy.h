@@ -23,8 +23,8 @@ struct Hierarchy {
   std::vector<ProlongationMatrix> linear;
 
   /// Refines `coarsest` level_count - 1 times. Rest positions follow the same operator, X_{l+1} = P X_l,
-  /// which keeps the rest shape stress-free on every level. Throws std::runtime_error with the first fault of
-  /// check_mesh on any level, and if level_count < 1.
+  /// which keeps the rest shape stress-free on every level; texture coordinates are refined linearly. Throws
+  /// std::runtime_error with the first fault of check_mesh on any level, and if level_count < 1.
   static Hierarchy of(TriangleMesh coarsest, const Refiner& refiner, int level_count);
 
   const std::vector<ProlongationMatrix>& weights(Interpolation interpolation) const {
