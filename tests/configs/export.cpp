@@ -87,8 +87,10 @@ TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and
     REQUIRE(scene.at("nodes").size() == 2);
     const auto& stone = glb.json.at("nodes").at(scene["nodes"][0].get<int>());
     const auto& cloth = glb.json["nodes"].at(scene["nodes"][1].get<int>());
-    CHECK(stone.at("name") == "obstacle 0");
-    CHECK(cloth.at("name") == "pcs level " + std::to_string(level));
+    CHECK(stone.at("name") == "ball");
+    CHECK(cloth.at("name") == "contact level " + std::to_string(level));
+    for (const auto& node : {stone, cloth})
+      CHECK(glb.json.at("meshes").at(node.at("mesh").get<int>()).at("name") == node.at("name"));
     const auto& primitive = glb.json.at("meshes").at(cloth.at("mesh").get<int>()).at("primitives").at(0);
     const std::string name = "l" + std::to_string(level) + ".ply";
     const TriangleMesh state = read_mesh(finished_run() / ("levels/pcs_" + name)),
@@ -98,8 +100,8 @@ TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and
     const std::vector<float> uv = glb.floats(primitive["attributes"]["TEXCOORD_0"]);
     const std::vector<float> normals = glb.floats(primitive["attributes"]["NORMAL"]);
     for (Eigen::Index i = 0; i < rest.vertices.rows(); ++i) {
-      CHECK(uv[2 * i] == Approx(rest.vertices(i, 0)).margin(1e-6));
-      CHECK(1 - uv[2 * i + 1] == Approx(rest.vertices(i, 1)).margin(1e-6));
+      CHECK(uv[2 * i] == Approx(rest.vertices(i, 0) / 0.4).margin(1e-6));
+      CHECK(1 - uv[2 * i + 1] == Approx(rest.vertices(i, 1) / 0.4).margin(1e-6));
       CHECK(std::hypot(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]) == Approx(1).epsilon(1e-5));
     }
     const auto& ball = glb.json["meshes"].at(stone.at("mesh").get<int>()).at("primitives").at(0);
@@ -108,7 +110,9 @@ TEST_CASE("a .glb has every level of a method as a scene, with the obstacle, and
   }
   const Glb one(exported("one.glb", "--level 0 --method newton"));
   REQUIRE(one.json["scenes"].size() == 1);
-  CHECK(one.json["nodes"][1]["name"] == "newton level 0");
+  CHECK(one.json["nodes"][1]["name"] == "contact level 0");
+  CHECK(difference(one, one.json["meshes"][1]["primitives"][0]["attributes"]["POSITION"],
+                   read_mesh(finished_run() / "levels/newton_l0.ply").vertices) < 1e-6);
 }
 
 TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an animation") {
@@ -121,7 +125,7 @@ TEST_CASE("with --frames a .glb has the recorded snapshots of one level as an an
     const Glb glb(exported("out.glb", options));
     REQUIRE(glb.json["scenes"].size() == 1);
     const auto& mesh = glb.json["meshes"][1];
-    CHECK(mesh["name"] == "pcs level " + std::to_string(level));
+    CHECK(mesh["name"] == "contact level " + std::to_string(level));
     CHECK(mesh["primitives"][0]["targets"].size() == recorded - 1);
     REQUIRE(glb.json.at("animations").size() == 1);
     CHECK(glb.json["animations"][0]["channels"][0]["target"]["node"] == 1);
@@ -173,6 +177,103 @@ TEST_CASE("the other formats have the cloth of the finest level, or of the one t
       CHECK((mesh.triangles == state.triangles));
     }
   CHECK((exported("out.vtp") == text_of(finished_run() / "levels/pcs_l1.vtp")));
+}
+
+TEST_CASE("texture coordinates of the cloth's file reach every export, seams included") {
+  const Scratch folder;
+  const int n = 9;
+  const double side = 0.4, side_cell = side / (n - 1);
+  std::string cloth;  // upright, in the plane y = 0, with a seam in the middle and a mirrored right half
+  const auto expected = [&](bool left, double x, double z) {
+    return Eigen::RowVector2d((left ? x : side - x) / side, z / side + (left ? 0 : 0.25));
+  };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      cloth += "v " + std::to_string(i * side_cell) + " 0 " + std::to_string(j * side_cell) + "\n";
+  for (const bool left : {true, false})
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Eigen::RowVector2d uv = expected(left, i * side_cell, j * side_cell);
+        cloth += "vt " + std::to_string(uv[0]) + " " + std::to_string(uv[1]) + "\n";
+      }
+  for (int j = 0; j + 1 < n; ++j)
+    for (int i = 0; i + 1 < n; ++i) {
+      cloth += "f";
+      for (const int v : {i + n * j, i + 1 + n * j, i + 1 + n * (j + 1), i + n * (j + 1)})
+        cloth += " " + std::to_string(v + 1) + "/" + std::to_string(v + 1 + (2 * i < n - 1 ? 0 : n * n));
+      cloth += "\n";
+    }
+  folder.write("upright.obj", cloth);
+  folder.write("e.yaml",
+               "name: banner\ncloth: {shape: file, file: upright.obj}\nlevels: 3\n"
+               "pins: [{region: box, lower: [-1, -1, 0.399], upper: [1, 1, 1]}]\n"
+               "energies: [neo_hookean, hinge, gravity]\nrefiner: midpoint\n"
+               "newton: {force_tolerance: 1}\nmethods: {pcs: {}}\n");
+  REQUIRE(drape_with("run e.yaml -o out -j 1 -q --no-report", folder.path).exit_code == 0);
+  const auto exported_to = [&](const std::string& name) {
+    REQUIRE(drape_with("export out --to " + name, folder.path).exit_code == 0);
+    return folder / name;
+  };
+  const TriangleMesh rest = read_mesh(folder / "out/rest/l2.ply");
+  const auto check = [&](Eigen::Index t, int k, const Eigen::RowVector2d& uv) {
+    const auto p = rest.vertices.row(rest.triangles(t, k));
+    const double middle = (rest.vertices(rest.triangles(t, 0), 0) + rest.vertices(rest.triangles(t, 1), 0) +
+                           rest.vertices(rest.triangles(t, 2), 0)) /
+                          3;
+    return (uv - expected(middle < side / 2, p.x(), p.z())).norm();
+  };
+  double most = 0;
+  for (const std::string name : {"out.obj", "out.ply"}) {
+    const TriangleMesh mesh = read_mesh(exported_to(name));
+    CHECK((mesh.vertices == read_mesh(folder / "out/levels/pcs_l2.ply").vertices));
+    REQUIRE(mesh.uv.rows() == rest.triangles.rows());
+    for (Eigen::Index t = 0; t < mesh.uv.rows(); ++t)
+      for (int k = 0; k < 3; ++k) most = std::max(most, check(t, k, mesh.uv.block<1, 2>(t, 2 * k)));
+  }
+  CHECK(most < 2e-6);  // the file has six digits
+  const Glb glb(text_of(exported_to("out.glb")));
+  const auto& primitive = glb.json["meshes"][2]["primitives"][0];
+  CHECK(glb.json["meshes"][2]["name"] == "banner level 2");
+  const std::vector<float> uv = glb.floats(primitive["attributes"]["TEXCOORD_0"]),
+                           x = glb.floats(primitive["attributes"]["POSITION"]);
+  const std::vector<std::uint32_t> corners = glb.indices(primitive["indices"]);
+  const Positions state = read_mesh(folder / "out/levels/pcs_l2.ply").vertices;
+  CHECK(x.size() == static_cast<std::size_t>(state.size()) + 3 * 33);  // a seam of 32 edges
+  REQUIRE(corners.size() == static_cast<std::size_t>(rest.triangles.size()));
+  for (Eigen::Index t = 0; t < rest.triangles.rows(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t c = corners[3 * t + k];
+      most = std::max(most, check(t, k, {uv[2 * c], 1 - uv[2 * c + 1]}));
+      const auto p = state.row(rest.triangles(t, k));
+      most = std::max({most, std::abs(x[3 * c] - p.x()), std::abs(x[3 * c + 1] - p.z())});
+    }
+  CHECK(most < 2e-6);
+
+  // The results folder's experiment reads rest/l0.ply: the same again.
+  REQUIRE(drape_with("run out/config.yaml -o again -j 1 -q --no-report", folder.path).exit_code == 0);
+  for (const std::string name : {"rest/l0.ply", "rest/l2.ply", "levels/pcs_l2.ply"})
+    CHECK((text_of(folder / ("again/" + name)) == text_of(folder / ("out/" + name))));
+}
+
+TEST_CASE("an upright cloth without texture coordinates has those of its own plane") {
+  const Scratch folder;
+  TriangleMesh cloth = read_mesh(finished_run() / "rest/l0.ply");
+  cloth.vertices.col(2) = cloth.vertices.col(1);
+  cloth.vertices.col(1).setZero();
+  write_mesh(folder / "upright.obj", cloth);
+  folder.write("e.yaml",
+               "name: banner\ncloth: {shape: file, file: upright.obj}\nlevels: 1\n"
+               "pins: [{region: box, lower: [-1, -1, 0.399], upper: [1, 1, 1]}]\n"
+               "energies: [neo_hookean, hinge, gravity]\nnewton: {force_tolerance: 1}\nmethods: {pcs: {}}\n");
+  REQUIRE(drape_with("run e.yaml -o out -j 1 -q --no-report", folder.path).exit_code == 0);
+  REQUIRE(drape_with("export out --to out.glb", folder.path).exit_code == 0);
+  const Glb glb(text_of(folder / "out.glb"));
+  const auto uv = glb.floats(glb.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"]);
+  REQUIRE(uv.size() == static_cast<std::size_t>(2 * cloth.vertices.rows()));
+  for (Eigen::Index i = 0; i < cloth.vertices.rows(); ++i) {
+    CHECK(uv[2 * i] == Approx(cloth.vertices(i, 0) / 0.4).margin(1e-6));
+    CHECK(1 - uv[2 * i + 1] == Approx(cloth.vertices(i, 2) / 0.4).margin(1e-6));
+  }
 }
 
 TEST_CASE("a .png is the report's picture of a state, at any width") {

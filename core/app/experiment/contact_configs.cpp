@@ -165,6 +165,23 @@ std::vector<ContactConfig> contact_configs(const Registry& registry, const Exper
   return configs;
 }
 
+std::vector<std::size_t> obstacle_order(const Registry& registry, const ExperimentParameters& p) {
+  ConfigErrors reported;  // when the experiment was read
+  std::vector<std::size_t> order;
+  for (const ContactConfig& config : contact_configs(registry, p, reported))
+    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
+  return order;
+}
+
+std::vector<std::string> obstacle_names(const Registry& registry, const ExperimentParameters& p) {
+  std::vector<std::string> names;
+  for (const std::size_t i : obstacle_order(registry, p)) {
+    const ConfigNode* name = p.obstacles[i].find("name");
+    names.push_back(name ? name->scalar : "");
+  }
+  return names;
+}
+
 void split_resolved(const Registry& registry, const ContactConfig& config, ConfigNode& resolved,
                     std::vector<ConfigNode>& obstacles) {
   const RegistryEntry* model = model_of(registry, resolved);

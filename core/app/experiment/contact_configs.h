@@ -23,6 +23,12 @@ struct ContactConfig {
 std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& parameters,
                                            ConfigErrors& errors);
 
+/// Indices in the experiment's list of all models' obstacles, in the order of obstacles_of.
+std::vector<std::size_t> obstacle_order(const Registry& registry, const ExperimentParameters& parameters);
+
+/// Their names, empty for an obstacle without one.
+std::vector<std::string> obstacle_names(const Registry& registry, const ExperimentParameters& parameters);
+
 /// Splits a model's resolved node: moves its obstacles to their indices in `obstacles`, and removes what
 /// stands at the top of the experiment.
 void split_resolved(const Registry& registry, const ContactConfig& config, ConfigNode& resolved,

@@ -25,6 +25,14 @@ OptionalNumber number(const Json& json) {
   return json.get<double>();
 }
 
+/// The texts of a list, empty where it has something else.
+std::vector<std::string> texts(const Json& json) {
+  std::vector<std::string> all;
+  if (!json.is_array()) return all;
+  for (const Json& text : json) all.push_back(text.is_string() ? text.get<std::string>() : std::string());
+  return all;
+}
+
 NamedNumbers named_numbers(const Json& json) {
   NamedNumbers numbers;
   if (!json.is_object()) return numbers;
@@ -203,12 +211,10 @@ RunData read_run(const std::filesystem::path& folder) {
   run.experiment = text_member(json, "experiment");
   run.description = text_member(json, "description");
   run.version = text_member(json, "version");
-  if (const Json& obstacles = member_of(json, "obstacles"); obstacles.is_array())
-    for (const Json& name : obstacles)
-      run.obstacles.push_back(name.is_string() ? name.get<std::string>() : std::string());
-  if (const Json& remarks = member_of(json, "remarks"); remarks.is_array())
-    for (const Json& line : remarks)
-      if (line.is_string()) run.remarks.push_back(line.get<std::string>());
+  run.obstacles = texts(member_of(json, "obstacles"));
+  run.obstacle_names = texts(member_of(json, "obstacle_names"));
+  run.obstacle_names.resize(run.obstacles.size());
+  run.remarks = texts(member_of(json, "remarks"));
   run.complete = member_of(json, "complete").is_boolean() && member_of(json, "complete").get<bool>();
   run.aborted = text_member(json, "aborted");
   const Json& machine = member_of(json, "machine");

@@ -115,6 +115,7 @@ struct RunData {
   OptionalNumber cores, threads, force_tolerance;
   std::vector<std::string> remarks;          ///< on the input, such as the repair of an obstacle
   std::vector<std::string> obstacles;        ///< meshes, relative to the folder
+  std::vector<std::string> obstacle_names;   ///< of each of them; empty for an obstacle without a name
   std::vector<DeclaredMetric> metrics;       ///< as declared; plain names if results.json has no declarations
   std::vector<ErrorMeasure> error_measures;  ///< likewise
   std::vector<MethodRecord> methods;

@@ -12,6 +12,7 @@
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io.h"
+#include "core/kernel/mesh/texture_coordinates.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
@@ -46,36 +47,60 @@ std::vector<const LevelRecord*> recorded_levels(const MethodRecord& method, std:
   return all;
 }
 
-GltfState gltf_state(const TriangleMesh& mesh) {
+/// The rest shape of a level. Throws std::runtime_error unless it has so many triangles.
+TriangleMesh rest_of(const RunData& run, int level, Eigen::Index triangles) {
+  TriangleMesh rest = read_mesh(run.folder / "rest" / ("l" + std::to_string(level) + ".ply"));
+  if (rest.triangles.rows() != triangles)
+    throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level) +
+                             " has other triangles than its state; run the experiment again");
+  return rest;
+}
+
+/// The cloth at the end of a level, with texture coordinates: those of the cloth's file, or, for a flat rest
+/// shape, its own plane's, which are the same on every level.
+TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
+  TriangleMesh mesh = read_mesh(run.folder / level.mesh);
+  TriangleMesh rest = rest_of(run, level.level, mesh.triangles.rows());
+  mesh.uv = std::move(rest.uv);
+  if (mesh.uv.rows() > 0) return mesh;
+  const std::optional<PlanarUv> planar =
+      PlanarUv::of(level.level == 0 ? rest : read_mesh(run.folder / "rest/l0.ply"));
+  if (planar) mesh.uv = planar->at(rest);
+  return mesh;
+}
+
+/// A state with its normals, at the vertices that the texture coordinates have split.
+GltfState gltf_state(const TriangleMesh& mesh, const UvVertices& split) {
   Positions normals = smooth_normals(mesh);
   for (Eigen::Index i = 0; i < normals.rows(); ++i)
     if (!(normals.row(i).squaredNorm() > 0.5)) normals.row(i) << 0, 0, 1;  // glTF asks for length 1
-  return {mesh.vertices, std::move(normals)};
+  return {split.of(mesh.vertices), split.of(normals)};
 }
 
-/// The snapshots before the final state. Throws std::runtime_error if the run has none.
-std::vector<GltfState> earlier_states(const RunData& run, const MethodRecord& method,
-                                      const LevelRecord& level, const TriangleMesh& last) {
+GltfSurface gltf_surface(const std::string& name, const TriangleMesh& mesh, const UvVertices& split) {
+  GltfSurface surface;
+  surface.name = name;
+  surface.triangles = split.triangles;
+  surface.state = gltf_state(mesh, split);
+  surface.uv = split.uv;
+  return surface;
+}
+
+/// Adds the snapshots before the final state, `last`. Throws std::runtime_error if the run has none.
+void add_earlier_states(const RunData& run, const MethodRecord& method, const LevelRecord& level,
+                        const TriangleMesh& last, const UvVertices& split, GltfSurface& surface) {
   std::vector<Positions> snapshots = snapshot_positions(run, method, level, last.vertices.rows(), 2);
   snapshots.pop_back();
-  std::vector<GltfState> states;
-  for (Positions& x : snapshots) states.push_back(gltf_state({std::move(x), last.triangles}));
-  return states;
+  for (Positions& x : snapshots) surface.earlier.push_back(gltf_state({std::move(x), last.triangles}, split));
 }
 
 GltfSurface cloth_surface(const RunData& run, const MethodRecord& method, const LevelRecord& level,
                           bool with_frames) {
-  const TriangleMesh mesh = read_mesh(run.folder / level.mesh);
-  const TriangleMesh rest = read_mesh(run.folder / "rest" / ("l" + std::to_string(level.level) + ".ply"));
-  if (rest.vertices.rows() != mesh.vertices.rows())
-    throw std::runtime_error((run.folder / level.mesh).string() +
-                             ": has other vertices than the rest shape; run the experiment again");
-  GltfSurface surface;
-  surface.name = method.name + " level " + std::to_string(level.level);
-  surface.triangles = mesh.triangles;
-  surface.state = gltf_state(mesh);
-  surface.uv = rest.vertices.leftCols<2>();
-  if (with_frames) surface.earlier = earlier_states(run, method, level, mesh);
+  const TriangleMesh mesh = cloth_mesh(run, level);
+  const UvVertices split = split_at_seams(mesh);
+  const std::string cloth = run.experiment.empty() ? "cloth" : run.experiment;
+  GltfSurface surface = gltf_surface(cloth + " level " + std::to_string(level.level), mesh, split);
+  if (with_frames) add_earlier_states(run, method, level, mesh, split, surface);
   return surface;
 }
 
@@ -83,14 +108,13 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
                     const std::vector<const LevelRecord*>& levels, bool with_frames) {
   std::vector<GltfSurface> surfaces;
   std::vector<int> obstacles;
-  for (const std::string& name : run.obstacles) {
-    const TriangleMesh mesh = read_mesh(run.folder / name);
+  for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
+    const TriangleMesh mesh = read_mesh(run.folder / run.obstacles[k]);
     if (mesh.triangles.rows() == 0) continue;
-    GltfSurface surface;
-    surface.name = "obstacle " + std::to_string(surfaces.size());
+    const std::string& name = run.obstacle_names[k];
+    GltfSurface surface =
+        gltf_surface(name.empty() ? "obstacle " + std::to_string(k) : name, mesh, split_at_seams(mesh));
     surface.material = GltfMaterial::obstacle;
-    surface.triangles = mesh.triangles;
-    surface.state = gltf_state(mesh);
     obstacles.push_back(static_cast<int>(surfaces.size()));
     surfaces.push_back(std::move(surface));
   }
@@ -137,7 +161,7 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   else if (extension == ".vtp")
     write_vtp(file, read_mesh(run.folder / levels[0]->mesh));
   else
-    write_mesh(file, read_mesh(run.folder / levels[0]->mesh));
+    write_mesh(file, cloth_mesh(run, *levels[0]));
   return {file};
 }
 

@@ -19,10 +19,10 @@ struct ExportOptions {
 };
 
 /// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
-/// each level as a scene, the obstacles included, and opens on the finest; its texture coordinates are the
-/// first two coordinates of the rest shape [m]. A .obj, .ply or .vtp has the cloth of one level; for a .png
-/// see export_pictures. Throws std::runtime_error with one line for a folder without results, for a state
-/// that was not recorded, for options that do not fit, and for a file that exists.
+/// each level as a scene, the obstacles included, and opens on the finest. A .obj, .ply or .vtp has the cloth
+/// of one level; for a .png see export_pictures. All but .vtp have texture coordinates: those of the cloth's
+/// file, or PlanarUv of a flat rest shape. Throws std::runtime_error with one line for a folder without
+/// results, for a state that was not recorded, for options that do not fit, and for a file that exists.
 std::vector<std::filesystem::path> export_run(const std::filesystem::path& folder,
                                               const std::filesystem::path& file,
                                               const ExportOptions& options);

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/app/experiment/contact_configs.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/mesh/io_formats.h"
@@ -102,6 +103,7 @@ Recorder::Names Recorder::write_scene() {
 Recorder::Names Recorder::write_obstacles() {
   Names written;
   results_["obstacles"] = Json::array();
+  results_["obstacle_names"] = obstacle_names(*experiment_.registry, experiment_.parameters);
   for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
     const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
     results_["obstacles"].push_back(name);
