@@ -52,6 +52,14 @@ TEST_CASE("Each contact model gets the obstacles that have its keys, in the list
   CHECK(e.contacts[1]->bind(level, Material())->obstacles()[1].vertices.rows() == 42);
 }
 
+TEST_CASE("The obstacles' names are in the order of their meshes, model by model") {
+  Experiment e = experiment_from(mixed);
+  CHECK((obstacle_order(test_registry(), e.parameters) == std::vector<std::size_t>{1, 2, 0, 3}));
+  e.parameters.obstacles[2].entries.erase(e.parameters.obstacles[2].entries.begin());
+  CHECK((obstacle_names(test_registry(), e.parameters) ==
+         std::vector<std::string>{"ball", "", "plate", "shell"}));
+}
+
 TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
   ExperimentParameters p = experiment_from(mixed).parameters;
   p.obstacles[3] = p.obstacles[1];

@@ -59,15 +59,28 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
 /// valid, whose scene cannot be built: otherwise build_scene appends them.
 void check_mesh_files(const Experiment& experiment, ConfigErrors& errors);
 
+/// A vertex of a pin that follows an obstacle, and the point of the obstacle that it is attached to.
+struct FollowingVertex {
+  int pin = 0, vertex = 0;
+  Eigen::Index obstacle = 0;                          ///< in obstacles_of
+  std::string name;                                   ///< the obstacle's, as the pin has it
+  Eigen::Vector3i corners{0, 0, 0};                   ///< of the followed triangle
+  Eigen::Matrix3d first = Eigen::Matrix3d::Zero();    ///< these under the first load, one a column [m]
+  Eigen::Vector3d weights = Eigen::Vector3d::Zero();  ///< barycentric coordinates of the point
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();   ///< the target from there, in the triangle's frame [m]
+};
+using FollowingVertices = std::vector<FollowingVertex>;
+
 /// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
 struct Scene {
   Hierarchy hierarchy;
   std::vector<NamedEnergy> energies;                      ///< of the models, handles included
   std::vector<std::shared_ptr<const LevelModel>> models;  ///< at the start, before any load stepping
-  std::vector<Positions> placed;       ///< the starts without noise, where pins and handles hold (n×3) [m]
-  std::vector<Positions> starts;       ///< with noise, and pinned vertices at their targets (n×3) [m]
-  std::optional<Positions> reference;  ///< on the finest level, if the experiment names its file
-  std::unique_ptr<LoadStepping> schedule;  ///< null without one
+  std::vector<Positions> placed;  ///< the starts without noise, where pins and handles hold (n×3) [m]
+  std::vector<Positions> starts;  ///< with noise, and pinned vertices at their targets (n×3) [m]
+  std::vector<FollowingVertices> following;  ///< of each level
+  std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
+  std::unique_ptr<LoadStepping> schedule;    ///< null without one
 
   /// The model of a level under the load that it has reached; valid until the next load step.
   const LevelModel& model(int level) const;

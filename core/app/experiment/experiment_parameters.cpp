@@ -177,7 +177,25 @@ void declare_selection(Declaration<Condition>& d) {
 
 }  // namespace
 
-void PinParameters::declare(Declaration<PinParameters>& d) { declare_selection(d); }
+void FollowParameters::declare(Declaration<FollowParameters>& d) {
+  d.add("obstacle", &FollowParameters::obstacle)
+      .description("name of the obstacle, or its index from 0; without one the pin follows none");
+  d.add("vertices", &FollowParameters::vertices)
+      .at_least(0)
+      .at_most(bounds::largest_int)
+      .description(
+          "vertices of the obstacle, from 0 in the order of its file, at whose triangles the pin may be "
+          "attached; all without any");
+}
+
+void PinParameters::declare(Declaration<PinParameters>& d) {
+  declare_selection(d);
+  d.add_section("follow", &PinParameters::follow)
+      .shorthand("obstacle")
+      .description(
+          "obstacle that the targets move with: each keeps its place in the frame of the obstacle's triangle "
+          "that is nearest to it at the start");
+}
 
 void HandleParameters::declare(Declaration<HandleParameters>& d) {
   declare_selection(d);

@@ -72,8 +72,16 @@ struct VertexSelection {
   Eigen::Vector3d target(const Eigen::Vector3d& rest) const;
 };
 
+/// The obstacle that a pin follows; none without its name.
+struct FollowParameters {
+  std::string obstacle;
+  std::vector<int> vertices;
+  static void declare(Declaration<FollowParameters>& d);
+};
+
 /// Dirichlet boundary condition (hard positions): the vertices stay at their targets on every level.
 struct PinParameters : VertexSelection {
+  FollowParameters follow;
   static void declare(Declaration<PinParameters>& d);
 };
 

@@ -5,6 +5,7 @@
 
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/experiment_path.h"
+#include "core/app/experiment/following_pins.h"
 
 namespace drape {
 
@@ -24,6 +25,7 @@ void throw_first(const ConfigErrors& errors) {
 LoadSchedule::LoadSchedule(const Experiment& e, const Scene& scene)
     : hierarchy_(scene.hierarchy),
       placed_(scene.placed),
+      following_(scene.following),
       keys_(e.parameters.schedule),
       increment_count_(e.parameters.schedule.steps),
       equilibrates_(e.parameters.schedule.equilibrate) {
@@ -154,9 +156,16 @@ std::shared_ptr<const LoadState> LoadSchedule::at(std::vector<double> values, co
 std::shared_ptr<const LevelModel> LoadSchedule::model(const LoadState& load, int level,
                                                       const LevelModel& before) const {
   const Level &own = hierarchy_.levels[level], &coarsest = hierarchy_.levels[0];
-  return std::make_shared<const LevelModel>(
-      own, load.parameters->material, load.energies,
-      dirichlet_vertices(*load.parameters, own, coarsest, placed_[level]), load.contacts, &before);
+  const auto with = [&](std::vector<DirichletVertex> dirichlet, const LevelModel& shared) {
+    return std::make_shared<const LevelModel>(own, load.parameters->material, load.energies,
+                                              std::move(dirichlet), load.contacts, &shared);
+  };
+  std::vector<DirichletVertex> dirichlet =
+      dirichlet_vertices(*load.parameters, own, coarsest, placed_[level]);
+  if (following_[level].empty()) return with(std::move(dirichlet), before);
+  const auto moved = with({}, before);  // where the obstacles are decides the targets
+  move_targets(following_[level], moved->contacts(), dirichlet);
+  return with(std::move(dirichlet), *moved);
 }
 
 }  // namespace drape

@@ -78,6 +78,7 @@ class LoadSchedule {
 
   const Hierarchy& hierarchy_;
   const std::vector<Positions>& placed_;
+  const std::vector<FollowingVertices>& following_;
   KeyedValues keys_;
   int increment_count_;
   bool equilibrates_;

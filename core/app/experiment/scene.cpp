@@ -5,6 +5,7 @@
 
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/experiment.h"
+#include "core/app/experiment/following_pins.h"
 #include "core/app/experiment/reference_file.h"
 #include "core/app/experiment/schedule_check.h"
 #include "core/app/experiment/schedule_stepping.h"
@@ -254,6 +255,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
       refuse_intersecting_start(e, *scene->models.back(), scene->starts.back(), errors);
     if (!errors.empty()) return nullptr;
   }
+  scene->following = following_vertices(e, *scene, errors);
   check_schedule_on_levels(e, *scene, errors);
   if (!errors.empty()) return nullptr;
   if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);

@@ -93,6 +93,21 @@ void refuse_repeated_keys(const Experiment& e, ConfigErrors& errors) {
   }
 }
 
+/// Appends an error for every key of a pin that follows an obstacle: the obstacle decides its targets.
+void refuse_keys_of_following_pins(const Experiment& e, ConfigErrors& errors) {
+  for (std::size_t k = 0; k < e.parameters.schedule.keys.size(); ++k) {
+    const std::string& parameter = e.parameters.schedule.keys[k].parameter;
+    const std::vector<std::string> path = indexed_path(e.resolved, parameter);
+    const auto pin = path[0] == "pins" && path.size() > 1 ? parse_integer(path[1]) : std::nullopt;
+    if (!pin || *pin < 0 || static_cast<std::size_t>(*pin) >= e.parameters.pins.size()) continue;
+    if (const std::string& obstacle = e.parameters.pins[*pin].follow.obstacle; !obstacle.empty())
+      errors.push_back({e.source.find("schedule")->find("keys")->items[k].where,
+                        "key \"" + excerpt(parameter) + "\" changes pin " + std::to_string(*pin) +
+                            ", which follows obstacle \"" + excerpt(obstacle) +
+                            "\"; move the obstacle, or remove \"follow\""});
+  }
+}
+
 /// The values of a key, and one between each two that differ: increments set such values too, also where a
 /// step of a key has to be made in parts. None is a round fraction, which an integer might take.
 std::vector<ConfigNode> with_values_between(const KeyParameters& key) {
@@ -211,6 +226,7 @@ void check_schedule(const Experiment& e, ConfigErrors& errors) {
         }
   }
   if (errors.empty()) refuse_repeated_keys(e, errors);
+  if (errors.empty()) refuse_keys_of_following_pins(e, errors);
   if (!errors.empty() || p.keys.empty()) return;
   static const Schema schema = schema_of<ExperimentParameters>();
   // Every keyed value, and one between each two, as its parameter would take it from the file.

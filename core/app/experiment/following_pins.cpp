@@ -1,0 +1,183 @@
+#include "core/app/experiment/following_pins.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/app/experiment/contact_configs.h"
+#include "core/kernel/contact/closest.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/plugin/string_utils.h"
+
+namespace drape {
+
+namespace {
+
+/// The corners of a triangle, one a column.
+Eigen::Matrix3d corners_of(const TriangleMesh& mesh, Eigen::Index t) {
+  return mesh.vertices(mesh.triangles.row(t), Eigen::all).transpose();
+}
+
+/// The axes of a triangle's frame, one a column; not finite for a triangle without area.
+Eigen::Matrix3d frame_of(const Eigen::Matrix3d& corners) {
+  const Eigen::Vector3d edge = corners.col(1) - corners.col(0);
+  const Eigen::Vector3d normal = edge.cross(corners.col(2) - corners.col(0));
+  Eigen::Matrix3d axes;
+  axes.col(0) = edge / edge.norm();
+  axes.col(2) = normal / normal.norm();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
+
+std::string name_of(const std::string& obstacle) { return "obstacle \"" + excerpt(obstacle) + "\""; }
+
+/// An obstacle's triangles that may be followed, for searches of the nearest.
+class FollowedSurface {
+ public:
+  /// Of all triangles, or of those with one of these vertices.
+  FollowedSurface(const TriangleMesh& mesh, const std::vector<int>& vertices) : mesh_(mesh) {
+    std::vector<char> named(mesh.vertices.rows(), vertices.empty());
+    for (const int v : vertices) named[v] = 1;
+    for (Eigen::Index t = 0; t < mesh.triangles.rows(); ++t) {
+      const auto v = mesh.triangles.row(t);
+      if (!named[v[0]] && !named[v[1]] && !named[v[2]]) continue;
+      const Eigen::Matrix3d corners = corners_of(mesh, t);
+      const Eigen::Vector3d centre = corners.rowwise().mean();
+      spheres_.push_back({t, centre, (corners.colwise() - centre).colwise().norm().maxCoeff()});
+    }
+  }
+
+  /// Attaches a vertex with this target to the nearest triangle, the first of equally near ones. Returns its
+  /// distance [m]; +∞ without triangles.
+  double attach(const Eigen::Vector3d& target, FollowingVertex& vertex) const {
+    double least = INFINITY;
+    for (const Sphere& sphere : spheres_) {
+      if ((target - sphere.centre).norm() - sphere.radius > least) continue;
+      const Eigen::Matrix3d corners = corners_of(mesh_, sphere.triangle);
+      const Closest closest = closest_point_triangle(target, corners.col(0), corners.col(1), corners.col(2));
+      const Eigen::Vector3d weights = -closest.c.tail<3>(), offset = target - corners * weights;
+      if (!(offset.norm() < least)) continue;
+      least = offset.norm();
+      vertex.corners = mesh_.triangles.row(sphere.triangle);
+      vertex.first = corners;
+      vertex.weights = weights;
+      vertex.offset = frame_of(corners).transpose() * offset;
+    }
+    return least;
+  }
+
+ private:
+  struct Sphere {
+    Eigen::Index triangle;
+    Eigen::Vector3d centre;
+    double radius;
+  };
+  const TriangleMesh& mesh_;
+  std::vector<Sphere> spheres_;
+};
+
+/// Attaches the vertices of one pin on every level.
+class PinAttacher {
+ public:
+  PinAttacher(const Experiment& e, const Scene& scene, std::size_t pin)
+      : e_(e), scene_(scene), pin_(static_cast<int>(pin)), follow_(e.parameters.pins[pin].follow) {}
+
+  /// Returns the first fault; empty without one.
+  std::string attach(std::vector<FollowingVertices>& levels) {
+    const auto index = e_.resolved.find("obstacles")->index_of(follow_.obstacle);
+    if (!index) return unknown_obstacle();
+    const std::vector<std::size_t> order = obstacle_order(*e_.registry, e_.parameters);
+    const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
+    for (std::size_t l = 0; l < levels.size(); ++l) {
+      const std::vector<TriangleMesh> meshes = obstacles_of(scene_.models[l]->contacts());
+      if (meshes.size() != order.size() || meshes[place].triangles.rows() == 0)
+        return "has no surface that a pin can follow: its contact model shows no mesh of it";
+      if (std::string fault = attach_level(*scene_.models[l], meshes[place], place, levels[l]);
+          !fault.empty())
+        return fault;
+    }
+    return "";
+  }
+
+ private:
+  std::string unknown_obstacle() const {
+    std::vector<std::string> names = obstacle_names(*e_.registry, e_.parameters);
+    std::erase(names, "");
+    const std::string near = nearest_word(follow_.obstacle, names);
+    if (!near.empty()) return "does not exist; did you mean \"" + excerpt(near) + "\"?";
+    return "does not exist; " + (names.empty()
+                                     ? "give an obstacle a \"name\", or follow it by its index from 0"
+                                     : "the names are " + joined(names));
+  }
+
+  std::string attach_level(const LevelModel& model, const TriangleMesh& mesh, Eigen::Index place,
+                           FollowingVertices& level) const {
+    const std::vector<TriangleMesh> finest = obstacles_of(scene_.models.back()->contacts());
+    if (!follow_.vertices.empty() && mesh.vertices.rows() != finest[place].vertices.rows())
+      return "has cages, which replace it on coarse levels, so \"vertices\" name none of theirs; remove them";
+    for (const int v : follow_.vertices)
+      if (v >= mesh.vertices.rows())
+        return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
+               std::to_string(mesh.vertices.rows() - 1);
+    const FollowedSurface surface(mesh, follow_.vertices);
+    const double size = bounding_box_diagonal(model.level().rest.vertices);
+    for (const DirichletVertex& d : model.dirichlet()) {
+      if (d.pin != pin_) continue;
+      FollowingVertex vertex{pin_, d.vertex, place, follow_.obstacle};
+      const double distance = surface.attach(d.target, vertex);
+      if (distance > size)
+        return "is " + three_digits(distance) + " m away from vertex " + std::to_string(d.vertex) +
+               " of level " + std::to_string(model.level().index) +
+               ", farther than the cloth is large; place the obstacle or the start so that it is near";
+      level.push_back(std::move(vertex));
+    }
+    return "";
+  }
+
+  const Experiment& e_;
+  const Scene& scene_;
+  int pin_;
+  const FollowParameters& follow_;
+};
+
+}  // namespace
+
+std::vector<FollowingVertices> following_vertices(const Experiment& e, const Scene& scene,
+                                                  ConfigErrors& errors) {
+  std::vector<FollowingVertices> levels(scene.models.size());
+  for (std::size_t k = 0; k < e.parameters.pins.size(); ++k) {
+    const FollowParameters& follow = e.parameters.pins[k].follow;
+    if (follow.obstacle.empty()) continue;
+    const std::string fault = PinAttacher(e, scene, k).attach(levels);
+    if (fault.empty()) continue;
+    const ConfigNode& pin = e.source.find("pins")->items[k];
+    const ConfigNode* written = pin.find("follow");
+    errors.push_back(
+        {written ? written->where : pin.where,
+         "pin " + std::to_string(k) + " follows " + name_of(follow.obstacle) + ", which " + fault});
+  }
+  return levels;
+}
+
+void move_targets(const FollowingVertices& following, const BoundContacts& contacts,
+                  std::vector<DirichletVertex>& dirichlet) {
+  const std::vector<TriangleMesh> meshes = obstacles_of(contacts);
+  for (const FollowingVertex& f : following) {
+    const auto d = std::lower_bound(dirichlet.begin(), dirichlet.end(), f.vertex,
+                                    [](const DirichletVertex& a, int vertex) { return a.vertex < vertex; });
+    if (d == dirichlet.end() || d->vertex != f.vertex || d->pin != f.pin) continue;  // another pin has it now
+    const auto fail = [&](const std::string& what) {
+      throw std::runtime_error("pin " + std::to_string(f.pin) + " cannot follow " + name_of(f.name) + ": " +
+                               what);
+    };
+    const TriangleMesh& mesh = meshes.at(f.obstacle);
+    if (f.corners.maxCoeff() >= mesh.vertices.rows()) fail("it has other triangles than at the start");
+    const Eigen::Matrix3d corners = mesh.vertices(f.corners, Eigen::all).transpose();
+    if (corners == f.first) continue;
+    d->target = corners * f.weights + frame_of(corners) * f.offset;
+    if (!d->target.allFinite()) fail("the triangle that its vertex is attached to has no area now");
+  }
+}
+
+}  // namespace drape
