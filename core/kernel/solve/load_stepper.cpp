@@ -26,6 +26,8 @@ constexpr double min_pass = 1e-3;
 constexpr int max_passes = 100;
 /// The predictor stops once it has reduced the smallest gap to this fraction.
 constexpr double gap_reduction = 0.5;
+/// Time of obstacles' motion and of models for new loads.
+constexpr const char* load_phase = "load stepping";
 
 }  // namespace
 
@@ -61,7 +63,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   // If the predictor gains no more than the last time, the obstacles advance without it.
   if ((begins || !load_stepping_->complete()) && applied < 1 &&
       applied * (1 - s_.response.fraction) <= s_.response.fraction) {
-    const StepLimit limit = load_stepping_->advance(result.level, iterate_.x());
+    const StepLimit limit = advance_alone();
     iterate_.set_limited_by(limit.by);
     limit_text_ = iterate_.limit_text();  // the pins' move that follows has a limit of its own
     applied += limit.fraction * (1 - applied);
@@ -88,7 +90,12 @@ void LoadStepper::advance(bool at_equilibrium) {
 /// Gives the iterate and the enforcer the model of the load that was reached. The cloth was at `from` when
 /// the load changed.
 void LoadStepper::update_model(const Positions& from) {
-  iterate_.set_model(load_stepping_->model(iterate_.result().level), from);
+  std::shared_ptr<const LevelModel> model;
+  {
+    PhaseTimer t(iterate_.result().seconds_by_phase, load_phase);
+    model = load_stepping_->model(iterate_.result().level);
+  }
+  iterate_.set_model(std::move(model), from);
   dirichlet_.set_model(iterate_.model());
 }
 
@@ -128,8 +135,7 @@ double LoadStepper::extrapolate() {
       if (pass < min_pass * reach) break;
       trial = from + (applied + pass) * direction;
     }
-    if (!is_finite_at(trial) ||
-        !load_stepping_->advance_by(pass / (1 - applied), iterate_.result().level, trial)) {
+    if (!is_finite_at(trial) || !advance_with(trial, pass / (1 - applied))) {
       pass *= 0.5;
       continue;
     }
@@ -140,6 +146,18 @@ double LoadStepper::extrapolate() {
     pass *= 2;
   }
   return applied;
+}
+
+/// Advances the load as far as the cloth at x allows.
+StepLimit LoadStepper::advance_alone() {
+  PhaseTimer t(iterate_.result().seconds_by_phase, load_phase);
+  return load_stepping_->advance(iterate_.result().level, iterate_.x());
+}
+
+/// Advances the load by this fraction of the remaining increment if a cloth at `trial` allows it.
+bool LoadStepper::advance_with(const Positions& trial, double fraction) {
+  PhaseTimer t(iterate_.result().seconds_by_phase, load_phase);
+  return load_stepping_->advance_by(fraction, iterate_.result().level, trial);
 }
 
 bool LoadStepper::is_finite_at(const Positions& x) {

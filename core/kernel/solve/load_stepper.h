@@ -67,6 +67,8 @@ class LoadStepper {
  private:
   double trust_factor() const;
   double extrapolate();
+  StepLimit advance_alone();
+  bool advance_with(const Positions& trial, double fraction);
   bool is_finite_at(const Positions& x);
   bool gaps_are_closed();
   void update_model(const Positions& from);
