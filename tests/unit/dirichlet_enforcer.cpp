@@ -73,10 +73,11 @@ struct Prediction {
   EquilibriumCheck check{problem.iterate, p};
   NewtonStep step{problem.iterate, check, p, [](int) {}, [] { return false; }};
   DirichletEnforcer enforcer{problem.model};
-  DirichletPredictor predictor{enforcer, problem.iterate, step};
+  DirichletPredictor predictor;
 
-  Prediction(const std::vector<std::shared_ptr<Energy>>& energies, std::vector<DirichletVertex> dirichlet)
-      : problem(energies, std::move(dirichlet)) {}
+  Prediction(const std::vector<std::shared_ptr<Energy>>& energies, std::vector<DirichletVertex> dirichlet,
+             bool in_parts = false)
+      : problem(energies, std::move(dirichlet)), predictor{enforcer, problem.iterate, step, in_parts} {}
   static NewtonParameters statics() {
     NewtonParameters p;
     p.form = NewtonForm::statics;
@@ -175,6 +176,60 @@ TEST_CASE("Where a limit blocks the motion, the cloth moves as far as it may and
   c.predictor.increase_penalty();
   CHECK(c.problem.iterate.x() == x);
   CHECK(c.enforcer.active());
+}
+
+TEST_CASE("In parts, pins that a limit stops are held and move on") {
+  Prediction c({std::make_shared<Chain>(), std::make_shared<Limiter>(0.25)}, pins(), true);
+  c.predictor.enforce();
+  CHECK(c.enforcer.is_moving());
+  CHECK(!c.enforcer.penalty());
+  CHECK(c.problem.iterate.fixed()[0] == 1);
+  CHECK(c.enforcer.max_violation(c.problem.iterate.x()) == Approx(0.075));
+
+  // A restored enforcer is held as well.
+  DirichletEnforcer restored(c.problem.model);
+  restored.restore(c.enforcer.state());
+  CHECK(restored.is_moving());
+  CHECK(restored.fixed() == c.enforcer.fixed());
+
+  for (int k = 0; k < 20; ++k) c.predictor.move_on();
+  CHECK(c.enforcer.is_moving());
+  CHECK(c.enforcer.max_violation(c.problem.iterate.x()) == Approx(0.1 * std::pow(0.75, 21)));
+
+  // Where progress has stopped for another reason, the penalty takes over.
+  c.predictor.increase_penalty();
+  CHECK(c.enforcer.penalty());
+  CHECK(!c.enforcer.is_moving());
+}
+
+TEST_CASE("In parts, the penalty takes over from moves that gain nothing") {
+  Prediction c({std::make_shared<Chain>(), std::make_shared<Limiter>(1e-3)}, pins(), true);
+  c.predictor.enforce();
+  int moves = 1;
+  for (; c.enforcer.is_moving(); ++moves) {
+    REQUIRE(moves < 10);
+    c.predictor.move_on();
+  }
+  CHECK(moves == 4);
+  CHECK(c.enforcer.penalty());
+  CHECK(c.enforcer.state().idle == 0);
+  CHECK(c.problem.iterate.fixed()[0] == 0);
+}
+
+TEST_CASE("The inertia of short steps does not hold the cloth back where pins move on") {
+  std::vector<DirichletVertex> both = pins();
+  both[1].target += lift;
+  Prediction c({std::make_shared<Chain>(), std::make_shared<Limiter>(0.25)}, both, true);
+  c.p.form = NewtonForm::quasistatic;
+  c.p.step_size = 1e-6;
+  NewtonStep step(
+      c.problem.iterate, c.check, c.p, [](int) {}, [] { return false; });
+  DirichletPredictor predictor(c.enforcer, c.problem.iterate, step, true);
+  const auto moved = [&] { return (c.problem.iterate.x() - NewtonProblem::rest()).row(10).norm(); };
+  predictor.enforce();
+  CHECK(moved() < 1e-6);
+  predictor.move_on();
+  CHECK(moved() > 0.01);
 }
 
 TEST_CASE("Without a factor nothing moves, and the cache says why") {

@@ -22,6 +22,11 @@ constexpr double excess_stiffness = 10;
 /// mass.
 constexpr double min_initial_stiffness = 0.1;
 
+/// A move by less than this fraction of the way gains nothing …
+constexpr double min_move = 5e-3;
+/// … and after so many of them in a row the penalty takes over.
+constexpr int max_idle_moves = 4;
+
 }  // namespace
 
 void DirichletEnforcer::begin(const Positions& x) {
@@ -52,6 +57,11 @@ void DirichletEnforcer::set_satisfied() {
   penalty_.reset();
 }
 
+bool DirichletEnforcer::note_move(double fraction) {
+  idle_ = fraction < min_move ? idle_ + 1 : 0;
+  return idle_ < max_idle_moves;
+}
+
 void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
   blocked_by_ = blocked_by;
   // The number of the modulus, as in the supplement, but not below what the membrane would notice
@@ -59,6 +69,7 @@ void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
   stiffness_ = std::max(model_->material().membrane_modulus,
                         min_initial_stiffness * membrane_stiffness() / smallest_mass());
   best_ = INFINITY;
+  idle_ = 0;
   release();
 }
 

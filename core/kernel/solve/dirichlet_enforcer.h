@@ -11,9 +11,10 @@ namespace drape {
 
 /// Moves the Dirichlet vertices of a level to their targets (supplement, section 4).
 ///
-/// Vertices that a filtered move does not bring to their targets are released, and a penalty
-/// κ_B/2 m_k ‖x_k − x̃_k‖² pulls them. κ_B doubles while that reduces the distance. Once all targets are
-/// reached the vertices are fixed and the penalty is dropped.
+/// Vertices that a filtered move does not bring to their targets are, under a schedule, held where they are
+/// and moved again after further steps. Where moves gain nothing, or without a schedule, they are released,
+/// and a penalty κ_B/2 m_k ‖x_k − x̃_k‖² pulls them. κ_B doubles while that reduces the distance. Once all
+/// targets are reached the vertices are fixed and the penalty is dropped.
 class DirichletEnforcer {
  public:
   /// Refers to `model` until set_model replaces it.
@@ -26,7 +27,7 @@ class DirichletEnforcer {
   struct State {
     std::vector<int> unsatisfied;
     double stiffness = 0, best = 0;
-    int idle = 0;
+    int idle = 0;  ///< doublings of the penalty, or without one moves, since one last helped
     bool infeasible = false, released = false;
     std::string blocked_by;
   };
@@ -42,6 +43,12 @@ class DirichletEnforcer {
   bool active() const { return !unsatisfied_.empty() && !infeasible_; }
   /// Whether some targets were found to be out of reach. Their vertices stay fixed where they are.
   bool infeasible() const { return infeasible_; }
+
+  /// Whether vertices are held on the way to their targets.
+  bool is_moving() const { return active() && !penalty_; }
+  /// Records a move by this fraction of the way that remained. Returns false once moves have long gained
+  /// nothing.
+  bool note_move(double fraction);
 
   /// Records that x has been set to all targets: fixes all Dirichlet vertices and drops the penalty.
   void set_satisfied();
@@ -75,7 +82,7 @@ class DirichletEnforcer {
   std::unique_ptr<PositionPenalty> penalty_;
   double stiffness_ = 0;  // κ_B [1/s²]
   double best_ = 0;       // violation when a doubling last helped [m]
-  int idle_ = 0;          // doublings since then
+  int idle_ = 0;          // doublings, or without a penalty moves, since one last helped
   bool infeasible_ = false;
   std::string blocked_by_;
 };

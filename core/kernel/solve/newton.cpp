@@ -16,6 +16,11 @@ namespace {
 
 /// The Dirichlet penalty doubles when the force residual falls to this multiple of the tolerance.
 constexpr double near_equilibrium = 10;
+/// Pins that contact or limits stopped move on after a full step once forces are within this multiple of the
+/// load …
+constexpr double relaxed_residual = 1;
+/// … and after every so many steps of an increment in any case.
+constexpr int max_steps_between_moves = 5;
 /// Steps between checks of the residual on the next level, which costs an evaluation of its contacts and
 /// forces.
 constexpr int residual_check_interval = 4;
@@ -44,7 +49,7 @@ class Newton {
         step_(
             iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); }),
         dirichlet_(objective.model()),
-        predictor_(dirichlet_, iterate_, step_),
+        predictor_(dirichlet_, iterate_, step_, run.load_stepping != nullptr),
         load_(run.load_stepping, iterate_, dirichlet_, run.clock, run.observer) {
     result_.x = std::move(x);
     result_.level = f_.model().level().index;
@@ -81,6 +86,7 @@ class Newton {
                  three_digits(drift * iterate_.rest_diagonal()) +
                  " m, and does not come to rest; pin it, put something under it, start it nearer to "
                  "what is there, or raise the friction"});
+      if (dirichlet_.is_moving()) move_on_if_relaxed();
     }
   }
 
@@ -139,7 +145,7 @@ class Newton {
         increase_penalty();
         at_floor = false;
       }
-      while (step_.factor().fault().empty() && dirichlet_.active() && check_.is_within(near_equilibrium))
+      while (step_.factor().fault().empty() && dirichlet_.penalty() && check_.is_within(near_equilibrium))
         increase_penalty();
       if (!step_.factor().fault().empty()) return End{Outcome::stalled, step_.factor().fault()};
       const bool in_tolerance = !dirichlet_.active() && check_.in_tolerance();
@@ -228,6 +234,16 @@ class Newton {
     check_.restart();
     step_.factor().invalidate();
     predictor_.enforce();
+    check_.restart_drift();
+  }
+
+  /// Moves pins on that limits or contact stopped, once the cloth has made room. It need not be at
+  /// equilibrium.
+  void move_on_if_relaxed() {
+    const bool relaxed = step_.step_length() == 1 && iterate_.force_residual() <= relaxed_residual;
+    if (!relaxed && load_.steps() % max_steps_between_moves != 0) return;
+    predictor_.move_on();
+    check_.restart();
     check_.restart_drift();
   }
 

@@ -46,9 +46,12 @@ double NewtonStep::step_size() const {
   return controller_.is_static() ? std::numeric_limits<double>::infinity() : controller_.step_size();
 }
 
-bool NewtonStep::factorise(const std::vector<char>& fixed) {
+bool NewtonStep::factorise(const std::vector<char>& fixed, bool with_inertia) {
   factor_.invalidate();
-  return factor_.update(fixed, controller_.mass_shift(), line_search_.step_length());
+  const double longest = 1 / (p_.step_size_limit * p_.step_size_limit);
+  const double mass_shift = controller_.mass_shift();
+  return factor_.update(fixed, with_inertia ? mass_shift : std::min(longest, mass_shift),
+                        line_search_.step_length());
 }
 
 void NewtonStep::begin() {

@@ -45,9 +45,10 @@ class NewtonStep {
   /// Starts over, for another objective.
   void restart();
 
-  /// Factorises the matrix at the iterate anew, without the rows and columns of fixed vertices. Returns false
-  /// if that fails; factor().fault() then says why.
-  bool factorise(const std::vector<char>& fixed);
+  /// Factorises the matrix at the iterate anew, without the rows and columns of fixed vertices,
+  /// `with_inertia` of a step or with that of the longest. Returns false if that fails; factor().fault() then
+  /// says why.
+  bool factorise(const std::vector<char>& fixed, bool with_inertia);
   FactorCache& factor() { return factor_; }
   const FactorCache& factor() const { return factor_; }
 

@@ -1,0 +1,86 @@
+// Cloth that pins pull and twist through contact, with bounds on the cost of an increment.
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// Counts the Newton iterations of every increment, and intersections.
+struct Iterations : Observer {
+  explicit Iterations(const Solved& solved) : s(solved) {}
+  const Solved& s;
+  int largest = 0, total = 0;  ///< of increments before the last, which ends at equilibrium
+  std::size_t intersections = 0;
+
+  void increment_finished(const IncrementRow& row, const Positions& x) override {
+    for (const auto& contact : s.scene->model(row.level).contacts())
+      intersections += contact->intersections(x).size();
+    if (row.time == 1) return;
+    largest = std::max(largest, row.iterations);
+    total += row.iterations;
+  }
+};
+
+Iterations solve(Solved& s) {
+  Iterations iterations(s);
+  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), iterations);
+  INFO(s.levels[0].message);
+  CHECK(s.levels[0].outcome == Outcome::converged);
+  CHECK(s.levels[0].message.empty());
+  CHECK(iterations.intersections == 0);
+  CHECK(s.levels[0].seconds_by_phase.count("load stepping") == 1);
+  return iterations;
+}
+
+}  // namespace
+
+TEST_CASE("A cloth that a pin pulls through a slot follows in a few iterations an increment", "[physics]") {
+  Solved s = scene_from(R"(
+name: slot
+cloth: {shape: disc, radius: 0.15, vertices: 200}
+levels: 1
+start: {translate: [0, 0, 0.005]}
+pins: [{region: ball, point: [0, 0, 0], radius: 0.015, translate: [0, 0, 0.005]}]
+energies: [neo_hookean, hinge, {type: strain_limit, limit: 1.2}, gravity]
+contact: ipc
+obstacles:
+  - {name: left, meshed_shape: box, size: [0.3, 0.4, 0.04], translate: [-0.165, 0, -0.025]}
+  - {name: right, meshed_shape: box, size: [0.3, 0.4, 0.04], translate: [0.165, 0, -0.025]}
+friction: 0.1
+schedule: {steps: 20, keys: [{parameter: pins.0.translate, times: [0, 1], values: [[0, 0, 0.005], [0, 0, -0.25]]}]}
+methods: {pcs: {}}
+)");
+  const Iterations iterations = solve(s);
+  // By the penalty alone 361 in one increment, 600 in all.
+  CHECK(iterations.largest < 120);
+  CHECK(iterations.total < 400);
+}
+
+TEST_CASE("A strip that is twisted into itself follows in a few iterations an increment", "[physics]") {
+  Solved s = scene_from(R"(
+name: twist
+cloth: {shape: rectangle, size: [0.3, 0.12], triangulation: one_way, columns: 16, rows: 8}
+levels: 1
+material: {density: 472.6, thickness: 3.18e-4, membrane_modulus: 1e6, bending_modulus: 1e6, poisson_ratio: 0.243}
+start: {perturbation: 1e-4}
+pins:
+  - {region: box, lower: [-1, -1, -1], upper: [0.001, 1, 1]}
+  - {region: box, lower: [0.299, -1, -1], upper: [1, 1, 1], centre: [0.3, 0.06, 0]}
+energies: [neo_hookean, hinge]
+contact: {type: ipc, stiffness: 1.5e4}
+friction: 0.1
+schedule:
+  steps: 30
+  keys:
+    - {parameter: pins.1.rotate, times: [0, 1], values: [[0, 0, 0], [900, 0, 0]]}
+    - {parameter: pins.1.translate, times: [0, 1], values: [[0, 0, 0], [-0.12, 0, 0]]}
+methods: {pcs: {}}
+)");
+  const Iterations iterations = solve(s);
+  // By the penalty alone 67 in one increment, 450 in all.
+  CHECK(iterations.largest < 35);
+  CHECK(iterations.total < 200);
+}
