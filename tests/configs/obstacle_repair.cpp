@@ -66,6 +66,34 @@ TEST_CASE("a cloth drapes over obstacles that are no surface with one side up") 
   CHECK(level["smallest_gap"].get<double>() > 0);
 }
 
+TEST_CASE("cages enclose a repaired obstacle, and its animation moves") {
+  const std::string faults = "v 9 9 9\nv 0 -0.2 0.05\nf 1 2 5\nf 1 2 7\nf 2 2 3\n";
+  const Scratch folder;
+  folder.write("scan.obj", pyramid + faults);
+  folder.write("higher.obj", replaced(pyramid, "v 0 0 0.1\n", "v 0 0 0.13\n") + faults);
+  folder.write("caged.yaml",
+               replaced(replaced(wild, "mesh: scan.obj", "mesh: scan.obj, cages: {count: 1, offset: 0.02}"),
+                        "0.115]", "0.15]"));
+  const std::string moving = replaced(wild, "mesh: scan.obj", "animation: [scan.obj, higher.obj]");
+  folder.write(
+      "moving.yaml",
+      moving +
+          "schedule: {steps: 3, keys: [{parameter: obstacles.scan.frame, times: [0, 1], values: [0, 1]}]}\n");
+  for (const std::string name : {"caged", "moving"}) {
+    const Ended ended =
+        drape_with("run " + name + ".yaml --out " + name + " --no-report --threads 1", folder.path);
+    INFO(ended.err);
+    CHECK(ended.exit_code == 0);
+    CHECK_THAT(ended.err,
+               Catch::Contains("remark: obstacle scan: dropped 1 loose vertex, 1 doubled triangle and 1 "
+                               "triangle without area; kept 1 edge between"));
+    const auto level =
+        nlohmann::json::parse(text_of(folder / (name + "/results.json")))["methods"]["newton"]["levels"][0];
+    CHECK(level["status"] == "converged");
+    CHECK(level["intersections"] == 0);
+  }
+}
+
 TEST_CASE("a strict obstacle is refused with all of its faults") {
   const Scratch folder;
   folder.write("scan.obj", pyramid + "v 9 9 9\nf 1 5 2\nf 3 3 2\n");
