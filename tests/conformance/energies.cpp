@@ -325,3 +325,67 @@ TEST_CASE("Energies: midpoint_factor holds on the surface split at midpoints", "
   });
   CHECK(factors >= 10);
 }
+
+TEST_CASE("Membranes that buckle below the mesh have consistent derivatives and resist less",
+          "[conformance]") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 2, 2, Diagonals::one_way));
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  int membranes = 0;
+  for (const Candidate& candidate : all_energies()) {
+    if (candidate.energy->role() != EnergyRole::membrane) continue;
+    ++membranes;
+    INFO(candidate.name);
+    const auto plain = candidate.energy->bind(level, material);
+    for (const double bound : {0.0, 1e-5, 1e-3}) {
+      const auto buckling = candidate.energy->bind_buckling(level, material, bound);
+      CHECK(buckling->stencils() == plain->stencils());
+      for (const Eigen::Vector3d& stretch :
+           {Eigen::Vector3d(1.05, 1.02, 1), Eigen::Vector3d(1.05, 0.8, 1), Eigen::Vector3d(0.9, 0.8, 1),
+            Eigen::Vector3d(1.2, 0.3, 1), Eigen::Vector3d(0.4, 0.3, 1)}) {
+        INFO("bound " << bound << ", stretches " << stretch.transpose());
+        const Positions x = level.rest.vertices * stretch.asDiagonal() * turn.transpose();
+        const Eigen::VectorXd g = flat(gradient_of(*buckling, x));
+        const auto value = [&](const Positions& y) { return buckling->value(y); };
+        const auto gradient = [&](const Positions& y) { return gradient_of(*buckling, y); };
+        const double rounding = 1e-15 * buckling->value(x) / 1e-6 * std::sqrt(g.size());
+        CHECK((g - differences(value, x, 1e-6).transpose()).norm() <= 1e-7 * g.norm() + rounding);
+        const Eigen::MatrixXd h = dense(hessian_of(*buckling, x, Projection::none));
+        CHECK((h - differences(gradient, x, 1e-6)).norm() <= 1e-6 * h.norm());
+        const Eigen::MatrixXd clamped = dense(hessian_of(*buckling, x, Projection::clamp));
+        CHECK(eigenvalues_of(clamped).minCoeff() >= -1e-12 * clamped.norm());
+        CHECK(buckling->value(x) <= plain->value(x) * (1 + 1e-12));
+      }
+    }
+    const Positions narrow = level.rest.vertices * Eigen::Vector3d(1.05, 0.8, 1).asDiagonal();
+    CHECK(candidate.energy->bind_buckling(level, material, 0)->value(narrow) < 0.5 * plain->value(narrow));
+  }
+  CHECK(membranes >= 2);
+}
+
+TEST_CASE("plate_stiffness is that of a sheet rolled along its grid", "[conformance]") {
+  constexpr double radius = 10, cell = 0.1;
+  int stiff = 0;
+  for (const Candidate& candidate : all_energies()) {
+    const double stiffness = candidate.energy->plate_stiffness(material);
+    INFO(candidate.name);
+    CHECK((stiffness > 0) == (candidate.energy->role() == EnergyRole::bending));
+    if (stiffness == 0) continue;
+    ++stiff;
+    const auto energy = [&](int columns, int rows) {
+      const Level level =
+          Level::of(0, grid({columns * cell, rows * cell}, columns + 1, rows + 1, Diagonals::one_way));
+      Positions x = level.rest.vertices;
+      for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const double angle = x(i, 0) / radius;
+        x(i, 0) = radius * std::sin(angle);
+        x(i, 2) = radius * (1 - std::cos(angle));
+      }
+      return candidate.energy->bind(level, material)->value(x);
+    };
+    const int n = 5;  // n × n cells far from the border: what borders have cancels
+    const double inner = energy(2 * n, 2 * n) - energy(n, 2 * n) - energy(2 * n, n) + energy(n, n);
+    CHECK(inner / std::pow(n * cell, 2) == Approx(stiffness / (2 * radius * radius)).epsilon(1e-3));
+  }
+  CHECK(stiff >= 3);
+}

@@ -63,6 +63,19 @@ class OriginSprings : public Energy, public BoundEnergy {
   int count_;
 };
 
+/// A bending energy with the stiffness of a plate, or a membrane that keeps the bound it buckles at.
+struct Shell : OriginSprings {
+  double stiffness;
+  mutable double bound = -1;
+  Shell(EnergyRole role, double stiffness) : OriginSprings(role, 1), stiffness(stiffness) {}
+  double plate_stiffness(const Material&) const override { return stiffness; }
+  std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                             double s) const override {
+    bound = s;
+    return bind(level, material);
+  }
+};
+
 /// Nothing to collide with; knows what it was bound from.
 class Traced : public ContactModel, public Rebindable {
  public:
@@ -215,4 +228,25 @@ TEST_CASE("A model refuses an energy whose stencils differ from those of the mod
         CHECK_THROWS_WITH(model(kinds[j], &before),
                           Catch::StartsWith("energy springs changes its stencils with a parameter"));
     }
+}
+
+TEST_CASE("Membranes of coarse levels buckle at the stress of a clamped column of the mesh's size",
+          "[level_model]") {
+  const Level level = Level::of(0, grid({2, 1}, 4, 3, Diagonals::one_way));
+  const auto membrane = std::make_shared<Shell>(EnergyRole::membrane, 0);
+  const LevelModel model(level, Material(),
+                         {{"membrane", membrane},
+                          {"bending", std::make_shared<Shell>(EnergyRole::bending, 2)},
+                          {"more bending", std::make_shared<Shell>(EnergyRole::bending, 1)}},
+                         {});
+  // s = σ d A with σ d = 4 π² D / (h² - h_L²), h² = 2 A, h_L = h 2^-k.
+  const double area = 1.0 / 6, h2 = 2 * area, pi = std::acos(-1);
+  for (const int k : {1, 2, 3}) {
+    const LevelModel buckling = model.with_buckling_membranes(k);
+    CHECK(membrane->bound == Approx(4 * pi * pi * 3 / (h2 - h2 / std::pow(4, k)) * area));
+    CHECK(buckling.pattern() == model.pattern());
+    CHECK(buckling.value(level.rest.vertices) == model.value(level.rest.vertices));
+  }
+  LevelModel(level, Material(), {{"membrane", membrane}}, {}).with_buckling_membranes(1);
+  CHECK(membrane->bound == 0);
 }

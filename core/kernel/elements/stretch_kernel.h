@@ -11,12 +11,20 @@ struct StretchSlopes {
   T first1, first2, second1, second2, divided;
 };
 
+/// Slopes of an energy Φ(σ₁, σ₂) that is no sum of two laws: by one stretch each, and ∂²Φ/∂σ₁∂σ₂.
+template <class T>
+struct CoupledSlopes : StretchSlopes<T> {
+  T mixed;
+};
+
 /// Energy φ(σ₁) + φ(σ₂) of one triangle with principal stretches σ, for ElementEnergy. A Law has `constants`
 /// (how many numbers each triangle has), `convex` (φ is convex and non-decreasing; then the energy is convex
 /// in x) and, for T double or Pack,
 ///
 ///     T value(const T& s1, const T& s2, const T* constants);
 ///     StretchSlopes<T> slopes(const T& s1, const T& s2, const T* constants);
+///
+/// A symmetric function Φ(σ₁, σ₂) of both stretches has CoupledSlopes instead.
 ///
 /// Derivatives by F need only the frame v₁, v₂, and stay accurate if stretches agree or vanish: with β =
 /// φ'/σ, q = (β₁ - β₂)/(σ₁² - σ₂²), w = F v, the Hessian's blocks for δF v₁ and δF v₂ are
@@ -39,7 +47,7 @@ struct StretchKernel {
   template <class T>
   static T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) {
     const auto s = stretch(e, rest);
-    const StretchSlopes<T> slopes = Law::slopes(s.largest, s.smallest, rest + 3);
+    const auto slopes = Law::slopes(s.largest, s.smallest, rest + 3);
     const Vector<T> p1 = s.w1 * (slopes.first1 / floored(s.largest)),
                     p2 = s.w2 * (slopes.first2 / floored(s.smallest));
     const Directions<T> v(s, rest);
@@ -53,14 +61,15 @@ struct StretchKernel {
   static void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) {
     using Block = Eigen::Matrix<T, 3, 3>;
     const auto s = stretch(e, rest);
-    const StretchSlopes<T> slopes = Law::slopes(s.largest, s.smallest, rest + 3);
+    const auto slopes = Law::slopes(s.largest, s.smallest, rest + 3);
     const T s1 = floored(s.largest), s2 = floored(s.smallest);
     const T beta1 = slopes.first1 / s1, beta2 = slopes.first2 / s2;
     const T q = (slopes.divided - beta2) / (s1 * (s1 + s2));
     const Block w11 = s.w1 * s.w1.transpose(), w22 = s.w2 * s.w2.transpose();
     Block m11 = w11 * ((slopes.second1 - beta1) / (s1 * s1)) + w22 * q;
     Block m22 = w22 * ((slopes.second2 - beta2) / (s2 * s2)) + w11 * q;
-    const Block m12 = (s.w2 * q) * s.w1.transpose();
+    Block m12 = (s.w2 * q) * s.w1.transpose();
+    if constexpr (requires { slopes.mixed; }) m12 += (s.w1 * (slopes.mixed / (s1 * s2))) * s.w2.transpose();
     for (int i = 0; i < 3; ++i) m11(i, i) += beta1, m22(i, i) += beta2;
     const Directions<T> v(s, rest);
     h.template block<3, 3>(0, 0) = m11 * (v.first1 * v.first1) +

@@ -103,8 +103,23 @@ class Energy {
   /// adjacent area. None if no factor holds for all states: PCS then evaluates all energies of this role on
   /// the finest mesh while it solves a coarse level.
   virtual std::optional<double> midpoint_factor() const { return std::nullopt; }
+  /// Stiffness D [J] of a bending energy as a plate's: a sheet rolled to a curvature κ has ½ D κ² for each
+  /// unit of rest area. By default 0: it does not keep the cloth from wrinkling below a coarse mesh.
+  virtual double plate_stiffness(const Material& material) const {
+    (void)material;
+    return 0;
+  }
   /// Copies what it needs: level and material need not outlive the result.
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
+  /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
+  /// V by much, V rest area × thickness of the triangle and s [J] the same for all triangles
+  /// (docs/theory/locking.md; bind_buckling_membrane makes it of a membrane's law). By default bind(): its
+  /// triangles resist compression as they do on the finest mesh.
+  virtual std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                                     double s) const {
+    (void)s;
+    return bind(level, material);
+  }
 };
 
 }  // namespace drape

@@ -10,6 +10,9 @@
 
 namespace drape {
 
+// Three times a plate's on a grid of right-angled or equilateral triangles (docs/results/validation.md).
+double Hinge::plate_stiffness(const Material& material) const { return 6 * bending_stiffness(material); }
+
 std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& material) const {
   const double k = bending_stiffness(material);
   const Positions& x = level.rest.vertices;

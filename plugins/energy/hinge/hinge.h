@@ -15,6 +15,7 @@ class Hinge final : public Energy {
 
   explicit Hinge(const Parameters&) {}
   EnergyRole role() const override { return EnergyRole::bending; }
+  double plate_stiffness(const Material& material) const override;
   std::optional<double> midpoint_factor() const override { return 2; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 };

@@ -6,6 +6,10 @@
 
 namespace drape {
 
+double MidedgeBending::plate_stiffness(const Material& material) const {
+  return 2 * bending_stiffness(material);
+}
+
 std::unique_ptr<BoundEnergy> MidedgeBending::bind(const Level& level, const Material& material) const {
   return std::make_unique<BoundMidedgeBending>(
       level, ShapeOperators::of(level, bending_stiffness(material), material.poisson_ratio,

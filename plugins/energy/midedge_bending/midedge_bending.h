@@ -25,6 +25,7 @@ class MidedgeBending final : public Energy {
 
   explicit MidedgeBending(const Parameters& parameters) : parameters_(parameters) {}
   EnergyRole role() const override { return EnergyRole::bending; }
+  double plate_stiffness(const Material& material) const override;
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
 
  private:

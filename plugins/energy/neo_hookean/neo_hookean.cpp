@@ -1,5 +1,6 @@
 #include "plugins/energy/neo_hookean/neo_hookean.h"
 
+#include "core/kernel/elements/buckling_membrane.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"
 
@@ -7,6 +8,11 @@ namespace drape {
 
 std::unique_ptr<BoundEnergy> NeoHookean::bind(const Level& level, const Material& material) const {
   return bind_membrane<NeoHookeanLaw>(level, material);
+}
+
+std::unique_ptr<BoundEnergy> NeoHookean::bind_buckling(const Level& level, const Material& material,
+                                                       double s) const {
+  return bind_buckling_membrane<NeoHookeanLaw>(level, material, s);
 }
 
 }  // namespace drape

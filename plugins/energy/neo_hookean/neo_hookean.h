@@ -16,6 +16,8 @@ class NeoHookean final : public Energy {
   EnergyRole role() const override { return EnergyRole::membrane; }
   std::optional<double> midpoint_factor() const override { return 1; }
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+  std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                             double s) const override;
 };
 
 }  // namespace drape

@@ -2,6 +2,7 @@
 
 #include "plugins/energy/neo_hookean/neo_hookean.h"
 #include "plugins/energy/neo_hookean/neo_hookean_law.h"
+#include "tests/support/buckling_check.h"
 #include "tests/support/membrane_check.h"
 
 using namespace drape;
@@ -15,3 +16,5 @@ TEST_CASE("neo_hookean: properties of every membrane") {
       },
       [](double value) { return value == std::numeric_limits<double>::infinity(); });
 }
+
+TEST_CASE("neo_hookean: a membrane that buckles below the mesh") { BucklingCheck<NeoHookeanLaw>().run(); }

@@ -23,6 +23,11 @@ void require_flat(const Eigen::Vector3d* d, const Level& level, int v0, int v1) 
 
 }  // namespace
 
+// Three times a plate's on a grid of right-angled or equilateral triangles (docs/results/validation.md).
+double QuadraticBending::plate_stiffness(const Material& material) const {
+  return 6 * bending_stiffness(material);
+}
+
 std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Material& material) const {
   const double k = bending_stiffness(material);
   const Positions& x = level.rest.vertices;

@@ -14,6 +14,7 @@ class QuadraticBending final : public Energy {
 
   explicit QuadraticBending(const Parameters&) {}
   EnergyRole role() const override { return EnergyRole::bending; }
+  double plate_stiffness(const Material& material) const override;
   std::optional<double> midpoint_factor() const override { return 2; }
   /// Throws std::runtime_error if a hinge's rest angle is above 1e-6.
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;

@@ -1,5 +1,6 @@
 #include "plugins/energy/stvk/stvk.h"
 #include "plugins/energy/stvk/stvk_law.h"
+#include "tests/support/buckling_check.h"
 #include "tests/support/membrane_check.h"
 
 using namespace drape;
@@ -13,3 +14,5 @@ TEST_CASE("stvk: properties of every membrane") {
       },
       [](double value) { return std::isfinite(value); });
 }
+
+TEST_CASE("stvk: a membrane that buckles below the mesh") { BucklingCheck<StvkLaw>().run(); }
