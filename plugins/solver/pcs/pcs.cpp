@@ -9,8 +9,14 @@ namespace drape {
 
 /// What a coarse level minimises after its proxy.
 enum class Relaxation {
-  plain,  ///< the level's own plain energy
+  plain,  ///< the level's own energy, with folds of its own stiffness
   none    ///< nothing: the proxy's equilibrium is the level's state
+};
+
+/// How a membrane on a coarse level answers compression.
+enum class Compression {
+  buckling,  ///< at the stress at which the cloth buckles below the mesh
+  elastic    ///< by the membrane's law, as on the finest level
 };
 
 /// Progressive cloth simulation: coarse levels minimise the finest level's energy, the finest level is
@@ -22,6 +28,7 @@ class PcsSolver : public ResumableSolver {
     int target = 0;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
+    Compression compression = Compression::buckling;
     Relaxation relaxation = Relaxation::plain;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
@@ -47,10 +54,17 @@ class PcsSolver : public ResumableSolver {
               "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
               "most "
               "the proxy's target; for energies that are evaluated on a finer level");
+      d.add_choice("compression", &Parameters::compression,
+                   {{"buckling", Compression::buckling}, {"elastic", Compression::elastic}})
+          .description(
+              "how membranes of coarse levels answer compression, unless they are seen by the refiner: at "
+              "the "
+              "stress at which the cloth buckles below the mesh, or by their law")
+          .source("Pipkin 1986; a departure (docs/theory/locking.md)");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
           .description(
-              "what a coarse level minimises after its proxy: its own plain energy, which makes folds as "
+              "what a coarse level minimises after its proxy: its own energy, which makes folds as "
               "sharp as the level allows, or nothing")
           .source("PCS section 4 for none; plain is a departure (docs/theory/locking.md)");
       d.add_section("newton", &Parameters::newton).description("settings of the Newton solves");
@@ -70,7 +84,8 @@ class PcsSolver : public ResumableSolver {
       const int above = p_.target == 0 ? to_finest : std::min(p_.target, to_finest);
       return std::make_unique<ProxyObjective>(problem, level,
                                               proxy_parts(problem, level, above, p_.depth, p_.interpolation),
-                                              p_.hessian, p_.relaxation == Relaxation::plain);
+                                              ProxyOptions{p_.hessian, p_.relaxation == Relaxation::plain,
+                                                           p_.compression == Compression::buckling});
     };
     return solve_progressively(problem, problem.hierarchy.weights(p_.interpolation.state), objective,
                                p_.newton, from, observer);

@@ -43,8 +43,8 @@ void add_blocks(const BlockMatrix& part, const std::vector<int>& slots, double f
 }  // namespace
 
 ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
-                               ProxyMatrix matrix, bool relaxes)
-    : Objective(problem.model(level)), problem_(problem), level_(level), kind_(matrix), relaxes_(relaxes) {
+                               const ProxyOptions& options)
+    : Objective(problem.model(level)), problem_(problem), level_(level), options_(options) {
   std::vector<std::shared_ptr<const BlockPattern>> patterns;
   for (const ProxyPart& part : parts) {
     if (part.above == 0) {
@@ -59,7 +59,7 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
   }
   ProxyObjective::model_changed();
   for (FinerPart& finer : finer_) {
-    if (kind_ == ProxyMatrix::coarse) continue;
+    if (options_.matrix == ProxyMatrix::coarse) continue;
     const ProxyPart& part = finer.part;
     finer.matrices.emplace_back(finer.matrix_model->pattern());
     for (int k = part.matrix_above; k > 0; --k) {
@@ -68,20 +68,23 @@ ProxyObjective::ProxyObjective(const Problem& problem, int level, const std::vec
     }
     patterns.push_back(finer.matrices.back().pattern);
   }
-  if (kind_ == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
+  if (options_.matrix == ProxyMatrix::coarse || !own_.empty()) patterns.push_back(model().pattern());
   build_pattern(patterns);
 }
 
 void ProxyObjective::model_changed() {
+  if (options_.buckles)
+    buckling_ =
+        std::make_shared<const LevelModel>(model().with_buckling_membranes(problem_.finest() - level_));
   for (FinerPart& finer : finer_) {
     finer.model = problem_.model(level_ + finer.part.above);
     finer.matrix_model =
-        kind_ == ProxyMatrix::galerkin ? problem_.model(level_ + finer.part.matrix_above) : nullptr;
+        options_.matrix == ProxyMatrix::galerkin ? problem_.model(level_ + finer.part.matrix_above) : nullptr;
   }
 }
 
 bool ProxyObjective::switch_to_plain() {
-  if (!relaxes_ || is_plain_) return false;
+  if (!options_.relaxes || is_plain_) return false;
   is_plain_ = true;
   smooth_changed();
   if (matrix_.pattern != model().pattern()) {
@@ -95,7 +98,7 @@ void ProxyObjective::build_pattern(const std::vector<std::shared_ptr<const Block
   matrix_ = BlockMatrix(united(patterns));
   for (FinerPart& finer : finer_)
     if (!finer.matrices.empty()) finer.slots = slots_of(*finer.matrices.back().pattern, *matrix_.pattern);
-  if (kind_ == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
+  if (options_.matrix == ProxyMatrix::coarse || own_.empty() || matrix_.pattern == model().pattern()) return;
   own_matrix_ = BlockMatrix(model().pattern());
   own_slots_ = slots_of(*model().pattern(), *matrix_.pattern);
 }
@@ -110,7 +113,7 @@ const Positions& ProxyObjective::FinerPart::prolong(const Positions& x, int coun
 }
 
 double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
-  if (is_plain_) return model().gradient(x, g);
+  if (is_plain_) return own_model().gradient(x, g);
   g.resize(x.rows(), 3);
   double sum = 0;
   bool first = true;
@@ -122,7 +125,7 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
     first = false;
   };
   for (const ProxyPart& own : own_) {
-    sum += own.factor * model().gradient(x, part_gradient_, own.roles);
+    sum += own.factor * own_model().gradient(x, part_gradient_, own.roles);
     add(own.factor);
   }
   for (FinerPart& finer : finer_) {
@@ -137,12 +140,12 @@ double ProxyObjective::smooth_gradient(const Positions& x, Positions& g) {
 }
 
 void ProxyObjective::add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const {
-  for (const ProxyPart& own : own_) model().add_hessian(x, projection, matrix, own.roles, own.factor);
+  for (const ProxyPart& own : own_) own_model().add_hessian(x, projection, matrix, own.roles, own.factor);
 }
 
 BlockMatrix& ProxyObjective::smooth_matrix(const Positions& x, Projection projection) {
-  if (is_plain_ || kind_ == ProxyMatrix::coarse) {
-    model().hessian(x, projection, matrix_);
+  if (is_plain_ || options_.matrix == ProxyMatrix::coarse) {
+    (is_plain_ ? own_model() : model()).hessian(x, projection, matrix_);
     return matrix_;
   }
   matrix_.set_zero();

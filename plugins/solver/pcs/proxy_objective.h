@@ -26,16 +26,22 @@ enum class ProxyMatrix {
   galerkin  ///< Galerkin product Pᵀ H P of the model `matrix_above` levels up
 };
 
+/// Choices of a proxy beside its parts.
+struct ProxyOptions {
+  ProxyMatrix matrix = ProxyMatrix::galerkin;
+  bool relaxes = false;  ///< switch_to_plain() replaces the parts by the level's own energies
+  bool buckles = false;  ///< the level's own membranes buckle below its mesh (Energy::bind_buckling)
+};
+
 /// Proxy F_l(x) = Σ parts(x) + B_l(x) + D_l(x) + S_l(x): shell energies and loads of finer levels as
 /// functions of the vertices of level l, with that level's own contact and strain limits (PCS, section 4).
 /// The gradient is exact.
 class ProxyObjective : public Objective {
  public:
-  /// Refers to `problem`. `relaxes` says whether switch_to_plain() replaces the proxy by the plain energy;
-  /// otherwise it does nothing.
-  ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts, ProxyMatrix matrix,
-                 bool relaxes = false);
-  bool is_proxy() const override { return !is_plain_; }
+  /// Refers to `problem`.
+  ProxyObjective(const Problem& problem, int level, const std::vector<ProxyPart>& parts,
+                 const ProxyOptions& options);
+  bool is_proxy() const override { return !is_plain_ || options_.buckles; }
   bool switch_to_plain() override;
 
  protected:
@@ -57,14 +63,17 @@ class ProxyObjective : public Objective {
     const Positions& prolong(const Positions& x, int count);
   };
 
+  /// The level's own energies.
+  const LevelModel& own_model() const { return buckling_ ? *buckling_ : model(); }
   void build_pattern(const std::vector<std::shared_ptr<const BlockPattern>>& patterns);
   void add_own_hessians(const Positions& x, Projection projection, BlockMatrix& matrix) const;
 
   const Problem& problem_;
   int level_;
-  ProxyMatrix kind_;
-  bool relaxes_, is_plain_ = false;
-  std::vector<ProxyPart> own_;  // parts of the level's own model
+  ProxyOptions options_;
+  bool is_plain_ = false;
+  std::shared_ptr<const LevelModel> buckling_;  // the level's model with membranes that buckle, or null
+  std::vector<ProxyPart> own_;                  // parts of the level's own model
   std::vector<FinerPart> finer_;
   BlockMatrix own_matrix_, matrix_;  // of own_, if its pattern differs from the sum's; the sum
   std::vector<int> own_slots_;       // index in matrix_ of each block of own_matrix_

@@ -44,8 +44,8 @@ constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refin
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
                         const ProxyInterpolation& interpolation = by_refiner,
                         ProxyMatrix matrix = ProxyMatrix::galerkin) {
-  return ProxyObjective(problem, level,
-                        proxy_parts(problem, level, problem.finest() - level, depth, interpolation), matrix);
+  return ProxyObjective(
+      problem, level, proxy_parts(problem, level, problem.finest() - level, depth, interpolation), {matrix});
 }
 
 }  // namespace
@@ -158,10 +158,10 @@ TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once"
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
   const auto parts = proxy_parts(f.problem, 0, 2, 1, interpolation);
   const Positions x = f.state(0);
-  ProxyObjective never(f.problem, 0, parts, ProxyMatrix::galerkin);
+  ProxyObjective never(f.problem, 0, parts, {ProxyMatrix::galerkin});
   CHECK_FALSE(never.switch_to_plain());
   CHECK(never.is_proxy());
-  ProxyObjective proxy(f.problem, 0, parts, ProxyMatrix::galerkin, true);
+  ProxyObjective proxy(f.problem, 0, parts, {ProxyMatrix::galerkin, true});
   PlainObjective plain(*f.problem.models[0]);
   Positions g, expected;
   plain.gradient(x, expected);
@@ -221,4 +221,32 @@ methods: {pcs: {}}
     return at;
   };
   CHECK((h - differences(gradient, x, 1e-6)).norm() <= 1e-6 * h.norm());
+}
+
+TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy relaxes and after",
+          "[proxy_objective]") {
+  const Fixture f;
+  const LevelModel& plain = *f.problem.models[0];
+  const LevelModel buckling = plain.with_buckling_membranes(2);
+  Positions x = f.state(0);
+  x.col(0) *= 0.7;
+  REQUIRE(buckling.value(x) < 0.9 * plain.value(x));
+  ProxyObjective proxy(f.problem, 0, proxy_parts(f.problem, 0, 2, 1, by_midpoints),
+                       {ProxyMatrix::galerkin, true, true});
+  const double bending = plain.value(x, {EnergyRole::bending});
+  REQUIRE(bending > 0.01 * buckling.value(x));
+  CHECK(value_of(proxy, x) == Approx(buckling.value(x) + 3 * bending).epsilon(1e-12));
+  REQUIRE(proxy.switch_to_plain());
+  CHECK(proxy.is_proxy());
+  Positions g, expected;
+  CHECK(proxy.gradient(x, g) == buckling.gradient(x, expected));
+  CHECK(g == expected);
+  BlockMatrix h(plain.pattern());
+  buckling.hessian(x, Projection::clamp, h);
+  CHECK(proxy.matrix(x, Projection::clamp).values == h.values);
+  // Seen by the refiner, membranes are the finest level's.
+  ProxyObjective by_loop(f.problem, 0, proxy_parts(f.problem, 0, 2, 1, by_refiner),
+                         {ProxyMatrix::galerkin, false, true});
+  ProxyObjective expected_by_loop = proxy_of(f.problem, 0, 1);
+  CHECK(value_of(by_loop, x) == value_of(expected_by_loop, x));
 }
