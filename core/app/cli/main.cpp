@@ -54,7 +54,7 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
   std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary) << "\n";
-  for (const std::string& line : loaded.experiment->remarks()) std::cout << printable(line) << "\n";
+  for (const std::string& line : loaded.experiment->remarks(*loaded.scene)) std::cout << printable(line) << "\n";
   return exit_done;
 }
 

@@ -17,6 +17,8 @@
 
 namespace drape {
 
+struct Scene;
+
 /// A validated experiment with its plugins, before any level is built.
 struct Experiment {
   ExperimentParameters parameters;
@@ -33,8 +35,9 @@ struct Experiment {
   const Solver& solver_of(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
   Location location_of(const std::string& key) const;
-  /// What the contact models say of their input, a line each: how an obstacle was repaired.
-  std::vector<std::string> remarks() const;
+  /// How the contact models treat their input and a scene of the experiment, a line each: repaired obstacles,
+  /// pairs of the cloth that have no barrier.
+  std::vector<std::string> remarks(const Scene& scene) const;
 };
 
 /// Appends an error unless the name (of an experiment, a method or a sweep) can be part of file names.

@@ -192,11 +192,14 @@ Location Experiment::location_of(const std::string& key) const {
   return node ? node->where : source.where;
 }
 
-std::vector<std::string> Experiment::remarks() const {
+std::vector<std::string> Experiment::remarks(const Scene& scene) const {
   std::vector<std::string> all;
   for (const auto& contact : contacts)
-    if (const auto* remarks = dynamic_cast<const InputRemarks*>(contact.get()))
-      for (std::string& line : remarks->input_remarks()) all.push_back(std::move(line));
+    for (std::string& line : contact->input_remarks()) all.push_back(std::move(line));
+  for (const auto& model : scene.models)
+    for (const auto& contact : model->contacts())
+      if (const std::string remark = contact->remark(); !remark.empty())
+        all.push_back("level " + std::to_string(model->level().index) + ": " + remark);
   return all;
 }
 

@@ -263,7 +263,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);
     if (options.verbosity != Verbosity::quiet)
-      for (const std::string& line : experiment.remarks())
+      for (const std::string& line : experiment.remarks(scene))
         std::fprintf(stderr, "remark: %s\n", printable(line).c_str());
     if (!options.warm_started_from.empty()) recorder.warm_started_from(options.warm_started_from);
     begun.files = fingerprints_of_files(config, folder.path());

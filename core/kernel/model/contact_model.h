@@ -130,14 +130,8 @@ class ContactModel {
   virtual ~ContactModel() = default;
   /// Null when there is nothing to collide with: no contact code runs then.
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
-};
-
-/// Optional interface of a ContactModel that uses its input otherwise than it stands there, for messages.
-class InputRemarks {
- public:
-  virtual ~InputRemarks() = default;
-  /// A line each, such as "obstacle scan: dropped 3 loose vertices".
-  virtual std::vector<std::string> input_remarks() const = 0;
+  /// How the model changed its input, a line each, such as "obstacle scan: dropped 3 loose vertices".
+  virtual std::vector<std::string> input_remarks() const { return {}; }
 };
 
 /// Optional interface of a ContactModel whose binding is costly, for load stepping.
