@@ -182,6 +182,12 @@ TEST_CASE("a pin that cannot follow is refused with the reason") {
       Contains(
           "key \"pins.0.translate\" changes pin 0, which follows obstacle \"body\"; move the obstacle, or "
           "remove \"follow\""));
+  std::string two_pins = sheet_on(other, turn, "body");
+  two_pins.insert(two_pins.find("]\nenergies"), ", {region: nearest, point: [0.1, 0.1, 0]}");
+  CHECK_THAT(
+      refusal_of(two_pins),
+      Contains("pin 0 follows obstacle \"body\", which pin 1 does not follow, but both select vertex 40 "
+               "of level 0; let their regions share no vertex"));
   CHECK_THAT(refusal_of(R"(name: alone
 pins: [{region: nearest, follow: body}]
 energies: [neo_hookean]

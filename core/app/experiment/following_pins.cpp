@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/contact_configs.h"
 #include "core/kernel/contact/closest.h"
 #include "core/kernel/files/message_text.h"
@@ -111,6 +112,23 @@ class PinAttacher {
                                      : "the names are " + joined(names));
   }
 
+  /// Another pin of the level's vertices that does not follow the obstacle; empty without one.
+  std::string conflict(const Level& level) const {
+    const Level& coarsest = scene_.hierarchy.levels[0];
+    const std::vector<PinParameters>& pins = e_.parameters.pins;
+    std::vector<char> own(level.vertex_count(), 0);
+    for (const int v : selected_vertices(pins[pin_], level, coarsest)) own[v] = 1;
+    for (std::size_t k = 0; k < pins.size(); ++k) {
+      if (pins[k].follow.obstacle == follow_.obstacle) continue;
+      for (const int v : selected_vertices(pins[k], level, coarsest))
+        if (own[v])
+          return "pin " + std::to_string(k) + " does not follow, but both select vertex " +
+                 std::to_string(v) + " of level " + std::to_string(level.index) +
+                 "; let their regions share no vertex";
+    }
+    return "";
+  }
+
   std::string attach_level(const LevelModel& model, const TriangleMesh& mesh, Eigen::Index place,
                            FollowingVertices& level) const {
     const std::vector<TriangleMesh> finest = obstacles_of(scene_.models.back()->contacts());
@@ -120,6 +138,7 @@ class PinAttacher {
       if (v >= mesh.vertices.rows())
         return "has no vertex " + std::to_string(v) + "; they go from 0 to " +
                std::to_string(mesh.vertices.rows() - 1);
+    if (std::string other = conflict(model.level()); !other.empty()) return other;
     const FollowedSurface surface(mesh, follow_.vertices);
     const double size = bounding_box_diagonal(model.level().rest.vertices);
     for (const DirichletVertex& d : model.dirichlet()) {

@@ -10,8 +10,9 @@ namespace drape {
 // the point stays at its barycentric coordinates and the vertex at its distance from it.
 
 /// Appends an error for every pin of the scene that follows an obstacle which does not exist, has no surface,
-/// lacks a vertex that `follow` names, or is farther away than the cloth is large. Returns the attached
-/// vertices of each level; the scene needs its levels and models.
+/// lacks a vertex that `follow` names, or is farther away than the cloth is large, and for every vertex that
+/// another pin wants elsewhere. Returns the attached vertices of each level; the scene needs its levels and
+/// models.
 std::vector<FollowingVertices> following_vertices(const Experiment& experiment, const Scene& scene,
                                                   ConfigErrors& errors);
 
