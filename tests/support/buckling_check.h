@@ -165,7 +165,7 @@ class BucklingCheck {
           for (const double angle : {0.0, 0.05, 0.3}) {
             // C + 2 A with eigenvalues t, turned by `angle` from the axes of C, where the constraints allow
             // it.
-            const Eigen::Vector2d t = p + Eigen::Vector2d(i, j) / 150 * (kappa - 1) * p[1];
+            const Eigen::Vector2d t = p + (kappa - 1) / 150 * p.cwiseProduct(Eigen::Vector2d(i, j));
             const Eigen::Rotation2Dd v(angle);
             const Eigen::Matrix2d whole = v.toRotationMatrix() * Eigen::Vector2d(t.cwiseAbs2()).asDiagonal() *
                                           v.toRotationMatrix().transpose();

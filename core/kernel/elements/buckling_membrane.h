@@ -57,10 +57,11 @@ struct BucklingLaw {
       return (1 - remainder) * buckling + remainder * own;
     };
     CoupledSlopes<T> slopes;
-    slopes.first1 = blend(k1 * (at.first1 + s * state.t1) - s * s1, plain.first1);
-    slopes.first2 = blend(k2 * (at.first2 + s * state.t2) - s * s2, plain.first2);
-    slopes.second1 = blend(k1 * k1 * (m11 - eliminated2) - s, plain.second1);
-    slopes.second2 = blend(k2 * k2 * (m22 - eliminated1) - s, plain.second2);
+    // Where an axis is taut the terms of s are exactly 0.
+    slopes.first1 = blend(k1 * at.first1 + s * (k1 * state.t1 - s1), plain.first1);
+    slopes.first2 = blend(k2 * at.first2 + s * (k2 * state.t2 - s2), plain.first2);
+    slopes.second1 = blend(k1 * k1 * (at.second1 - eliminated2) + s * (k1 * k1 - 1.0), plain.second1);
+    slopes.second2 = blend(k2 * k2 * (at.second2 - eliminated1) + s * (k2 * k2 - 1.0), plain.second2);
     slopes.mixed = blend(k1 * k2 * at.mixed, plain.mixed);
     // Below this difference the quotient loses more digits than the derivative at equal stretches.
     const T difference = s1 - s2;
