@@ -88,7 +88,6 @@ class BucklingCheck {
     const auto r = rest(0.01 * stiffness());
     int kinks = 0;
     for (const Eigen::Vector2d& end : {Eigen::Vector2d(1.04, 0.2), Eigen::Vector2d(0.3, 0.25)}) {
-      Eigen::Matrix<double, 6, 6> before = Check::evaluate(state(1.05, 1.02), r).hessian;
       const int n = 4000;
       auto last = Check::evaluate(state(1.05, 1.02), r);
       for (int i = 1; i <= n; ++i) {
