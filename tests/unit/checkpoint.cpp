@@ -36,10 +36,10 @@ Checkpoint full() {
   NewtonState& s = c.state.under_way.emplace();
   s.so_far.x = Positions::Random(9, 3);
   s.so_far.force_residual = std::nan("");
-  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}};
+  s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}};
   s.iterate = {2, "ball"};
   s.step.implicit_step.max_iterations = 30;
-  s.step.controller = {0.25, -4, true};
+  s.step.controller = {0.25, -4, true, 0.5};
   s.step.line_search.step_length = 0.125;
   s.switched_to_plain = true;
   s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
@@ -49,7 +49,8 @@ Checkpoint full() {
                 {{{{1, 2, 3, 4, 0}, {1e-5, 0, 2e-5}}}, {}},
                 Positions::Random(9, 3),
                 Positions::Random(9, 3),
-                2};
+                2,
+                {0.25, {{{{{1, 2, 3, 4, 0}, {1, 2, -1, -1}, {1, 0, 0, 0}, {0, 0, 1}, 0.75, {3}}}}, {}}}};
   FactorCache::State& factor = s.step.factor;
   factor.modification.blend = 3;
   factor.pattern.extra = {{{0, 4}, {2, 7}}, {0, 3}};
@@ -128,6 +129,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.controller.step_size == 0.25);
   CHECK(s.step.controller.stall_count == -4);
   CHECK(s.step.controller.backed_off);
+  CHECK(s.step.controller.cycle_limit == 0.5);
   CHECK(s.step.line_search.step_length == 0.125);
   CHECK(s.step.factor.modification.blend == 3);
   CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
@@ -139,12 +141,19 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.check.idle.steps == 3);
   CHECK(s.check.idle.energy == -0.5);
   CHECK(s.check.idle.residual == 1e-6);
+  CHECK(s.check.cycle.residuals == std::array<double, 5>{6, 7, 8, 9, 10});
+  CHECK(s.check.cycle.returns == std::array<int, 3>{1, 0, 2});
   CHECK(s.dirichlet.blocked_by == "post");
   CHECK(s.load_stepper.start.iterations == 5);
   CHECK(s.load_stepper.response.fraction == 0.5);
   CHECK(s.load_stepper.blocked_increments == 2);
   CHECK(s.contacts.tangential_displacements.at(0).at(0).contact == ContactKey{1, 2, 3, 4, 0});
   CHECK(s.contacts.tangential_displacements.at(0).at(0).displacement == Eigen::Vector3d(1e-5, 0, 2e-5));
+  CHECK(s.contacts.damping.fraction == 0.25);
+  const FrictionContact& lag = s.contacts.damping.lag.at(0).at(0).at(0);
+  CHECK(lag.normal == Eigen::Vector3d::UnitZ());
+  CHECK(lag.force == 0.75);
+  CHECK(lag.touched.obstacle == 3);
   CHECK(s.switched_to_plain);
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
   CHECK(c.recorder.steps_bytes == 12345);

@@ -128,3 +128,36 @@ TEST_CASE("friction has the same bits with any number of threads") {
   const Sliding sliding(5000);
   check_threads(sliding.energy(), sliding.moved(epsilon, 3));
 }
+
+TEST_CASE("under-relaxed friction contacts are means, and those that have ended fade") {
+  const Sliding sliding(3);
+  std::vector<FrictionContact> before = sliding.contacts, now = sliding.contacts;
+  before.pop_back();       // contact 2 is new,
+  now.erase(now.begin());  // contact 0 has ended
+  now[0].force = 3 * before[1].force;
+  now[0].normal = Vector3d::UnitX();
+  before[1].normal = Vector3d::UnitY();
+  const FrictionContacts half = under_relaxed({before}, {now}, 0.5);
+  REQUIRE(half.size() == 2);
+  CHECK(half[0][0].key == now[0].key);
+  CHECK(half[0][0].force == Approx(2 * before[1].force));
+  CHECK((half[0][0].normal - Vector3d(3, 1, 0).normalized()).norm() < 1e-15);  // by their parts in the force
+  CHECK(half[0][1].force == Approx(0.5 * now[1].force));
+  CHECK(half[1][0].key == before[0].key);
+  CHECK(half[1][0].force == Approx(0.5 * before[0].force));
+
+  // All of the lag is that of the new state; what has ended keeps its displacement.
+  const FrictionContacts all = under_relaxed({before}, {now}, 1);
+  CHECK(all[0][0].force == now[0].force);
+  CHECK(all[0][0].normal == now[0].normal);
+  CHECK(all[1][0].force == 0);
+
+  FrictionContacts lag = {before};
+  for (int k = 0; k < 100; ++k) lag = under_relaxed(lag, {now}, 0.5);
+  REQUIRE(lag.size() == 1);
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    CHECK(lag[0][i].force == Approx(now[i].force));
+    CHECK((lag[0][i].normal - now[i].normal).norm() < 1e-14);
+    CHECK((lag[0][i].c - now[i].c).norm() < 1e-14);
+  }
+}

@@ -2,8 +2,11 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/kernel/files/message_text.h"
 #include "core/kernel/model/objective.h"
 #include "core/kernel/solve/newton.h"
+#include "core/kernel/solve/newton_state.h"
+#include "core/kernel/solve/resumable_solver.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -19,6 +22,39 @@ struct Standstills : Observer {
     last = x;
   }
 };
+
+/// Keeps every checkpoint and row.
+struct Keeping : Observer {
+  std::vector<NewtonState> states;
+  std::vector<IterationRow> rows;
+  bool checkpoint_due() override { return true; }
+  void checkpoint(const NewtonState& state) override { states.push_back(state); }
+  void iteration(const IterationRow& row, const Positions&) override { rows.push_back(row); }
+};
+
+/// A strip that hangs steeply from its upper end and is taut, since the floor drags its lower end away: the
+/// friction on that end lifts it by more than its normal force changes friction.
+std::string dragged_strip(const std::string& newton) {
+  return R"(
+name: drag
+cloth: {shape: rectangle, size: [0.2, 0.04], columns: 11, rows: 3, triangulation: one_way}
+levels: 1
+material: {}
+start: {rotate: [0, 80, 0], translate: [0, 0, 0.197562]}
+pins: [{region: box, lower: [-0.001, -1, -1], upper: [0.001, 1, 1]}]
+energies: [neo_hookean, hinge, gravity]
+contact: shapes
+obstacles: [{name: floor, shape: half_space}]
+friction: 1.5
+newton: {)" +
+         newton + R"(}
+schedule:
+  steps: 4
+  keys:
+    - {parameter: obstacles.floor.translate, times: [0, 1], values: [[0, 0, 0], [0.1, 0, 0]]}
+methods: {newton: {}}
+)";
+}
 
 }  // namespace
 
@@ -107,4 +143,51 @@ methods: {newton: {}}
 )");
   INFO(s.levels[0].message);
   CHECK(s.levels[0].outcome == Outcome::converged);
+}
+
+TEST_CASE("Friction whose normal forces answer it more than they change it comes to rest") {
+  for (const std::string newton :
+       {"step_growth: 1.5", "step_growth: 1, step_size: 1", "iterations_per_step: 10"}) {
+    const Solved s = solve_yaml(dragged_strip(newton));
+    INFO(newton << ": " << s.levels[0].steps << " steps, " << s.levels[0].message);
+    CHECK(s.levels[0].outcome == Outcome::converged);
+    CHECK(s.levels[0].steps < 150);
+  }
+}
+
+TEST_CASE("A level whose friction was damped is resumed bit for bit") {
+  Solved s = scene_from(dragged_strip("step_growth: 1.5"));
+  Keeping whole;
+  const auto& solver = dynamic_cast<const ResumableSolver&>(*s.experiment.methods[0].second);
+  const LevelResult expected = solver.solve(s.scene->problem(), whole)[0];
+  REQUIRE(expected.outcome == Outcome::converged);
+  int damped = 0;
+  for (const NewtonState& state : whole.states) {
+    if (state.contacts.damping.fraction == 1 && state.check.cycle.steps < 12) continue;
+    damped += state.contacts.damping.fraction < 1;
+    Solved again = scene_from(dragged_strip("step_growth: 1.5"));
+    Observer silent;
+    MethodState from;
+    from.under_way = state;
+    const LevelResult r = solver.resume(again.scene->problem(), from, silent)[0];
+    CHECK(r.steps == expected.steps);
+    CHECK(r.x == expected.x);
+    CHECK(r.force_residual == expected.force_residual);
+  }
+  CHECK(damped > 3);
+}
+
+TEST_CASE("A message's force residual is that of the last iteration's row") {
+  int checked = 0;
+  for (int max_steps = 10; max_steps < 40; ++max_steps) {
+    Solved s = scene_from(dragged_strip("max_steps: " + std::to_string(max_steps)));
+    Keeping kept;
+    const LevelResult r = s.experiment.methods[0].second->solve(s.scene->problem(), kept)[0];
+    INFO(r.message);
+    CHECK(kept.rows.back().force_residual == r.force_residual);
+    if (r.outcome != Outcome::max_steps_reached) continue;
+    ++checked;
+    CHECK_THAT(r.message, Catch::Contains("force residual " + three_digits(kept.rows.back().force_residual)));
+  }
+  CHECK(checked > 10);
 }

@@ -147,3 +147,34 @@ TEST_CASE("A restored step controller continues the same") {
   CHECK(c.step_size() == 1);
   CHECK(!c.state().backed_off);
 }
+
+TEST_CASE("Where steps repeat each other h is limited to a quarter, again and again, until the limit ends") {
+  NewtonParameters p = doubling();
+  StepController c(p);
+  step(c, 1);
+  step(c, 1);
+  CHECK(c.step_size() == 4);
+  c.limit_step_size();
+  CHECK(c.step_size() == 1);
+  step(c, 1);
+  CHECK(c.step_size() == 1);
+  c.limit_step_size();
+  CHECK(c.step_size() == 0.25);
+  StepController other(p);
+  other.restore(c.state());
+  step(other, 1);
+  CHECK(other.step_size() == 0.25);
+  c.end_limit();
+  step(c, 1);
+  CHECK(c.step_size() == 0.5);
+
+  p.form = NewtonForm::statics;
+  StepController inertia(p);
+  CHECK(inertia.inverse_h2() == 0);
+  inertia.limit_step_size();
+  CHECK(inertia.inverse_h2() == 1);  // the limit of 4 s by four
+  inertia.limit_step_size();
+  CHECK(inertia.inverse_h2() == 16);
+  inertia.end_limit();
+  CHECK(inertia.inverse_h2() == 0);
+}

@@ -42,10 +42,30 @@ void fields(A& a, TangentialDisplacement& s) {
   a(s.contact, s.displacement.x(), s.displacement.y(), s.displacement.z());
 }
 
+template <class A, int size>
+void fields(A& a, Eigen::Matrix<double, size, 1>& v) {
+  for (double& component : v) a(component);
+}
+
+template <class A>
+void fields(A& a, ObstaclePoint& p) {
+  a(p.obstacle, p.vertices, p.weights, p.offset);
+}
+
+template <class A>
+void fields(A& a, FrictionContact& c) {
+  a(c.key, c.vertices, c.c, c.normal, c.force, c.touched);
+}
+
+template <class A>
+void fields(A& a, LagDamping& d) {
+  a(d.fraction, d.lag);
+}
+
 template <class A>
 void fields(A& a, ContactMemory& m) {
   a(m.reference, m.tangential_displacements, m.candidates_begin, m.candidates_end, m.seconds_building,
-    m.stiffness);
+    m.stiffness, m.damping);
 }
 
 template <class A>
@@ -64,6 +84,11 @@ void fields(A& a, IdleSteps::State& m) {
 }
 
 template <class A>
+void fields(A& a, CycleDetector::State& s) {
+  a(s.steps, s.energies, s.residuals, s.returns);
+}
+
+template <class A>
 void fields(A& a, Iterate::State& s) {
   a(s.residual_scale, s.limited_by);
 }
@@ -75,7 +100,7 @@ void fields(A& a, ImplicitStep::State& s) {
 
 template <class A>
 void fields(A& a, StepController::State& s) {
-  a(s.step_size, s.stall_count, s.backed_off);
+  a(s.step_size, s.stall_count, s.backed_off, s.cycle_limit);
 }
 
 template <class A>
@@ -100,7 +125,7 @@ void fields(A& a, NewtonStep::State& s) {
 
 template <class A>
 void fields(A& a, EquilibriumCheck::State& s) {
-  a(s.decrements, s.initial_centroid, s.idle);
+  a(s.decrements, s.initial_centroid, s.idle, s.cycle);
 }
 
 template <class A>

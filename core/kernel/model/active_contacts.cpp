@@ -11,6 +11,10 @@ namespace drape {
 
 namespace {
 
+/// ActiveContacts::damp_lag damps no further: the lag then converges unless a contact's normal force answers
+/// friction thirty times as strongly.
+constexpr double smallest_lag_fraction = 1.0 / 16;
+
 template <class T>
 std::unique_ptr<T> required(std::unique_ptr<T> made, const char* by) {
   if (!made)
@@ -46,7 +50,7 @@ void ActiveContacts::begin_step(const Positions& x) {
   // update_obstacles has stored displacements that include an obstacle motion the cloth has yet to follow.
   if (!advected_) store_tangential_displacements(x);
   advected_ = false;
-  lag_friction();
+  lag_friction(true);
 }
 
 void ActiveContacts::replace(BoundContacts models) {
@@ -85,6 +89,7 @@ void ActiveContacts::reset() {
   friction_.clear();
   state_.resize(0, 3);
   advected_ = false;
+  damping_ = {};
 }
 
 ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::size_t model) const {
@@ -128,19 +133,38 @@ void ActiveContacts::update_obstacles(const BoundContacts& models, const Positio
   reset();
   advected_ = true;
   build_collisions(x);
-  lag_friction();
+  lag_friction(false);
 }
 
 void ActiveContacts::update_lagging(const Positions& x) {
   build_collisions(x);
-  lag_friction();
+  lag_friction(false);
 }
 
-void ActiveContacts::lag_friction() {
+void ActiveContacts::lag_friction(bool of_step) {
   friction_.clear();
   if (!friction_enabled_) return;
-  for (std::size_t k = 0; k < collisions_.size(); ++k)
-    friction_.push_back(lagged_friction(*collisions_[k], reference_, tangential_displacements_[k]));
+  for (std::size_t k = 0; k < collisions_.size(); ++k) {
+    FrictionContacts lag = friction_contacts(*collisions_[k]);
+    if (damping_.fraction < 1) {
+      lag = under_relaxed(damping_.lag[k], std::move(lag), of_step ? damping_.fraction : 1);
+      if (of_step) damping_.lag[k] = lag;
+    }
+    set_friction(k, std::move(lag));
+  }
+}
+
+void ActiveContacts::set_friction(std::size_t k, FrictionContacts lag) {
+  friction_.push_back(
+      lagged_friction(*collisions_[k], std::move(lag), reference_, tangential_displacements_[k]));
+}
+
+bool ActiveContacts::damp_lag() {
+  if (!has_friction() || damping_.fraction <= smallest_lag_fraction) return false;
+  if (damping_.lag.empty())
+    for (const auto& collisions : collisions_) damping_.lag.push_back(friction_contacts(*collisions));
+  damping_.fraction /= 2;
+  return true;
 }
 
 ContactMemory ActiveContacts::memory() const {
@@ -150,7 +174,8 @@ ContactMemory ActiveContacts::memory() const {
           collisions_motion_->begin,
           collisions_motion_->end,
           seconds_building_,
-          stiffness()};
+          stiffness(),
+          damping_};
 }
 
 void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
@@ -162,7 +187,10 @@ void ActiveContacts::restore(const ContactMemory& memory, const Positions& x) {
   build_collisions(x);
   reference_ = memory.reference;
   tangential_displacements_ = memory.tangential_displacements;
-  lag_friction();
+  damping_ = memory.damping;
+  if (damping_.fraction == 1) return lag_friction(true);
+  friction_.clear();
+  for (const FrictionContacts& lag : damping_.lag) set_friction(friction_.size(), lag);
 }
 
 StepLimit ActiveContacts::max_step(const Positions& x0, const Positions& x1) {

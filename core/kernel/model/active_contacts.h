@@ -9,6 +9,13 @@
 
 namespace drape {
 
+/// Under-relaxation of friction's lag.
+struct LagDamping {
+  double fraction = 1;  ///< of the change that a step's lag takes on; 1: the lag is that of the step's start
+  /// The last step's lag of each contact model; empty without damping.
+  std::vector<FrictionContacts> lag;
+};
+
 /// The state of a level's contacts at the beginning of a step, for checkpoints.
 struct ContactMemory {
   Positions reference;  ///< n×3, from where tangential displacements are measured [m]
@@ -17,6 +24,7 @@ struct ContactMemory {
   Positions candidates_begin, candidates_end;  ///< the motion whose candidates gave the step's collisions [m]
   double seconds_building = 0;                 ///< total time of building collisions [s]
   ContactStiffness stiffness;                  ///< of each model
+  LagDamping damping;
 };
 
 /// Candidates, collisions and lagged friction of one level during a minimisation. Does nothing on a level
@@ -55,6 +63,13 @@ class ActiveContacts {
   /// Lags normal forces and tangents at x. The reference of tangential displacements stays.
   void update_lagging(const Positions& x);
 
+  /// Halves the fraction by which a step's lag follows the state, since the lag does not converge:
+  /// equilibrium is a fixed point of it at any fraction. Returns false without friction, or if it is as small
+  /// as it gets.
+  bool damp_lag();
+  /// Ends the damping, for another load.
+  void end_lag_damping() { damping_ = {}; }
+
   /// What restore needs to reproduce the state after begin_step.
   ContactMemory memory() const;
   /// Reproduces the state after begin_step(x), with contacts in the same order.
@@ -82,7 +97,10 @@ class ActiveContacts {
   };
   void build_candidates(const Positions& x0, const Positions& x1);
   void build_collisions(const Positions& x);
-  void lag_friction();
+  /// Sets friction_ from the collisions. A step's lag is the damped one.
+  void lag_friction(bool of_step);
+  /// Sets the next model's friction_ from its lag.
+  void set_friction(std::size_t model, FrictionContacts lag);
   /// Stores the tangential displacements at x and makes x their reference. With the models `before` obstacles
   /// moved, they are advected and not limited.
   void store_tangential_displacements(const Positions& x, const BoundContacts* before = nullptr);
@@ -100,6 +118,7 @@ class ActiveContacts {
   std::vector<TangentialDisplacements> tangential_displacements_;  // of each model
   Positions state_;                                                // that the collisions were built at
   Positions reference_;  // that tangential displacements are measured from
+  LagDamping damping_;
   bool friction_enabled_ = true, stiffness_is_fixed_ = false;
   bool advected_ = false;
   double seconds_building_ = 0;

@@ -204,17 +204,21 @@ Eigen::Matrix3d LaggedFriction::stiffness(int i, const Vector3d& u) const {
          (ratio(y) * (Eigen::Matrix3d::Identity() - n * n.transpose()) + along * u * u.transpose());
 }
 
-std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
+FrictionContacts friction_contacts(const Collisions& collisions) {
+  FrictionContacts groups;
+  if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(&collisions))
+    frictional->append_friction_contacts(groups);
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
+std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions, FrictionContacts contacts,
                                                       const Positions& reference,
                                                       const TangentialDisplacements& displacements) {
-  const auto* frictional = dynamic_cast<const FrictionalCollisions*>(&collisions);
-  if (!frictional) return nullptr;
-  FrictionContacts groups;
-  frictional->append_friction_contacts(groups);
-  std::erase_if(groups, [](const auto& group) { return group.empty(); });
-  if (groups.empty()) return nullptr;
-  return std::make_unique<const LaggedFriction>(std::move(groups), reference, displacements,
-                                                frictional->friction_smoothing_distance());
+  if (contacts.empty()) return nullptr;
+  const auto& frictional = dynamic_cast<const FrictionalCollisions&>(collisions);
+  return std::make_unique<const LaggedFriction>(std::move(contacts), reference, displacements,
+                                                frictional.friction_smoothing_distance());
 }
 
 }  // namespace drape

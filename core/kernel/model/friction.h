@@ -49,6 +49,12 @@ struct FrictionContact {
 /// Friction contacts in groups whose energies are summed apart: one for each part of the collisions.
 using FrictionContacts = std::vector<std::vector<FrictionContact>>;
 
+/// The under-relaxed lag of friction: normal forces, points and normals of each contact of `before`, averaged
+/// with those of `now` by (1 - fraction) and `fraction` of their friction forces. Contacts of `before` that
+/// are not in `now` keep (1 - fraction) of their force, in a last group of their own, until it is negligible;
+/// a fraction of 1 keeps them with no force.
+FrictionContacts under_relaxed(const FrictionContacts& before, FrictionContacts now, double fraction);
+
 /// Optional interface of Collisions (core/kernel/model/contact_model.h) with normal forces that friction acts
 /// on.
 class FrictionalCollisions {
@@ -106,10 +112,19 @@ class LaggedFriction final : public BoundEnergy {
   double epsilon_;  // ε, the friction smoothing distance [m]
 };
 
-/// The friction of these collisions with the normal forces and tangents of their state, as LaggedFriction's
-/// constructor describes. Null without friction.
-std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
+/// The friction contacts of these collisions, with the normal forces and tangents of their state; no group is
+/// empty.
+FrictionContacts friction_contacts(const Collisions& collisions);
+
+/// The friction of these contacts of the collisions, as LaggedFriction's constructor describes; by default
+/// all of them. Null without contacts.
+std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions, FrictionContacts contacts,
                                                       const Positions& reference,
                                                       const TangentialDisplacements& displacements);
+inline std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions,
+                                                             const Positions& reference,
+                                                             const TangentialDisplacements& displacements) {
+  return lagged_friction(collisions, friction_contacts(collisions), reference, displacements);
+}
 
 }  // namespace drape

@@ -5,13 +5,17 @@
 namespace drape {
 
 EquilibriumCheck::State EquilibriumCheck::state() const {
-  return {decrements_, {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()}, idle_.state()};
+  return {decrements_,
+          {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()},
+          idle_.state(),
+          cycle_.state()};
 }
 
 void EquilibriumCheck::restore(const State& s) {
   decrements_ = s.decrements;
   initial_centroid_ << s.initial_centroid[0], s.initial_centroid[1], s.initial_centroid[2];
   idle_.restore(s.idle);
+  cycle_.restore(s.cycle);
 }
 
 bool EquilibriumCheck::is_within(double times) const {
@@ -40,6 +44,7 @@ double EquilibriumCheck::drift() const {
 
 void EquilibriumCheck::note_step(double inertia) {
   idle_.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
+  cycle_.note(iterate_.energy_without_friction(), iterate_.force_residual());
 }
 
 }  // namespace drape

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 
+#include "core/kernel/solve/cycle_detector.h"
 #include "core/kernel/solve/factor_cache.h"
 #include "core/kernel/solve/iterate.h"
 #include "core/kernel/solve/newton_parameters.h"
@@ -19,6 +20,7 @@ class EquilibriumCheck {
     std::array<double, 3> decrements = unknown_decrements();
     std::array<double, 3> initial_centroid{};  ///< of the free vertices where the drift begins [m]
     IdleSteps::State idle;
+    CycleDetector::State cycle;
   };
   State state() const;
   void restore(const State& state);
@@ -33,6 +35,10 @@ class EquilibriumCheck {
   bool in_tolerance();
   /// Whether progress has stopped: many idle steps.
   bool is_idle() const { return idle_.many(); }
+  /// Whether steps lead round and round.
+  bool is_cycling() const { return cycle_.cycling(); }
+  /// Looks for a new cycle, after the solver has done something about the last one.
+  void restart_cycle() { cycle_.restart(); }
   /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
   /// the count of idle steps. Call it only once progress has stopped: it invalidates the factor.
   bool is_at_rounding_floor(FactorCache& factor);
@@ -45,9 +51,10 @@ class EquilibriumCheck {
   void note_decrement(double decrement) { decrements_[iterate_.result().iterations % 3] = decrement; }
   /// Notes the end of a step with this `inertia` [J].
   void note_step(double inertia);
-  /// For another objective: restarts the count of idle steps and forgets the decrements.
+  /// For another objective: restarts the count of idle steps, and forgets cycles and decrements.
   void restart() {
     idle_.restart();
+    cycle_.restart();
     decrements_ = unknown_decrements();
   }
   /// Measures the drift from here on.
@@ -64,6 +71,7 @@ class EquilibriumCheck {
   std::array<double, 3> decrements_ = unknown_decrements();
   Eigen::RowVector3d initial_centroid_ = Eigen::RowVector3d::Zero();
   IdleSteps idle_;
+  CycleDetector cycle_;
   double rounding_residual_ = 0;
 };
 

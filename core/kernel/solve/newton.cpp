@@ -161,6 +161,7 @@ class Newton {
           return End{Outcome::infeasible, "the increment to pseudo-time " + three_digits(*load_.time()) +
                                               " cannot be completed" + load_.limit_text()};
       }
+      if (check_.is_cycling()) damp_cycle();
       if (load_.steps() == p_.max_steps)
         return End{Outcome::max_steps_reached,
                    "no equilibrium within max_steps = " + std::to_string(p_.max_steps) + "; force residual " +
@@ -228,8 +229,16 @@ class Newton {
                 " here, and no step lowers it"};
   }
 
+  /// Steps repeat each other: damps the lag of friction, which such steps mostly come from, or h.
+  void damp_cycle() {
+    if (!f_.contacts().damp_lag()) step_.limit_step_size();
+    check_.restart_cycle();
+  }
+
   void advance_increment(bool at_equilibrium) {
     note_unreached_targets();
+    f_.contacts().end_lag_damping();
+    step_.end_limit();
     load_.advance(at_equilibrium);
     check_.restart();
     step_.factor().invalidate();

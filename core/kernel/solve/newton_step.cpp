@@ -43,7 +43,7 @@ void NewtonStep::restart() {
 }
 
 double NewtonStep::step_size() const {
-  return controller_.is_static() ? std::numeric_limits<double>::infinity() : controller_.step_size();
+  return controller_.is_static() ? controller_.state().cycle_limit : controller_.step_size();
 }
 
 bool NewtonStep::factorise(const std::vector<char>& fixed, bool with_inertia) {
@@ -69,8 +69,10 @@ bool NewtonStep::solve() {
   controller_.begin_step();
   interrupted_ = false;
   for (int k = 0; k < step_.max_iterations(); ++k) {
-    if (!iterate(k)) return false;
-    if (check_.in_tolerance()) break;
+    if (!iterate()) return false;
+    const bool at_equilibrium = check_.in_tolerance();
+    report_(k);  // with the force residual that was checked
+    if (at_equilibrium) break;
     if (k + 1 == step_.max_iterations()) continue;
     interrupted_ = interrupt_();
     if (interrupted_) break;
@@ -95,7 +97,7 @@ bool NewtonStep::fail(const std::string& why) {
   return false;
 }
 
-bool NewtonStep::iterate(int k) {
+bool NewtonStep::iterate() {
   LevelResult& result = iterate_.result();
   while (true) {
     step_.evaluate(iterate_, controller_.inverse_h2());
@@ -128,7 +130,6 @@ bool NewtonStep::iterate(int k) {
   result.decrement = decrement;
   ++result.iterations;
   iterate_.update_residual();
-  report_(k);
   controller_.end_iteration(line_search_.step_length(), factor_.age() == 0);
   factor_.end_iteration(line_search_.step_length());
   return true;

@@ -27,8 +27,8 @@ class NewtonStep {
   /// The iterate must have been evaluated.
   void restore(const State& state);
 
-  /// Refers to all arguments. `report` is called after iteration k of a step, and `interrupt` between two
-  /// iterations of one step: true ends it.
+  /// Refers to all arguments. `report` is called after iteration k of a step and its check, and `interrupt`
+  /// between two iterations of one step: true ends it.
   NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
              std::function<void(int k)> report, std::function<bool()> interrupt);
 
@@ -42,6 +42,9 @@ class NewtonStep {
   bool interrupted() const { return interrupted_; }
   /// Resets the damping of a step without descent.
   void abandon() { controller_.abandon_step(); }
+  /// Limits h, since steps repeat each other; until end_limit().
+  void limit_step_size() { controller_.limit_step_size(); }
+  void end_limit() { controller_.end_limit(); }
   /// Starts over, for another objective.
   void restart();
 
@@ -53,10 +56,10 @@ class NewtonStep {
   const FactorCache& factor() const { return factor_; }
 
   double step_length() const { return line_search_.step_length(); }  ///< α of the last line search
-  double step_size() const;                                          ///< h [s]; +∞ for the static form
+  double step_size() const;  ///< h [s]; +∞ for a step without inertia
 
  private:
-  bool iterate(int k);
+  bool iterate();
   bool is_solved_to(double fraction) const;
   bool fail(const std::string& why);
 

@@ -20,12 +20,17 @@ constexpr double back_off = 16;
 constexpr int max_stall_count = 20;
 /// … or once forces are of the load's size.
 constexpr double recovered_residual = 10;
+/// h is divided by this where steps repeat each other.
+constexpr double cycle_reduction = 4;
 /// StepController::min_step_size for the mass of the static form, as 1/h² [1/s²].
 constexpr double max_added_mass = 1 / (StepController::min_step_size * StepController::min_step_size);
 
 }  // namespace
 
-double StepController::inverse_h2() const { return is_static() ? 0 : 1 / (s_.step_size * s_.step_size); }
+double StepController::inverse_h2() const {
+  const double h = is_static() ? s_.cycle_limit : s_.step_size;
+  return 1 / (h * h);
+}
 
 void StepController::begin_step() {
   begun_with_ = s_.step_size;
@@ -60,8 +65,15 @@ void StepController::end_step(double force_residual) {
   }
   if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;
   if (s_.backed_off) return;
-  if (updated_step_length_ == 1) h = std::max(h, std::min(h * p_.step_growth, p_.step_size_limit));
+  if (updated_step_length_ == 1)
+    h = std::max(h, std::min({h * p_.step_growth, p_.step_size_limit, s_.cycle_limit}));
   if (updated_step_length_ < short_step) h /= p_.step_growth;
+}
+
+void StepController::limit_step_size() {
+  const double h = is_static() ? std::min(s_.cycle_limit, p_.step_size_limit) : s_.step_size;
+  s_.cycle_limit = std::max(h / cycle_reduction, min_step_size);
+  if (!is_static()) s_.step_size = s_.cycle_limit;
 }
 
 void StepController::abandon_step() {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "core/kernel/solve/newton_parameters.h"
 
 namespace drape {
@@ -9,7 +11,8 @@ namespace drape {
 ///
 /// h grows after full steps and shrinks after short ones; without descent it is divided by four. Near a
 /// strain limit full steps gain no margin, and forces stay a thousand times the load: h is then divided by 16
-/// and does not grow until the forces have recovered.
+/// and does not grow until the forces have recovered. Where steps repeat each other, h is limited to a
+/// quarter, and the static form gets inertia.
 class StepController {
  public:
   static constexpr double min_step_size = 1e-8;  ///< damping has failed below this h [s]
@@ -18,6 +21,8 @@ class StepController {
     double step_size = 0;     ///< h of the next step [s]
     int stall_count = 0;      ///< consecutive steps with forces far beyond the load; negative: without
     bool backed_off = false;  ///< h was reduced because of a stall and does not grow
+    /// The largest h since steps have repeated each other [s]; without it the static form has no inertia.
+    double cycle_limit = std::numeric_limits<double>::infinity();
   };
   /// At the beginning of a step.
   State state() const { return s_; }
@@ -25,11 +30,11 @@ class StepController {
 
   explicit StepController(const NewtonParameters& parameters) : p_(parameters) { restart(); }
   /// Starts over, for another objective.
-  void restart() { s_ = {p_.step_size, 0, false}; }
+  void restart() { s_ = {p_.step_size}; }
 
   bool is_static() const { return p_.form == NewtonForm::statics; }
   double step_size() const { return s_.step_size; }  ///< h [s]
-  double inverse_h2() const;                         ///< 1/h² [1/s²]; 0 for the static form
+  double inverse_h2() const;                         ///< 1/h² [1/s²]; 0 for the static form without a limit
   /// Multiple of the masses that is added to the Hessian [1/s²].
   double mass_shift() const { return inverse_h2() + added_mass_; }
 
@@ -42,6 +47,10 @@ class StepController {
   void end_iteration(double step_length, bool updated);
   /// Ends a step: adapts h to the step lengths and to stalls.
   void end_step(double force_residual);
+  /// Limits h to a quarter of what it is, since steps repeat each other.
+  void limit_step_size();
+  /// Ends that limit, for another load.
+  void end_limit() { s_.cycle_limit = std::numeric_limits<double>::infinity(); }
   /// Ends a step without descent: resets its damping.
   void abandon_step();
 
