@@ -167,9 +167,10 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
     });
     represented_edges(own, s, obstacle, t, [&](int e, int f) {
       const double length = std::sqrt(cloth.edge_length_squared[e]);
-      add(edge_edge(own, e, obstacle, f),
-          0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
-              protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));
+      ContactPair pair = edge_edge(own, e, obstacle, f);
+      pair.at_rim = dihedrals.edge_is_rim[f] != 0;
+      add(pair, 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
+                    protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));
     });
   });
 }

@@ -28,6 +28,18 @@ Closest closest_point_triangle(const Eigen::Vector3d& x0, const Eigen::Vector3d&
 /// Edge (x0, x1) against edge (x2, x3): c_0 + c_1 = 1, c_2 + c_3 = -1.
 Closest closest_edge_edge(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, const Eigen::Vector3d& x2,
                           const Eigen::Vector3d& x3);
+/// The end x0 of an edge (x0, x1) against edge (x2, x3): c_0 = 1, c_1 = 0, c_2 + c_3 = -1.
+inline Closest closest_edge_end(const Eigen::Vector3d& x0, const Eigen::Vector3d& x2,
+                                const Eigen::Vector3d& x3) {
+  const double t = nearest_on_segment(x3 - x2, x0 - x2);
+  Closest closest;
+  closest.c << 1, 0, t - 1, -t;
+  if (t > 0 && t < 1) {
+    closest.direction.col(0) << 0, 0, 1, -1;
+    closest.free = 1;
+  }
+  return closest;
+}
 /// Point x0 against the infinite plane of (x1, x2, x3).
 Closest closest_point_plane(const Eigen::Vector3d& x0, const Eigen::Vector3d& x1, const Eigen::Vector3d& x2,
                             const Eigen::Vector3d& x3);

@@ -4,6 +4,26 @@
 
 namespace drape {
 
+namespace {
+
+/// The obstacle's nearest point. Its primitive is the second one of an edge-edge pair, and either of others.
+ObstaclePoint touched_by(const Contact& contact, int cloth_count) {
+  ObstaclePoint point{contact.pair.obstacle};
+  if (point.obstacle < 0) return point;
+  for (int k = 0, count = 0; k < 4; ++k) {
+    const int v = contact.pair.vertices[k] - cloth_count;
+    if (v < 0) continue;
+    point.vertices[count] = v;
+    point.weights[count++] = std::abs(contact.closest.c[k]);
+  }
+  // The normal points from the second primitive to the first.
+  const bool first_is_cloth = contact.pair.vertices[0] < cloth_count;
+  point.offset = (first_is_cloth ? 1 : -1) * contact.pair.offset * contact.normal;
+  return point;
+}
+
+}  // namespace
+
 bool is_within_dhat(const ContactPair& pair, const PairPositions& x) {
   const double reach = pair.offset + pair.dhat;
   return box_distance(pair.kind, x) < reach &&
@@ -20,7 +40,7 @@ Contact contact_at(const ContactPair& pair, const PairPositions& x) {
   for (int k = 0; k < 3; ++k) contact.difference.col(k) = x.col(k + 1) - x.col(0);
   contact.barrier = barrier(contact.gap() / pair.dhat);
   contact.mollifier = {1, 0, 0};
-  if (pair.kind == PairKind::edge_edge)
+  if (has_two_edges(pair.kind))
     contact.mollifier =
         mollifier(contact.first_edge().cross(contact.second_edge()).squaredNorm(), pair.mollifier);
   return contact;
@@ -39,6 +59,17 @@ PairPositions contact_gradient(const Contact& contact) {
     g.col(3) += by_v;
   }
   return g;
+}
+
+FrictionContact friction_contact(const Contact& contact, double force, double stiffness, int cloth_count) {
+  const auto& v = contact.pair.vertices;
+  const auto vertex = [&](int k) { return v[k] < cloth_count ? v[k] : -1; };
+  return {{v[0], v[1], v[2], v[3], static_cast<int>(contact.pair.kind)},
+          {vertex(0), vertex(1), vertex(2), vertex(3)},
+          contact.closest.c,
+          contact.normal,
+          contact.pair.friction * stiffness * force,
+          touched_by(contact, cloth_count)};
 }
 
 }  // namespace drape

@@ -2,6 +2,7 @@
 
 #include "core/kernel/contact/barrier.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/model/friction.h"
 
 namespace drape {
 
@@ -18,7 +19,7 @@ struct Contact {
 
   double gap() const { return distance - pair.offset; }
   /// Whether the edges are nearly parallel: then m is not constant 1.
-  bool mollified() const { return pair.kind == PairKind::edge_edge && mollifier.second != 0; }
+  bool mollified() const { return has_two_edges(pair.kind) && mollifier.second != 0; }
   /// Energy over κ [m³].
   double value() const { return pair.weight * pair.dhat * mollifier.value * barrier.value; }
   /// Normal force over κ [m²].
@@ -35,6 +36,10 @@ Contact contact_at(const ContactPair& pair, const PairPositions& x);
 
 /// The gradient of a contact's energy over κ; column k is vertex k's [m²].
 PairPositions contact_gradient(const Contact& contact);
+
+/// The contact as friction needs it, with this force over κ [m²] in place of its pressure. Indices from
+/// cloth_count on are obstacle vertices.
+FrictionContact friction_contact(const Contact& contact, double force, double stiffness, int cloth_count);
 
 /// The 3×3 blocks (a, b), a ≤ b, of a pair's Hessian, row-major; block (a, b) has index b (b + 1) / 2 + a.
 struct PairBlocks {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +11,24 @@ namespace {
 
 /// Smaller angles are round-off of the vertices [rad].
 constexpr double flat_angle = 1e-6;
+/// Edges with a larger angle are rims [rad].
+constexpr double rim_angle = M_PI / 6;
+
+/// For each vertex its two rim edges, -1 for none; for vertices that are not between two rim edges, both.
+std::vector<std::array<int, 2>> rims_through_vertices(const Surface& surface, const std::vector<char>& is_rim,
+                                                      Eigen::Index vertex_count) {
+  std::vector<std::array<int, 2>> rims(vertex_count, {-1, -1});
+  std::vector<int> count(vertex_count, 0);
+  for (Eigen::Index e = 0; e < surface.edges.rows(); ++e)
+    for (int k = 0; k < 2 && is_rim[e]; ++k) {
+      const int v = surface.edges(e, k);
+      if (count[v] < 2) rims[v][count[v]] = static_cast<int>(e);
+      ++count[v];
+    }
+  for (Eigen::Index v = 0; v < vertex_count; ++v)
+    if (count[v] != 2) rims[v] = {-1, -1};
+  return rims;
+}
 
 }  // namespace
 
@@ -35,6 +54,7 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   d.vertex_angle.setZero(n);
   d.vertex_curvature.setZero(n);
   d.edge_on_boundary.resize(count);
+  d.edge_is_rim.resize(count);
   d.vertex_on_boundary.assign(n, 0);
   for (int e = 0; e < count; ++e) {
     const Eigen::Vector3d a = height[0].row(e), b = height[1].row(e);
@@ -43,12 +63,28 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
     if (d.edge_angle[e] < flat_angle) d.edge_angle[e] = 0;
     if (triangles[e] == 2) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
     if (triangles[e] > 2) d.edge_curvature[e] = M_PI / least[e];
+    d.edge_is_rim[e] = d.edge_angle[e] > rim_angle;
+    for (int k = 0; k < 2 && d.edge_on_boundary[e]; ++k) d.vertex_on_boundary[surface.edges(e, k)] = 1;
+  }
+  const auto rims = rims_through_vertices(surface, d.edge_is_rim, n);
+  for (int e = 0; e < count; ++e)
     for (int k = 0; k < 2; ++k) {
       const int v = surface.edges(e, k);
+      if (rims[v][0] == e || rims[v][1] == e) continue;
       d.vertex_angle[v] = std::max(d.vertex_angle[v], d.edge_angle[e]);
       d.vertex_curvature[v] = std::max(d.vertex_curvature[v], d.edge_curvature[e]);
-      if (d.edge_on_boundary[e]) d.vertex_on_boundary[v] = 1;
     }
+  for (Eigen::Index v = 0; v < n; ++v) {
+    if (rims[v][0] < 0) continue;
+    Eigen::Vector3d along[2];
+    for (int k = 0; k < 2; ++k) {
+      const auto edge = surface.edges.row(rims[v][k]);
+      along[k] = (vertices.row(edge[edge[0] == v]) - vertices.row(v)).transpose();
+    }
+    const double angle = std::atan2(along[0].cross(along[1]).norm(), -along[0].dot(along[1]));
+    if (angle < flat_angle) continue;
+    d.vertex_angle[v] = std::max(d.vertex_angle[v], angle);
+    d.vertex_curvature[v] = std::max(d.vertex_curvature[v], 2 * angle / (along[0].norm() + along[1].norm()));
   }
   return d;
 }

@@ -13,8 +13,11 @@ struct Dihedrals {
   Eigen::VectorXd edge_angle;
   /// Angle over the triangles' mean height, of more than two over their least; 0 on the boundary [1/m].
   Eigen::VectorXd edge_curvature;
-  Eigen::VectorXd vertex_angle, vertex_curvature;  ///< the largest of the vertex's edges
+  /// The largest of the vertex's edges. Where two of them are a rim, their own angle counts in place of those
+  /// at them: a straight rim protrudes nowhere through a triangle of which no edge crosses it.
+  Eigen::VectorXd vertex_angle, vertex_curvature;
   std::vector<char> edge_on_boundary, vertex_on_boundary;
+  std::vector<char> edge_is_rim;  ///< on the boundary, or with an angle above 30°
 
   /// Of a surface with its vertices at `vertices` (n×3) [m].
   static Dihedrals of(const Surface& surface, const Positions& vertices);

@@ -80,36 +80,12 @@ class PairCollisions final : public Collisions, public FrictionalCollisions, pub
     for (int i = 0; i < count_; ++i) {
       const Contact& contact = contacts_[i];
       if (contact.pair.friction == 0) continue;
-      const auto vertex = [&](int k) { return cloth_vertex(contact, k); };
-      const auto& v = contact.pair.vertices;
-      result.push_back({{v[0], v[1], v[2], v[3], static_cast<int>(contact.pair.kind)},
-                        {vertex(0), vertex(1), vertex(2), vertex(3)},
-                        contact.closest.c,
-                        contact.normal,
-                        contact.pair.friction * parameters_.stiffness * contact.pressure(),
-                        touched_by(contact)});
+      result.push_back(friction_contact(contact, contact.pressure(), parameters_.stiffness, cloth_count_));
     }
   }
   double friction_smoothing_distance() const override { return parameters_.friction_smoothing_distance; }
 
  private:
-  /// The obstacle's nearest point. Its primitive is the second one of an edge-edge pair, and either of
-  /// others.
-  ObstaclePoint touched_by(const Contact& contact) const {
-    ObstaclePoint point{contact.pair.obstacle};
-    if (point.obstacle < 0) return point;
-    for (int k = 0, count = 0; k < 4; ++k) {
-      const int v = contact.pair.vertices[k] - cloth_count_;
-      if (v < 0) continue;
-      point.vertices[count] = v;
-      point.weights[count++] = std::abs(contact.closest.c[k]);
-    }
-    // The normal points from the second primitive to the first.
-    const bool first_is_cloth = contact.pair.vertices[0] < cloth_count_;
-    point.offset = (first_is_cloth ? 1 : -1) * contact.pair.offset * contact.normal;
-    return point;
-  }
-
   int cloth_vertex(const Contact& contact, int k) const {
     const int v = contact.pair.vertices[k];
     return v < cloth_count_ ? v : -1;

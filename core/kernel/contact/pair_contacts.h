@@ -11,8 +11,9 @@
 namespace drape {
 
 /// Point 0 against triangle 1 … 3, or edge (0, 1) against edge (2, 3). point_plane is point 0 against the
-/// infinite, static plane of three obstacle vertices.
-enum class PairKind : char { point_triangle, edge_edge, point_plane };
+/// infinite, static plane of three obstacle vertices. edge_end is point 0, the end of edge (0, 1), against
+/// edge (2, 3).
+enum class PairKind : char { point_triangle, edge_edge, point_plane, edge_end };
 
 /// A pair of primitives. Indices count the cloth's n vertices, then the obstacles'.
 struct ContactPair {
@@ -22,8 +23,9 @@ struct ContactPair {
   double weight = 0;     ///< area weight of the pair's energy [m²]
   double dhat = 0;       ///< d̂ of the pair, below which its barrier acts [m]
   double offset = 0;     ///< a rounded obstacle's radius: gap = distance - offset [m]
-  double mollifier = 0;  ///< edge_edge: ε of the mollifier, |u × v|² [m⁴]
+  double mollifier = 0;  ///< edge_edge, edge_end: ε of the mollifier, |u × v|² [m⁴]
   double friction = 0;   ///< μ
+  bool at_rim = false;   ///< a cloth edge at a sharp edge of an obstacle (rim_contacts.h)
 };
 
 /// The barrier potential κ Σ_pairs d̂ · weight · m · b(gap / d̂), b(s) = -(s - 1)² ln s, m the edge-edge

@@ -25,22 +25,27 @@ inline Closest closest(PairKind kind, const PairPositions& x) {
       return closest_point_triangle(x0, x1, x2, x3);
     case PairKind::edge_edge:
       return closest_edge_edge(x0, x1, x2, x3);
+    case PairKind::edge_end:
+      return closest_edge_end(x0, x2, x3);
     case PairKind::point_plane:
       break;
   }
   return closest_point_plane(x0, x1, x2, x3);
 }
 
+/// Whether the vertices of a pair are two edges.
+inline bool has_two_edges(PairKind kind) { return kind == PairKind::edge_edge || kind == PairKind::edge_end; }
+
 /// The number of vertices of a pair's first primitive.
-inline int first_primitive_size(PairKind kind) { return kind == PairKind::edge_edge ? 2 : 1; }
+inline int first_primitive_size(PairKind kind) { return has_two_edges(kind) ? 2 : 1; }
 
 /// The distance of the two primitives' bounding boxes, a lower bound of theirs; 0 for a plane [m].
 inline double box_distance(PairKind kind, const PairPositions& x) {
   if (kind == PairKind::point_plane) return 0;
   Eigen::Vector3d low_a = x.col(0), high_a = low_a, low_b = x.col(3), high_b = low_b;
   const Eigen::Vector3d x1 = x.col(1), x2 = x.col(2);
-  Eigen::Vector3d& low = kind == PairKind::edge_edge ? low_a : low_b;
-  Eigen::Vector3d& high = kind == PairKind::edge_edge ? high_a : high_b;
+  Eigen::Vector3d& low = has_two_edges(kind) ? low_a : low_b;
+  Eigen::Vector3d& high = has_two_edges(kind) ? high_a : high_b;
   low = low.cwiseMin(x1);
   high = high.cwiseMax(x1);
   low_b = low_b.cwiseMin(x2);

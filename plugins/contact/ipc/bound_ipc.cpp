@@ -6,6 +6,7 @@
 #include "core/kernel/contact/contact_kernel.h"
 #include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/intersections.h"
+#include "core/kernel/contact/rim_contacts.h"
 #include "core/kernel/contact/surface_contacts.h"
 #include "core/kernel/contact/surface_gap.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
@@ -49,7 +50,7 @@ class IpcCandidates final : public CollisionCandidates {
 
   StepLimit max_step() const override {
     StepLimit limit{1, ""};
-    for (const std::vector<ContactPair>* pairs : {&found_.barrier, &found_.ccd_only}) {
+    for (const std::vector<ContactPair>* pairs : {&found_.barrier, &found_.rims, &found_.ccd_only}) {
       int blocking = -1;
       const double part = additive_ccd(x0_, x1_, obstacles_.vertices, *pairs, min_gap_fraction_, blocking);
       if (part < limit.fraction)
@@ -63,12 +64,14 @@ class IpcCandidates final : public CollisionCandidates {
 
   std::unique_ptr<Collisions> build_collisions(const Positions& x) const override {
     auto pairs = make_pair_contacts(x, obstacles_.vertices, found_.barrier, barrier_);
-    if (found_.vertex_triangles.empty()) return pairs;
+    if (found_.vertex_triangles.empty() && found_.rims.empty()) return pairs;
     std::vector<std::unique_ptr<Collisions>> sets;
     sets.push_back(
         make_surface_contacts(SurfaceContacts::of(x, obstacles_, tree_->coefficients, found_.vertex_triangles,
                                                   rest_->surface.vertex_area, friction_, barrier_.dhat),
                               barrier_));
+    if (!found_.rims.empty())
+      sets.push_back(make_rim_contacts(x, obstacles_.vertices, found_.rims, barrier_));
     sets.push_back(std::move(pairs));
     return std::make_unique<CollisionStack>(std::move(sets));
   }
@@ -89,6 +92,7 @@ class IpcCandidates final : public CollisionCandidates {
       nearest = &pair;
     };
     for (const ContactPair& pair : found_.barrier) visit(pair);
+    for (const ContactPair& pair : found_.rims) visit(pair);
     // The surface's barrier acts on the vertices of CCD-only pairs with an obstacle.
     for (const ContactPair& pair : found_.ccd_only)
       if (pair.vertices[0] >= n || pair.vertices[3] >= n) visit(pair);
@@ -207,7 +211,7 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
     if (tries >= max_tries) limits = {unlimited, unlimited};
     end = fraction > 0 ? Positions(x0 + fraction * (x1 - x0)) : x0;
   }
-  ClassifiedPairs candidates{std::move(found.pairs), {}, std::move(found.vertex_triangles)};
+  ClassifiedPairs candidates{std::move(found.pairs), {}, {}, std::move(found.vertex_triangles)};
   std::vector<ContactPair>& pairs = candidates.barrier;
   for (ContactPair& pair : pairs)
     if (pair.obstacle < 0) pair.dhat = rest_->layers.dhat_of(pair.vertices);
@@ -215,6 +219,10 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
       pairs.begin(), pairs.end(), [](const ContactPair& pair) { return pair.weight > 0 && pair.dhat > 0; });
   candidates.ccd_only.assign(ccd_only, pairs.end());
   pairs.erase(ccd_only, pairs.end());
+  const auto rims =
+      std::stable_partition(pairs.begin(), pairs.end(), [](const ContactPair& pair) { return !pair.at_rim; });
+  candidates.rims.assign(rims, pairs.end());
+  pairs.erase(rims, pairs.end());
   return std::make_unique<IpcCandidates>(x0, std::move(end), fraction, std::move(candidates), obstacle_tree_,
                                          rest_, barrier_, friction_, min_gap_fraction_);
 }

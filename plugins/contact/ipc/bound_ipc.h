@@ -13,10 +13,10 @@
 
 namespace drape::ipc {
 
-/// Candidates by use: pairs with a barrier, pairs for CCD only, and cloth vertices with the obstacle
-/// triangles that may contribute to their barrier.
+/// Candidates by use: pairs with a barrier, pairs at rims with theirs (rim_contacts.h), pairs for CCD only,
+/// and cloth vertices with the obstacle triangles that may contribute to their barrier.
 struct ClassifiedPairs {
-  std::vector<ContactPair> barrier, ccd_only;
+  std::vector<ContactPair> barrier, rims, ccd_only;
   std::vector<VertexTriangleCandidate> vertex_triangles;
 };
 

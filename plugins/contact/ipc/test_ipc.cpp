@@ -3,7 +3,9 @@
 #include <random>
 #include <set>
 
+#include "core/kernel/contact/contact_stack.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/contact/rim_contacts.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/contact_stiffness.h"
 #include "core/kernel/model/friction.h"
@@ -121,12 +123,15 @@ std::vector<ContactPair> brute_force(const Level& level, const Obstacles& obstac
                   own.edge_length_squared[e] * own.edge_length_squared[f]),
             std::min(own.edge_area[e], own.edge_area[f]) / 4, friction);
     }
-    for (int f = 0; f < other.edges.rows(); ++f)
-      add(edges(own.edges.row(e), other.edges.row(f).array() + n,
-                own.edge_length_squared[e] * other.edge_length_squared[f]),
+    for (int f = 0; f < other.edges.rows(); ++f) {
+      ContactPair pair = edges(own.edges.row(e), other.edges.row(f).array() + n,
+                               own.edge_length_squared[e] * other.edge_length_squared[f]);
+      pair.at_rim = d.edge_is_rim[f] != 0;
+      add(pair,
           std::min(own.edge_area[e], other.edge_area[f]) / 2 *
               protrusion_factor(at_edge, f, std::sqrt(own.edge_length_squared[e])),
           friction);
+    }
   }
   return pairs;
 }
@@ -232,8 +237,16 @@ TEST_CASE(
     const BarrierParameters barrier{p.dhat, contact_stiffness(material), p.friction_smoothing_distance};
     for (const double part : {0.0, 0.3, 1.0}) {
       const Positions x = x0 + part * (x1 - x0);
-      const std::vector<ContactPair> pairs = brute_force(level, obstacles, x, p.dhat, p.friction);
-      const auto expected = make_pair_contacts(x, obstacles.vertices, pairs, barrier);
+      std::vector<ContactPair> pairs = brute_force(level, obstacles, x, p.dhat, p.friction);
+      const auto rims = std::stable_partition(pairs.begin(), pairs.end(),
+                                              [](const ContactPair& pair) { return !pair.at_rim; });
+      const std::vector<ContactPair> at_rims(rims, pairs.end());
+      REQUIRE(!at_rims.empty());
+      pairs.erase(rims, pairs.end());
+      std::vector<std::unique_ptr<Collisions>> sets;
+      sets.push_back(make_rim_contacts(x, obstacles.vertices, at_rims, barrier));
+      sets.push_back(make_pair_contacts(x, obstacles.vertices, pairs, barrier));
+      const auto expected = std::make_unique<CollisionStack>(std::move(sets));
       const auto found = candidates->build_collisions(x);
       REQUIRE(expected->contact_count() > 100);
       CHECK(found->contact_count() == expected->contact_count());

@@ -1,0 +1,108 @@
+#include "core/kernel/contact/rim_contacts.h"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "core/kernel/contact/barrier.h"
+#include "tests/support/decompositions.h"
+#include "tests/support/kernel_check.h"
+
+using namespace drape;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double dhat = 1e-2;
+const BarrierParameters parameters{dhat, 3, 1e-4};
+
+/// A rim along y below the origin.
+const Positions rim = (Positions(2, 3) << 0, -1, 0, 0, 1, 0).finished();
+
+ContactPair pair_of(double mollifier = 0) {
+  ContactPair pair{{0, 1, 2, 3}, PairKind::edge_edge};
+  pair.weight = 0.5;
+  pair.dhat = dhat;
+  pair.mollifier = mollifier;
+  pair.friction = 0.25;
+  pair.obstacle = 0;
+  pair.at_rim = true;
+  return pair;
+}
+
+std::unique_ptr<Collisions> contacts(const Positions& x, double mollifier = 0) {
+  return make_rim_contacts(x, rim, {pair_of(mollifier)}, parameters);
+}
+
+/// A cloth edge of 5 cm at a height over the rim, which it passes by `past`.
+Positions level_edge(double past, double height) {
+  return (Positions(2, 3) << past, 0, height, past - 0.05, 0, height).finished();
+}
+
+double b(double gap) { return gap < dhat ? barrier(gap / dhat).value : 0; }
+
+}  // namespace
+
+TEST_CASE("A cloth edge over a rim takes over the barrier that its vertex loses beyond it") {
+  const double height = 0.4 * dhat, unit = 3 * dhat * 0.5;
+  for (const double past : {-2 * dhat, -0.5 * dhat, -1e-6, 0.0}) {  // before the rim
+    const Positions x = level_edge(past, height);
+    CHECK(contacts(x)->value(x) == 0);
+    CHECK(gradient_of(*contacts(x), x).norm() == 0);
+  }
+  double last = 0;
+  for (const double past : {0.1 * dhat, 0.5 * dhat, 0.9 * dhat}) {
+    const Positions x = level_edge(past, height);
+    const double value = contacts(x)->value(x);
+    CHECK(value > last);
+    CHECK(value + unit * b(std::hypot(past, height)) == Approx(unit * b(height)));
+    last = value;
+  }
+  const Positions far = level_edge(2 * dhat, height);
+  CHECK(contacts(far)->value(far) == Approx(unit * b(height)));
+  CHECK(contacts(far)->smallest_gap() == Approx(height));
+  const Positions low = level_edge(2 * dhat, 1e-200);
+  CHECK(contacts(low)->value(low) > 400 * unit);
+}
+
+TEST_CASE("Rim contacts have the derivatives of their energy, and are never attractive") {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int near_both = 0, mollified = 0, indefinite = 0;
+  for (int round = 0; round < 2000; ++round) {
+    const double length = round % 2 ? 5 * dhat : 0.7 * dhat, turn = round % 3 ? M_PI : 0.03;
+    const double angle = M_PI / 2 + turn * unit(random);
+    Positions x(2, 3);
+    x.row(0) << 0.5 * dhat * unit(random), unit(random) * 0.1, dhat * (0.5 + 0.4 * unit(random));
+    x.row(1) = x.row(0) + length * Eigen::RowVector3d(std::cos(angle), std::sin(angle), 0.3 * unit(random));
+    if (x(1, 2) < 0.1 * dhat) continue;
+    const double mollifier = 1e-3 * length * length * 4;
+    const auto all = contacts(x, mollifier);
+    if (all->contact_count() == 0) continue;
+    const Positions g = gradient_of(*all, x);
+    const Eigen::MatrixXd h = dense(hessian_of(*all, x, Projection::none));
+    const auto value = [&](const Positions& y) { return contacts(y, mollifier)->value(y); };
+    const auto gradient = [&](const Positions& y) { return gradient_of(*contacts(y, mollifier), y); };
+    const double size = 1e-6 * dhat;
+    CAPTURE(round, x);
+    CHECK(value(x) >= 0);
+    CHECK((differences(value, x, size) - flat(g).transpose()).norm() <= 1e-5 * (g.norm() + 1e-3));
+    bool steady = true;  // no end becomes the nearest point
+    for (int c = 0; c < 6; ++c)
+      for (const double sign : {-3.0, 3.0}) {
+        Positions y = x;
+        y(c / 3, c % 3) += sign * size;
+        steady = steady && contacts(y, mollifier)->contact_count() == 1;
+      }
+    if (steady) CHECK((differences(gradient, x, size) - h).norm() <= 1e-3 * (h.norm() + 1));
+    near_both += x(0, 2) < dhat && std::hypot(x(1, 0), x(1, 2)) < dhat && std::hypot(x(0, 0), x(0, 2)) < dhat;
+    mollified += std::abs(angle - M_PI / 2) < 0.03;
+    const Eigenpairs eigen = eigenpairs_of(h);
+    indefinite += eigen.values[0] < -1e-9 * h.norm();
+    const Eigen::MatrixXd expected =
+        eigen.vectors * eigen.values.cwiseMax(0).asDiagonal() * eigen.vectors.transpose();
+    CHECK((dense(hessian_of(*all, x, Projection::clamp)) - expected).norm() <= 1e-10 * h.norm());
+  }
+  CHECK(near_both > 50);
+  CHECK(mollified > 50);
+  CHECK(indefinite > 50);
+}
