@@ -7,28 +7,28 @@
 #include <set>
 
 using namespace drape;
-using Point = Eigen::Vector3d;
-using Outline = std::vector<Point>;
-using Catch::Contains;
+using CornerPoint = Eigen::Vector3d;
+using CornerList = std::vector<CornerPoint>;
+using Catch::Matchers::Contains;
 
 namespace {
 
-Point normal_of(const Outline& outline, const std::array<int, 3>& t) {
+CornerPoint normal_of(const CornerList& outline, const std::array<int, 3>& t) {
   return (outline[t[1]] - outline[t[0]]).cross(outline[t[2]] - outline[t[0]]) / 2;
 }
 
 /// Checks that n - 2 triangles face up, fill the outline's area and use each of its sides once.
-void check_cut(const Outline& outline) {
+void check_cut(const CornerList& outline) {
   const CutPolygon cut = cut_polygon(outline);
   REQUIRE(cut.fault == "");
   REQUIRE(cut.triangles.size() == outline.size() - 2);
-  Point total = Point::Zero();
+  CornerPoint total = CornerPoint::Zero();
   double area = 0;
   std::set<std::pair<int, int>> sides;
   for (std::size_t k = 0; k < outline.size(); ++k)
     total += outline[k].cross(outline[(k + 1) % outline.size()]) / 2;
   for (const auto& t : cut.triangles) {
-    const Point normal = normal_of(outline, t);
+    const CornerPoint normal = normal_of(outline, t);
     CHECK(normal.dot(total) > 0);
     area += normal.norm();
     for (int k = 0; k < 3; ++k) CHECK(sides.insert({t[k], t[(k + 1) % 3]}).second);
@@ -40,9 +40,9 @@ void check_cut(const Outline& outline) {
 
 /// The outline from each of its corners, in a tilted plane far from the origin.
 template <class Visit>
-void from_every_corner(Outline outline, const Visit& visit) {
-  const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, Point(1, 2, 3).normalized()).toRotationMatrix();
-  for (Point& p : outline) p = tilt * p + Point(30, -20, 10);
+void from_every_corner(CornerList outline, const Visit& visit) {
+  const Eigen::Matrix3d tilt = Eigen::AngleAxisd(0.7, CornerPoint(1, 2, 3).normalized()).toRotationMatrix();
+  for (CornerPoint& p : outline) p = tilt * p + CornerPoint(30, -20, 10);
   for (std::size_t k = 0; k < outline.size(); ++k) {
     std::rotate(outline.begin(), outline.begin() + 1, outline.end());
     visit(outline);
@@ -53,7 +53,7 @@ void from_every_corner(Outline outline, const Visit& visit) {
 
 TEST_CASE("a convex polygon is cut as a fan around its first corner") {
   for (int n = 3; n < 12; ++n) {
-    Outline outline;
+    CornerList outline;
     for (int k = 0; k < n; ++k)
       outline.emplace_back(std::cos(2 * M_PI * k / n), std::sin(2 * M_PI * k / n), 0.02 * (k % 2));
     const CutPolygon cut = cut_polygon(outline);
@@ -67,10 +67,10 @@ TEST_CASE("concave polygons are cut into what they cover") {
   from_every_corner({{0, 0, 0}, {1, 0, 0}, {1, 0.4, 0}, {0.4, 0.4, 0}, {0.4, 1, 0}, {0, 1, 0}}, check_cut);
   from_every_corner({{0, 0, 0}, {1, 0.8, 0}, {2, 0, 0}, {1, 2, 0}}, check_cut);  // an arrow head
   from_every_corner({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}}, check_cut);
-  Outline comb{{0, -1, 0}, {20, -1, 0}};  // with corners on one line
+  CornerList comb{{0, -1, 0}, {20, -1, 0}};  // with corners on one line
   for (int k = 20; k >= 0; --k) comb.emplace_back(k, k % 2, 0);
   from_every_corner(comb, check_cut);
-  Outline spiral;
+  CornerList spiral;
   for (int k = 0; k <= 40; ++k)
     spiral.emplace_back((1 + 0.1 * k) * std::cos(0.3 * k), (1 + 0.1 * k) * std::sin(0.3 * k), 0);
   for (int k = 40; k >= 0; --k)
@@ -84,12 +84,12 @@ TEST_CASE("random stars are cut, at any scale") {
   std::uniform_real_distribution<double> radius(0.1, 1);
   for (int round = 0; round < 60; ++round) {
     const int n = 4 + round % 13;
-    Outline outline;
+    CornerList outline;
     for (int k = 0; k < n; ++k) {
       const double r = std::pow(10, round % 7 - 3) * radius(random);
       outline.emplace_back(r * std::cos(2 * M_PI * k / n), r * std::sin(2 * M_PI * k / n), 0);
     }
-    from_every_corner(outline, [&](const Outline& turned) {
+    from_every_corner(outline, [&](const CornerList& turned) {
       if (round % 7 >= 2) check_cut(turned);  // smaller ones are lost to round-off so far from the origin
     });
     check_cut(outline);
@@ -99,7 +99,7 @@ TEST_CASE("random stars are cut, at any scale") {
 TEST_CASE("polygons that cross or touch themselves, or are not planar, are refused with the reason") {
   CHECK_THAT(cut_polygon({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1.1, 0}}).fault,
              Contains("crosses or touches itself"));
-  Outline star;  // five corners, two turns
+  CornerList star;  // five corners, two turns
   for (int k = 0; k < 5; ++k) star.emplace_back(std::cos(4 * M_PI * k / 5), std::sin(4 * M_PI * k / 5), 0);
   CHECK_THAT(cut_polygon(star).fault, Contains("crosses or touches itself"));
   // A corner on another side, and a side that runs back.
@@ -115,8 +115,8 @@ TEST_CASE("polygons that cross or touch themselves, or are not planar, are refus
 }
 
 TEST_CASE("corners at one place, as at the poles of a sphere of quads, get triangles without area") {
-  Outline outline = {{0, 0, 0},     {1, 0, 0}, {1, 1, 0},     {1, 1, 0},
-                     {0.2, 0.2, 0}, {0, 1, 0}, {0, 1, 1e-15}, {0, 0, 0}};
+  CornerList outline = {{0, 0, 0},     {1, 0, 0}, {1, 1, 0},     {1, 1, 0},
+                        {0.2, 0.2, 0}, {0, 1, 0}, {0, 1, 1e-15}, {0, 0, 0}};
   for (std::size_t turn = 0; turn < outline.size(); ++turn) {
     std::rotate(outline.begin(), outline.begin() + 1, outline.end());
     const CutPolygon cut = cut_polygon(outline);
@@ -135,7 +135,7 @@ TEST_CASE("corners at one place, as at the poles of a sphere of quads, get trian
     CHECK(area == Approx(0.6));
     for (int k = 0; k < 8; ++k) CHECK(sides.count({k, (k + 1) % 8}) == 1);
   }
-  for (const Outline& pole : {Outline{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                              Outline{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}})
+  for (const CornerList& pole : {CornerList{{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                 CornerList{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}})
     CHECK(cut_polygon(pole).triangles.size() == 2);
 }
