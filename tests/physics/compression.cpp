@@ -18,7 +18,7 @@ constexpr double edge = 0.05;    // of the coarse level [m]
 constexpr int levels_below = 3;  // of the finest level
 
 /// Cloth that buckles at a strain of 2.5e-4 between clamps one coarse edge apart.
-const Material material = [] {
+const Material fabric = [] {
   Material m;
   m.thickness = 0.005 * edge;
   m.membrane_modulus = m.bending_modulus = 1e6;
@@ -27,7 +27,7 @@ const Material material = [] {
 }();
 
 /// D of the hinge energy on a grid [J].
-const double plate_stiffness = material.bending_modulus * std::pow(material.thickness, 3) / 4;
+const double plate_stiffness = fabric.bending_modulus * std::pow(fabric.thickness, 3) / 4;
 
 std::vector<NamedEnergy> energies(const std::string& membrane) {
   std::vector<NamedEnergy> all;
@@ -68,7 +68,7 @@ struct ClampedStrip {
       if (along < 1e-9 || along > length() - 1e-9)
         clamped.push_back({i, Eigen::Vector3d(x(i, 0), x(i, 1), 0)});
     }
-    return {level, material, energies(membrane), clamped};
+    return {level, fabric, energies(membrane), clamped};
   }
 
   double solved(const LevelModel& model) const {
@@ -124,7 +124,7 @@ TEST_CASE("A coarse strip between clamps has about the energy of the buckled clo
 
 TEST_CASE("A membrane that buckles on coarse levels is the plain one in tension", "[physics]") {
   for (const std::string membrane : {"neo_hookean", "stvk"}) {
-    Material stretchy = material;
+    Material stretchy = fabric;
     stretchy.poisson_ratio = 0.3;
     const Level level = Level::of(0, random_triangulation({0.6, 0.5}, 200, 3));
     const LevelModel plain(level, stretchy, energies(membrane), {}),
@@ -149,7 +149,7 @@ TEST_CASE("A strip that hangs or bends under its weight is the same with a membr
           "[physics]") {
   // Heavy and soft enough to stretch and to bend visibly, with a compressive stress below the bound.
   const Level level = Level::of(0, grid({0.4, 0.1}, 9, 3, Diagonals::criss_cross));
-  Material m = material;
+  Material m = fabric;
   m.density = 1000;
   m.bending_modulus = 1e8;
   for (const bool hangs : {true, false}) {
@@ -194,12 +194,12 @@ TEST_CASE("The membrane energy of a rolled sheet falls with h as of chords, up t
     membrane.pop_back();
     const Positions x = rolled(flat, radius);
     const double chord = 2 * radius * std::sin(h / (2 * radius)) / h, strain = (1 - chord * chord) / 2;
-    const double stiffness = material.membrane_modulus * material.thickness;
+    const double stiffness = fabric.membrane_modulus * fabric.thickness;
     const double bound = 4 * pi * pi * plate_stiffness / (h * h * (1 - std::pow(4.0, -levels_below)));
     const auto density = [&](const LevelModel& model) {
       return model.value(x, Roles{EnergyRole::membrane}) / (side * side);
     };
-    const LevelModel model(level, material, energies("stvk"), {});
+    const LevelModel model(level, fabric, energies("stvk"), {});
     const double plain = density(model), buckling = density(model.with_buckling_membranes(levels_below));
     const double elastic = stiffness * strain * strain / 2;
     const double wrinkled =
@@ -220,7 +220,7 @@ TEST_CASE("A sheared panel carries the stress of a tension field", "[physics]") 
   constexpr double shear = 0.02, step = 1e-6;
   for (const std::string membrane : {"neo_hookean", "stvk"})
     for (const double nu : {0.0, 0.3}) {
-      Material m = material;
+      Material m = fabric;
       m.poisson_ratio = nu;
       const Level level = Level::of(0, grid({0.4, 0.2}, 9, 5, Diagonals::one_way));
       const LevelModel plain(level, m, energies(membrane), {}),
