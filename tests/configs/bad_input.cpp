@@ -62,7 +62,7 @@ TEST_CASE("the base file of these cases is valid: each case has exactly one faul
              Catch::Matches("e\\.yaml: valid\\. Vertices by level: 36, 121\n"
                             "Memory to solve them, at most about: 0\\.1 GB, 0\\.1 GB; this machine has "
                             "[0-9.]+ GB\n"
-                            "Read: 1 × 1 m, 1 part, edges 100–140 mm on level 1, .*\n"));
+                            "Read: 1 × 1 m, 1 part, edges 0\\.1–0\\.14 m on level 1, .*\n"));
 }
 
 TEST_CASE("a config that is missing, a folder, empty or no YAML") {

@@ -63,7 +63,7 @@ void ActiveContacts::replace(BoundContacts models) {
   const Positions x = std::exchange(state_, Positions());
   build_candidates(candidates_motion_->begin, candidates_motion_->end);
   build_collisions(x);
-  if (reference_.rows() > 0) lag_friction();
+  if (reference_.rows() > 0) lag_friction(false);
 }
 
 void ActiveContacts::set_stiffness(const ContactStiffness& stiffness) {
