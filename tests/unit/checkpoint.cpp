@@ -50,6 +50,7 @@ Checkpoint full() {
                 Positions::Random(9, 3),
                 Positions::Random(9, 3),
                 2,
+                {14.7, 240},
                 {0.25, {{{{{1, 2, 3, 4, 0}, {1, 2, -1, -1}, {1, 0, 0, 0}, {0, 0, 1}, 0.75, {3}}}}, {}}}};
   FactorCache::State& factor = s.step.factor;
   factor.modification.blend = 3;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>

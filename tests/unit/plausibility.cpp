@@ -24,7 +24,7 @@ std::string scene_yaml(const std::string& cloth, const std::string& more = "", d
          contact + "\nmethods: {newton: {}}\n" + more;
 }
 
-std::string ball(double radius, double below) {
+std::string ball_below(double radius, double below) {
   return "obstacles: [{name: ball, shape: sphere, radius: " + ConfigNode::of(radius).scalar +
          ", translate: [0.5, 0.5, " + ConfigNode::of(-below - radius).scalar + "]}]\n";
 }
@@ -57,7 +57,7 @@ TEST_CASE("Numbers have significant digits, and no exponent up to thousands") {
 }
 
 TEST_CASE("The summary has what a person would notice, and leaves out what a scene does not have") {
-  CHECK(summary_text(scene_yaml("{shape: square, side: 1, columns: 21, rows: 21}", ball(0.3, 0.02))) ==
+  CHECK(summary_text(scene_yaml("{shape: square, side: 1, columns: 21, rows: 21}", ball_below(0.3, 0.02))) ==
         "1 × 1 m, 1 part, edges 50–71 mm, 0.15 kg, bending length 5.4 mm (0.11 edges), d̂ 1 mm (0.02 edges), "
         "starts 20 mm above ball: sphere");
   CHECK(summary_text("name: bare\ncloth: {shape: rectangle, size: [0.3, 0.2], columns: 4, rows: 3}\nlevels: "
@@ -89,7 +89,7 @@ TEST_CASE("The connection of two meshes is between the nearest points of a verte
 
 TEST_CASE("What no fabric has gets a warning that says what is usual, before a run") {
   const std::string square = "{shape: square, side: 1, vertices: 400}";
-  CHECK(warnings_of(scene_yaml(square, ball(0.3, 0.02))) == "");
+  CHECK(warnings_of(scene_yaml(square, ball_below(0.3, 0.02))) == "");
   // A cloth in millimetres.
   CHECK_THAT(
       warnings_of(scene_yaml("{shape: square, side: 1000, vertices: 900}")),
@@ -120,7 +120,7 @@ TEST_CASE("What no fabric has gets a warning that says what is usual, before a r
   CHECK_THAT(warnings_of(scene_yaml(square, "start: {scale: [0.1, 0.1, 0.1]}\n")),
              Contains("the start has 0.1 times the lengths of the rest shape") && Contains("1 is usual"));
   // An obstacle in centimetres.
-  CHECK_THAT(warnings_of(scene_yaml(square, ball(85, 0.02))),
+  CHECK_THAT(warnings_of(scene_yaml(square, ball_below(85, 0.02))),
              Contains("the obstacle ball: sphere is 170 × 170 × 170 m and the cloth 1 × 1 m"));
 }
 
