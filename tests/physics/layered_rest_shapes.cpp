@@ -1,0 +1,180 @@
+// Folded, sewn and layered rest shapes come to rest on a floor with their layers apart.
+
+#include <catch2/catch.hpp>
+
+#include "core/kernel/mesh/io.h"
+#include "tests/support/closed_meshes.h"
+#include "tests/support/command.h"
+#include "tests/support/layered_shapes.h"
+#include "tests/support/processor_time.h"
+#include "tests/support/slope.h"
+#include "tests/support/solve.h"
+#include "tests/support/strip.h"
+
+using namespace drape;
+
+namespace {
+
+constexpr double degree = M_PI / 180;
+
+/// Cotton that starts just above a floor, or `height` above it, with friction.
+Solved scene_of(const LayeredShape& shape, const std::string& energies, const std::string& obstacle,
+                double height) {
+  const Scratch folder;
+  const double up = height + 0.9 * dhat - shape.start.col(2).minCoeff();
+  const auto write = [&](const std::string& file, Positions x) {
+    x.col(2).array() += up;
+    write_mesh(folder / file, {x, shape.rest.triangles});
+    return "file: " + (folder / file).string() + "}";
+  };
+  return scene_from("name: layers\nlevels: 1\ncloth: {shape: file, " +
+                    write("rest.obj", shape.rest.vertices) + "\nstart: {" + write("start.obj", shape.start) +
+                    "\nmaterial: {density: 472.6, thickness: 3.18e-4, membrane_modulus: 8e4, "
+                    "bending_modulus: 8e4, poisson_ratio: 0.243}\n"
+                    "energies: [" +
+                    energies +
+                    "]\ncontact: [ipc, shapes]\nfriction: 0.3\n"
+                    "obstacles: [{name: floor, shape: half_space}" +
+                    obstacle + "]\nmethods: {newton: {}}\n");
+}
+
+/// A hinge's angle has no sign where its triangles lie on each other. So a shape is at rest opened by a
+/// thousandth of its start where it has hinges, and as it is where it has none.
+LayeredShape opened(LayeredShape shape) {
+  shape.rest.vertices += 1e-3 * (shape.start - shape.rest.vertices);
+  return shape;
+}
+
+/// The shape comes to rest, no higher than `top` above where it lies.
+void check_rests(const std::function<LayeredShape(double spacing)>& shape_of, double top = 2 * dhat,
+                 const std::string& obstacle = "", double height = 0) {
+  row("\n%s", Catch::getResultCapture().getCurrentTestName().c_str());
+  row("%9s %8s %10s %12s %9s %8s", "vertices", "hinges", "iterations", "smallest gap", "top", "seconds");
+  for (const double spacing : {0.01, 0.005})
+    for (const bool hinges : {false, true}) {
+      const LayeredShape shape = shape_of(spacing);
+      Solved s = hinges ? scene_of(opened(shape), "neo_hookean, hinge, gravity", obstacle, height)
+                        : scene_of(shape, "neo_hookean, gravity", obstacle, height);
+      const ProcessorTime time;
+      run_method(s);
+      const LevelResult& r = s.levels.back();
+      row("%9d %8s %10d %12.2e %9.2e %8.2f", s.level().vertex_count(), hinges ? "yes" : "no", r.iterations,
+          *r.smallest_gap, r.x.col(2).maxCoeff(), time.seconds());
+      CAPTURE(spacing, hinges, r.message);
+      CHECK(has_converged(r.outcome));
+      CHECK(*r.smallest_gap > dhat / 100);
+      CHECK(r.x.col(2).maxCoeff() < top);
+      for (const auto& contact : s.model().contacts()) CHECK(contact->intersections(r.x).empty());
+    }
+}
+
+int cells(double length, double spacing) { return static_cast<int>(std::lround(length / spacing)); }
+bool everywhere(int, int) { return true; }
+bool nowhere(int, int) { return false; }
+double lying(double, double) { return 0; }
+
+/// A square of 8 cm with a sheet of 6 cm by 8 cm sewn to it at three sides, and a flap that is turned down.
+LayeredShape bag(double spacing, bool has_flap) {
+  const int n = cells(0.08, spacing), rows = cells(0.06, spacing);
+  const auto seam = [&](int i, int j) { return j <= rows && (i == 0 || i == n || j == 0); };
+  Sewing bag(spacing);
+  bag.add({n, n, everywhere, seam, lying});
+  bag.add({n, rows, everywhere, seam,
+           [](double x, double y) { return 5e-4 * std::sin(M_PI * x / 0.08) * std::min(1.0, y / 0.02); },
+           false});
+  if (has_flap)
+    bag.add({n, n, [&](int, int j) { return j >= n / 2; }, [&](int, int j) { return j == n; },
+             [](double, double y) { return 0.1 * (0.08 - y); }, false});
+  return bag.shape();
+}
+
+/// Two layers of an L that are sewn together but at the leg's end.
+LayeredShape sock(double spacing) {
+  const int foot = cells(0.08, spacing), leg = cells(0.12, spacing), width = cells(0.04, spacing);
+  const auto inside = [&](int i, int j) {
+    return i >= 0 && j >= 0 && i < foot && j < leg && (i < width || j < width);
+  };
+  const auto seam = [&](int i, int j) {
+    const int around = inside(i, j) + inside(i - 1, j) + inside(i, j - 1) + inside(i - 1, j - 1);
+    return around < 4 && !(j == leg && around == 2);
+  };
+  const auto bulge = [](double x, double y) {
+    const auto along = [](double a, double b) {  // a strip from a = 0, closed there and at its sides
+      return b < 0.04 ? std::sin(M_PI * b / 0.04) * std::min(1.0, a / 0.04) : 0;
+    };
+    return 1e-3 * std::max(along(y, x), std::min(along(x, y), along(0.08 - x, y)));
+  };
+  Sewing sock(spacing);
+  sock.add({foot, leg, inside, seam, lying});
+  sock.add({foot, leg, inside, seam, bulge, false});
+  return sock.shape();
+}
+
+}  // namespace
+
+TEST_CASE("A hem rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) {
+    const double up = M_PI - std::asin(3e-4 / spacing);
+    return folded({{0.1, 0, 0}, {spacing, up, up}, {0.03 - spacing, M_PI, M_PI}}, 0.08, spacing);
+  });
+}
+
+TEST_CASE("A sharp pleat rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) {
+    return folded({{0.06, 0, 0}, {0.03, M_PI, M_PI - 2 * degree}, {0.06, 0, 2 * degree}}, 0.08, spacing);
+  });
+}
+
+TEST_CASE("A box pleat rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) {
+    return folded({{0.05, 0, 0},
+                   {0.02, M_PI, M_PI + 2 * degree},
+                   {0.042, 0, 0},
+                   {0.02, M_PI, M_PI - 2 * degree},
+                   {0.05, 0, 0}},
+                  0.06, spacing);
+  });
+}
+
+TEST_CASE("A sheet that is folded as a letter rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) {
+    return folded({{0.06, M_PI, M_PI + 6 * degree}, {0.06, 0, 0}, {0.04, M_PI, M_PI - degree}}, 0.06,
+                  spacing);
+  });
+}
+
+TEST_CASE("A book that is shut at rest shuts", "[physics]") {
+  check_rests([](double spacing) {
+    return folded({{0.08, M_PI, M_PI}, {0.08, 0, 20 * degree}}, 0.08, spacing);
+  });
+}
+
+TEST_CASE("A pocket rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) { return bag(spacing, false); });
+}
+
+TEST_CASE("An envelope with a flap rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) { return bag(spacing, true); });
+}
+
+TEST_CASE("A sock rests with its layers apart", "[physics]") { check_rests(sock); }
+
+TEST_CASE("A cushion without pressure rests with its layers apart", "[physics]") {
+  check_rests([](double spacing) {
+    const int rings = cells(0.05, spacing);
+    const auto disc = [&](double bulge) { return cushion_mesh(0.05, 6 * rings, rings, bulge); };
+    return LayeredShape{disc(0), disc(5e-4).vertices};
+  });
+}
+
+TEST_CASE("Two coats rest on a ball and the floor with their layers apart", "[physics]") {
+  check_rests(
+      [](double spacing) {
+        const int n = cells(0.1, spacing);
+        Sewing coats(spacing);
+        coats.add({n, n, everywhere, nowhere, lying});
+        coats.add({n, n, everywhere, nowhere, [](double, double) { return 2e-4; }, true, 2e-4});
+        return coats.shape();
+      },
+      0.02 + 2 * dhat, ", {name: ball, shape: sphere, radius: 0.03, translate: [0.05, 0.05, -0.01]}", 0.02);
+}
