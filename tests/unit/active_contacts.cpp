@@ -6,6 +6,7 @@
 
 #include "core/kernel/contact/barrier.h"
 #include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/contact_stiffness.h"
 #include "core/kernel/solve/newton.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
@@ -21,6 +22,13 @@ std::shared_ptr<ContactModel> a_floor(const std::string& name = "floor", double 
   return make_plugin_from<ContactModel>(
       "{type: shapes, stiffness: 100, friction: 0.3, obstacles: [{name: " + name +
       ", shape: half_space, translate: [0, 0, " + std::to_string(height) + "]}]}");
+}
+
+/// A half-space whose stiffness the experiment leaves open.
+std::shared_ptr<ContactModel> an_open_floor(double height) {
+  return make_plugin_from<ContactModel>(
+      "{type: shapes, friction: 0.3, obstacles: [{name: floor, shape: half_space, translate: [0, 0, " +
+      std::to_string(height) + "]}]}");
 }
 
 /// A box whose top is z = 0, larger than the sheet.
@@ -615,4 +623,60 @@ TEST_CASE("Restored contacts have the same candidates and tangential displacemen
   CHECK(again.memory().reference == memory.reference);
   CHECK(again.memory().tangential_displacements[0][3].displacement ==
         memory.tangential_displacements[0][3].displacement);
+}
+
+TEST_CASE("Between steps the stiffness rises of those models alone whose contacts press") {
+  const Level level = sheet();
+  // The sheet is close above the first, half of d̂ above the second, and the third's stiffness is given.
+  const BoundContacts models = bound(level, {an_open_floor(0), an_open_floor(-0.5 * dhat), a_floor()});
+  const double own = contact_stiffness(Material());
+  const Positions x0 = at(level, 0, 0.005 * dhat), x1 = at(level, epsilon / 2, 0.005 * dhat);
+  ActiveContacts contacts(models);
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  contacts.begin_step(x1);
+  const double barrier_before = contacts.barrier(x1), friction_before = contacts.friction(x1),
+               first = models[0]->build_candidates(x1, x1)->build_collisions(x1)->value(x1);
+  REQUIRE(friction_before > 0);
+  CHECK(contacts.stiffness() == ContactStiffness{own, own, stiffness});
+  CHECK(contacts.raise_stiffness(x1, 1e9));
+  CHECK(contacts.stiffness() == ContactStiffness{4 * own, own, stiffness});
+  CHECK(contacts.barrier(x1) == Approx(barrier_before + 3 * first));
+  // Lagged again, with the displacements kept; the second model's friction is small.
+  CHECK(contacts.friction(x1) ==
+        Approx(friction_before * (4 * own + stiffness) / (own + stiffness)).epsilon(0.01));
+
+  // Up to the bound.
+  CHECK(contacts.raise_stiffness(x1, 5 * own));
+  CHECK_FALSE(contacts.raise_stiffness(x1, 5 * own));
+  CHECK(contacts.stiffness()[0] == 5 * own);
+
+  // Kept when the obstacles move, and where it is only a lower bound.
+  contacts.update_obstacles(bound(level, {an_open_floor(0), an_open_floor(-0.5 * dhat), a_floor()}), x1, x1);
+  CHECK(contacts.stiffness() == ContactStiffness{5 * own, own, stiffness});
+  contacts.set_stiffness({2 * own, 2 * own, 2 * stiffness});
+  CHECK(contacts.stiffness() == ContactStiffness{5 * own, 2 * own, stiffness});
+
+  contacts.fix_stiffness();
+  CHECK_FALSE(contacts.raise_stiffness(x1, 1e9));
+}
+
+TEST_CASE("A raised stiffness is restored with the contacts, bit for bit") {
+  const Level level = sheet();
+  const auto open_models = [&] {
+    return bound(level, {an_open_floor(0), make_plugin_from<ContactModel>("ipc")});
+  };
+  const Positions x0 = at(level, 0, 0.005 * dhat), x1 = at(level, epsilon / 2, 0.005 * dhat);
+  ActiveContacts contacts(open_models());
+  contacts.begin_step(x0);
+  contacts.max_step(x0, x1);
+  REQUIRE(contacts.raise_stiffness(x1, 1e9));
+  contacts.begin_step(x1);
+  const ContactMemory memory = contacts.memory();
+  ActiveContacts other(open_models());
+  other.restore(memory, x1);
+  CHECK(other.stiffness() == contacts.stiffness());
+  Positions g = Positions::Zero(x1.rows(), 3), same = g;
+  CHECK(other.add_gradient(x1, same) == contacts.add_gradient(x1, g));
+  CHECK(g == same);
 }
