@@ -112,6 +112,23 @@ TEST_CASE("A cloth at rest keeps the gap at which the barrier carries its weight
   }
 }
 
+TEST_CASE("A cloth under a hundred times its weight rests at a gap of more than a tenth of dhat") {
+  const double weight = Material().area_density() * gravity;
+  for (const std::string& floor : {half_space, mesh_floor})
+    for (const std::string& load :
+         {std::string("{type: gravity, acceleration: [0, 0, -981]}"),
+          "{type: constant_load, force_density: [0, 0, " + std::to_string(-100 * weight) + "]}"}) {
+      CAPTURE(floor, load);
+      const Solved s =
+          solve_yaml(replaced(on_a_slope(0, 0, floor, "force_tolerance: 1e-8"),
+                              "{type: gravity, acceleration: [0, 0, -9.8100000000000005]}", load));
+      const LevelResult& r = s.levels.back();
+      REQUIRE(r.outcome == Outcome::converged);
+      CHECK(*r.smallest_gap > dhat / 10);
+      CHECK(*r.smallest_gap == Approx(resting_gap(100 * weight, r.contact_stiffness[0], dhat)).epsilon(1e-5));
+    }
+}
+
 TEST_CASE("On a slope cloth sticks below the angle of friction and slides above it") {
   constexpr double epsilon = 1e-4;  // the default friction smoothing distance
   for (const double mu : {0.1, 0.3})
