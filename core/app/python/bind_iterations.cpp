@@ -54,6 +54,8 @@ void bind_iterations(py::module_& m) {
       .def_readonly("seconds_by_phase", &LevelResult::seconds_by_phase)
       .def_readonly("force_residual", &LevelResult::force_residual, "Of the objective [1].")
       .def_readonly("smallest_gap", &LevelResult::smallest_gap, "[m]; None without a contact model.")
+      .def_readonly("contact_stiffness", &LevelResult::contact_stiffness,
+                    "Barrier stiffness of each contact model at the end [Pa].")
       .def_property_readonly(
           "x", [](const std::shared_ptr<LevelResult>& r) { return view(r->x, r); },
           "n×3 positions [m], read-only.");

@@ -53,7 +53,7 @@ void declare_contact_parameters(Declaration<Derived>& d) {
       .at_most(bounds::largest_modulus)
       .description(
           "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
-          "weight per area")
+          "weight per area or the loads' pressure, raised where contacts carry far more")
       .source("core/kernel/model/contact_stiffness.h");
   d.add("friction_smoothing_distance", &Derived::friction_smoothing_distance)
       .unit("m")
