@@ -206,6 +206,34 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("So does one whose contact stiffness is raised") {
+  // A light sheet that its border pulls over a ball.
+  const Scratch folder;
+  folder.write("e.yaml", R"(name: drum
+cloth: {shape: square, side: 0.2, columns: 7, rows: 7}
+levels: 2
+material: {density: 5, thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}
+start: {translate: [-0.1, -0.1, 0.0215]}
+pins: [{region: border, translate: [-0.1, -0.1, 0]}]
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.02}]
+friction: 0.1
+methods: {pcs: {}}
+)");
+  CHECK(check_in_parts(folder, {}) > 20);
+  const Json levels = Json::parse(text_of(folder / "whole/results.json"))["methods"]["pcs"]["levels"];
+  const auto stiffness = [&](int level) {
+    return levels[level]["contact_stiffness"].get<std::vector<double>>();
+  };
+  const double own = 10 * 9.81 * 5 * 3e-4;
+  // That of the model whose ball carries, on both levels, and the next level begins with it.
+  CHECK(stiffness(0)[0] == Approx(own));
+  CHECK(stiffness(1)[0] == Approx(own));
+  CHECK(stiffness(0)[1] == Approx(4 * own));
+  CHECK(stiffness(1)[1] == Approx(16 * own));
+}
+
 TEST_CASE("So does one of the static form, with full projection") {
   const Scratch folder;
   write_sheets(folder);
@@ -612,6 +640,9 @@ TEST_CASE("A checkpoint whose values do not fit its experiment is refused before
   refused("the contacts: ", [&](auto& c) { under_way(c).contacts.reference.resize(0, 3); });
   refused("the contacts' tangential displacements",
           [&](auto& c) { under_way(c).contacts.tangential_displacements.clear(); });
+  refused("the contacts' stiffness", [&](auto& c) { under_way(c).contacts.stiffness.clear(); });
+  refused("the contacts' stiffness", [&](auto& c) { under_way(c).contacts.stiffness.at(0) = -1; });
+  refused("the contacts' stiffness", [&](auto& c) { under_way(c).so_far.contact_stiffness = {1, 1, 1}; });
   refused("the matrix's pattern", [&](auto& c) {
     under_way(c).step.factor.pattern.extra = {{{0, 1 << 20}}, {0}};
   });

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
@@ -67,4 +68,33 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
     INFO(name);
     CHECK((bytes != one.at(name)));  // it does meet itself
   }
+}
+
+TEST_CASE("so are runs whose contact stiffness is raised") {
+  // A light sheet that its border pulls over a ball.
+  const Scratch folder;
+  folder.write("e.yaml", R"(name: drum
+cloth: {shape: square, side: 0.2, columns: 17, rows: 17}
+levels: 1
+material: {density: 20, thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}
+start: {translate: [-0.1, -0.1, 0.0215]}
+pins: [{region: border, translate: [-0.1, -0.1, 0]}]
+energies: [neo_hookean, hinge, gravity]
+contact: [ipc, shapes]
+obstacles: [{name: ball, shape: sphere, radius: 0.02}]
+friction: 0.1
+methods: {newton: {}}
+)");
+  const auto run_with = [&](int threads) {
+    const Ended ended = drape_with(
+        "run e.yaml --out out --overwrite --quiet --no-report --threads " + std::to_string(threads),
+        folder.path);
+    INFO(ended.err);
+    REQUIRE(ended.exit_code == 0);
+    const auto results = nlohmann::json::parse(text_of(folder / "out/results.json"));
+    CHECK(results["methods"]["newton"]["levels"][0]["contact_stiffness"][1] > 10 * 9.81 * 20 * 3e-4 * 3.9);
+    return text_of(folder / "out/levels/newton_l0.ply");
+  };
+  const std::string one = run_with(1);
+  CHECK((run_with(2) == one));
 }
