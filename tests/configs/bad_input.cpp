@@ -124,18 +124,20 @@ TEST_CASE("a start or a reference that is no regular file, or is not finite") {
   CHECK(said_with(std::nan("")) ==
         "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate that is not finite\n");
   CHECK(said_with(1e11) ==
-        "error: e.yaml:4:8: start.ply: vertex 3 (counted from 0) has a coordinate of 1e+11 m; at most 1e+09 "
-        "m can be computed "
-        "with\n");
+        "error: e.yaml:4:8: start.ply: 1 vertex has too large a coordinate: 3 with 1e+11 m (counted from 0); "
+        "at most 1e+09 "
+        "m can be computed with: is the file in metres?\n");
   CHECK(said_with(0.1) == "");
   CHECK_THAT(
       drape_with("check e.yaml --set cloth.side=0.1 --set 'start.translate=[9e8, 0, 0]'", folder.path).err,
       Catch::Matchers::Contains("the start of level 0: the mesh is 0.127 m across and 9e+08 m from the "
                                 "origin, where rounding moves vertices by 2e-07 m; move it nearer\n"));
-  CHECK_THAT(drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
-             Catch::Matchers::Contains(
-                 "the start of level 0: vertex 1 (counted from 0) has a coordinate of 2e+09 m; at most "
-                 "1e+09 m can be computed with\n"));
+  CHECK_THAT(
+      drape_with("check e.yaml --set cloth.side=1e6 --set 'start.scale=[1e4, 1, 1]'", folder.path).err,
+      Catch::Matchers::Contains(
+          "the start of level 0: 30 vertices have too large a coordinate: 1 with 2e+09 m, 2 with 4e+09 m, "
+          "3 with 6e+09 m, 4 with 8e+09 m, 5 with 1e+10 m, … (counted from 0); at most 1e+09 m can be "
+          "computed with: is the file in metres?\n"));
 }
 
 TEST_CASE("output is short for any number and length of errors") {

@@ -60,8 +60,9 @@ TEST_CASE("A cloth edge over a rim takes over the barrier that its vertex loses 
   const Positions far = level_edge(2 * dhat, height);
   CHECK(contacts(far)->value(far) == Approx(unit * b(height)));
   CHECK(contacts(far)->smallest_gap() == Approx(height));
-  const Positions low = level_edge(2 * dhat, 1e-200);
-  CHECK(contacts(low)->value(low) > 400 * unit);
+  const double touching = 1e-10 * dhat;
+  const Positions low = level_edge(2 * dhat, touching);
+  CHECK(contacts(low)->value(low) == Approx(unit * b(touching)).epsilon(1e-6));
 }
 
 TEST_CASE("Rim contacts have the derivatives of their energy, and are never attractive") {
@@ -69,11 +70,14 @@ TEST_CASE("Rim contacts have the derivatives of their energy, and are never attr
   std::uniform_real_distribution<double> unit(-1, 1);
   int near_both = 0, mollified = 0, indefinite = 0;
   for (int round = 0; round < 2000; ++round) {
-    const double length = round % 2 ? 5 * dhat : 0.7 * dhat, turn = round % 3 ? M_PI : 0.03;
+    const bool is_parallel = round % 3 == 0;  // nearly, so that it is mollified
+    const double length = round % 2 ? 5 * dhat : 0.7 * dhat, turn = is_parallel ? 0.02 : M_PI;
     const double angle = M_PI / 2 + turn * unit(random);
     Positions x(2, 3);
-    x.row(0) << 0.5 * dhat * unit(random), unit(random) * 0.1, dhat * (0.5 + 0.4 * unit(random));
-    x.row(1) = x.row(0) + length * Eigen::RowVector3d(std::cos(angle), std::sin(angle), 0.3 * unit(random));
+    x.row(0) << (is_parallel ? 0.05 : 0.5) * dhat * unit(random), unit(random) * 0.1,
+        dhat * (0.5 + 0.4 * unit(random));
+    x.row(1) = x.row(0) + length * Eigen::RowVector3d(std::cos(angle), std::sin(angle),
+                                                      (is_parallel ? 0.02 : 0.3) * unit(random));
     if (x(1, 2) < 0.1 * dhat) continue;
     const double mollifier = 1e-3 * length * length * 4;
     const auto all = contacts(x, mollifier);
@@ -95,7 +99,7 @@ TEST_CASE("Rim contacts have the derivatives of their energy, and are never attr
       }
     if (steady) CHECK((differences(gradient, x, size) - h).norm() <= 1e-3 * (h.norm() + 1));
     near_both += x(0, 2) < dhat && std::hypot(x(1, 0), x(1, 2)) < dhat && std::hypot(x(0, 0), x(0, 2)) < dhat;
-    mollified += std::abs(angle - M_PI / 2) < 0.03;
+    mollified += is_parallel;
     const Eigenpairs eigen = eigenpairs_of(h);
     indefinite += eigen.values[0] < -1e-9 * h.norm();
     const Eigen::MatrixXd expected =

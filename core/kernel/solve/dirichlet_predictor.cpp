@@ -17,7 +17,9 @@ void DirichletPredictor::move_on() {
 }
 
 void DirichletPredictor::begin_penalty_unless_moving(double fraction) {
-  if (fraction < 1 && !(in_parts_ && enforcer_.note_move(fraction))) begin_penalty();
+  if (fraction == 1) return;
+  const bool moves = in_parts_ && enforcer_.note_move(fraction) && !iterate_.gaps_are_closed();
+  if (!moves) begin_penalty();
 }
 
 void DirichletPredictor::begin_penalty() {

@@ -68,6 +68,13 @@ const BlockMatrix& Iterate::hessian(Projection projection) const {
   return f_.matrix(result_.x, projection);
 }
 
+bool Iterate::gaps_are_closed() const {
+  constexpr double min_gap = 1e-7;
+  ActiveContacts& contacts = f_.contacts();
+  contacts.barrier(x());  // evaluates the contacts for smallest_gap()
+  return contacts.any() && contacts.smallest_gap() < min_gap * rest_diagonal_;
+}
+
 StepLimit Iterate::max_step(const Positions& x1) const {
   PhaseTimer t(result_.seconds_by_phase, "step filter");
   return f_.max_step(result_.x, x1);

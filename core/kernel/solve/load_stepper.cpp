@@ -12,11 +12,8 @@ namespace {
 /// At equilibrium, an increment that advances by less than this fraction of its remainder is blocked. An
 /// obstacle advances by about its gap at a time, so a very long motion counts as blocked too …
 constexpr double blocked_increment = 1e-3;
-/// … and infeasible after so many blocked attempts in a row, …
+/// … and infeasible after so many blocked attempts in a row, or at once where gaps are closed.
 constexpr int max_blocked_increments = 20;
-/// … or at once below this gap, as a fraction of the bounding box diagonal: cloth between two surfaces that
-/// close cannot widen its gaps.
-constexpr double min_gap = 1e-7;
 /// Extrapolate at most four times the last increment.
 constexpr double max_trust = 4;
 /// Trust the predictor so far that equilibrium corrects this fraction of its displacement.
@@ -73,7 +70,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.response = at_equilibrium && !load_stepping_->complete()
                     ? IncrementResponse{from, std::move(predicted), applied}
                     : IncrementResponse();
-  const bool closed = gaps_are_closed();
+  const bool closed = iterate_.gaps_are_closed();
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
@@ -97,12 +94,6 @@ void LoadStepper::update_model(const Positions& from) {
   }
   iterate_.set_model(std::move(model), from);
   dirichlet_.set_model(iterate_.model());
-}
-
-bool LoadStepper::gaps_are_closed() {
-  ActiveContacts& contacts = iterate_.objective().contacts();
-  contacts.barrier(iterate_.x());  // evaluates the contacts for smallest_gap()
-  return contacts.any() && contacts.smallest_gap() < min_gap * iterate_.rest_diagonal();
 }
 
 /// Largest extrapolation factor: smaller the more equilibrium has corrected the last prediction.

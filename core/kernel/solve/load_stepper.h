@@ -70,7 +70,6 @@ class LoadStepper {
   StepLimit advance_alone();
   bool advance_with(const Positions& trial, double fraction);
   bool is_finite_at(const Positions& x);
-  bool gaps_are_closed();
   void update_model(const Positions& from);
 
   LoadStepping* load_stepping_;

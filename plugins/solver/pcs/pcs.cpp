@@ -28,7 +28,7 @@ class PcsSolver : public ResumableSolver {
     int target = 0;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
-    Compression compression = Compression::buckling;
+    Compression compression = Compression::elastic;
     Relaxation relaxation = Relaxation::plain;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
@@ -55,12 +55,11 @@ class PcsSolver : public ResumableSolver {
               "most "
               "the proxy's target; for energies that are evaluated on a finer level");
       d.add_choice("compression", &Parameters::compression,
-                   {{"buckling", Compression::buckling}, {"elastic", Compression::elastic}})
+                   {{"elastic", Compression::elastic}, {"buckling", Compression::buckling}})
           .description(
-              "how membranes of coarse levels answer compression, unless they are seen by the refiner: at "
-              "the "
-              "stress at which the cloth buckles below the mesh, or by their law")
-          .source("Pipkin 1986; a departure (docs/theory/locking.md)");
+              "how membranes of coarse levels answer compression, unless they are seen by the refiner: by "
+              "their law, or at the stress at which the cloth buckles below the mesh")
+          .source("Pipkin 1986 for buckling (docs/theory/locking.md)");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
           .description(
