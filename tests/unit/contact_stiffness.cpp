@@ -56,13 +56,13 @@ TEST_CASE("The stiffness for a load is the weight's times a power of four, up to
   CHECK(stiffness_for_load(0, 100) == 0);  // no barrier
 }
 
-TEST_CASE("The stiffness is raised by four above a mean pressure of a hundred times it, up to a bound") {
+TEST_CASE("The stiffness is raised by four above a mean pressure of fifty times it, up to a bound") {
   CHECK(raised_stiffness(10, 0, 1e6) == 10);
-  CHECK(raised_stiffness(10, 100, 1e6) == 10);
-  CHECK(raised_stiffness(10, 101, 1e6) == 40);
+  CHECK(raised_stiffness(10, 50, 1e6) == 10);
+  CHECK(raised_stiffness(10, 51, 1e6) == 40);
   CHECK(raised_stiffness(10, 1e12, 1e6) == 40);
-  CHECK(raised_stiffness(10, 101, 25) == 25);
-  CHECK(raised_stiffness(10, 101, 5) == 10);  // never lowered
+  CHECK(raised_stiffness(10, 51, 25) == 25);
+  CHECK(raised_stiffness(10, 51, 5) == 10);  // never lowered
 }
 
 TEST_CASE("The mean pressure weights each contact by its force") {

@@ -31,12 +31,12 @@ inline double stiffness_for_load(double stiffness, double pressure) {
 }
 
 /// κ for contacts whose mean pressure over κ is known [1], where the forces on the cloth nearly balance: four
-/// times as large above a pressure of 100 κ, at which gaps are about d̂ / 100, but at most `largest` [Pa].
+/// times as large above a pressure of 50 κ, at which gaps are about d̂ / 50, but at most `largest` [Pa].
 ///
 /// Tension, edges of obstacles and layers above press far more than weight. With gaps that small a step gains
 /// little before collision detection ends it. Ordinary drapes have a mean below 10.
 inline double raised_stiffness(double stiffness, double mean_pressure, double largest) {
-  constexpr double largest_mean = 100;
+  constexpr double largest_mean = 50;
   return mean_pressure > largest_mean ? std::max(stiffness, std::min(4 * stiffness, largest)) : stiffness;
 }
 

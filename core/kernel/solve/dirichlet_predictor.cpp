@@ -4,6 +4,14 @@
 
 namespace drape {
 
+namespace {
+
+/// Below this gap, as a fraction of the bounding box diagonal, pins move on only by their penalty: each move
+/// takes most of a gap, and gaps far below this one leave the line search no descent.
+constexpr double min_gap_of_move = 2e-6;
+
+}  // namespace
+
 void DirichletPredictor::enforce() {
   if (iterate_.objective().enforces_dirichlet()) enforcer_.begin(iterate_.x());
   update_constraints();
@@ -18,7 +26,7 @@ void DirichletPredictor::move_on() {
 
 void DirichletPredictor::begin_penalty_unless_moving(double fraction) {
   if (fraction == 1) return;
-  const bool moves = in_parts_ && enforcer_.note_move(fraction) && !iterate_.gaps_are_closed();
+  const bool moves = in_parts_ && enforcer_.note_move(fraction) && !iterate_.has_gap_below(min_gap_of_move);
   if (!moves) begin_penalty();
 }
 

@@ -68,11 +68,10 @@ const BlockMatrix& Iterate::hessian(Projection projection) const {
   return f_.matrix(result_.x, projection);
 }
 
-bool Iterate::gaps_are_closed() const {
-  constexpr double min_gap = 1e-7;
+bool Iterate::has_gap_below(double fraction) const {
   ActiveContacts& contacts = f_.contacts();
   contacts.barrier(x());  // evaluates the contacts for smallest_gap()
-  return contacts.any() && contacts.smallest_gap() < min_gap * rest_diagonal_;
+  return contacts.any() && contacts.smallest_gap() < fraction * rest_diagonal_;
 }
 
 StepLimit Iterate::max_step(const Positions& x1) const {

@@ -61,9 +61,8 @@ class Iterate {
 
   /// The objective's matrix at x [N/m]; overwrites the one before.
   const BlockMatrix& hessian(Projection projection) const;
-  /// Whether cloth at x has no room left: the smallest gap is below 1e-7 of rest_diagonal(). Cloth between
-  /// two surfaces that close cannot widen it.
-  bool gaps_are_closed() const;
+  /// Whether the smallest gap at x is below this fraction of rest_diagonal().
+  bool has_gap_below(double fraction) const;
   /// The largest feasible step from x towards x1.
   StepLimit max_step(const Positions& x1) const;
 

@@ -12,8 +12,11 @@ namespace {
 /// At equilibrium, an increment that advances by less than this fraction of its remainder is blocked. An
 /// obstacle advances by about its gap at a time, so a very long motion counts as blocked too …
 constexpr double blocked_increment = 1e-3;
-/// … and infeasible after so many blocked attempts in a row, or at once where gaps are closed.
+/// … and infeasible after so many blocked attempts in a row, …
 constexpr int max_blocked_increments = 20;
+/// … or at once below this gap, as a fraction of the bounding box diagonal: cloth between two surfaces that
+/// close cannot widen its gaps.
+constexpr double min_gap = 1e-7;
 /// Extrapolate at most four times the last increment.
 constexpr double max_trust = 4;
 /// Trust the predictor so far that equilibrium corrects this fraction of its displacement.
@@ -70,7 +73,7 @@ void LoadStepper::advance(bool at_equilibrium) {
   s_.response = at_equilibrium && !load_stepping_->complete()
                     ? IncrementResponse{from, std::move(predicted), applied}
                     : IncrementResponse();
-  const bool closed = iterate_.gaps_are_closed();
+  const bool closed = iterate_.has_gap_below(min_gap);
   s_.blocked_increments = at_equilibrium && applied < blocked_increment
                               ? (closed ? max_blocked_increments : s_.blocked_increments + 1)
                               : 0;
