@@ -1,8 +1,8 @@
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cstdint>
 #include <cstring>

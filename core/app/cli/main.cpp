@@ -53,8 +53,10 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
   std::cout << "\nMemory to solve them, at most about:";
   for (const Level& level : loaded.scene->hierarchy.levels)
     std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
-  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary) << "\n";
-  for (const std::string& line : loaded.experiment->remarks(*loaded.scene)) std::cout << printable(line) << "\n";
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
+            << "\n";
+  for (const std::string& line : loaded.experiment->remarks(*loaded.scene))
+    std::cout << printable(line) << "\n";
   return exit_done;
 }
 

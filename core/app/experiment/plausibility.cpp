@@ -131,7 +131,8 @@ Coincidence coincident_border(const Level& level, double tolerance) {
     for (int c = 0; c < 3; ++c) cell[c] = std::floor(x(v, c) / tolerance);
     int on = -1;
     for (int n = 0; n < 27 && on < 0; ++n) {
-      const Cell near{cell[0] + n % 3 - 1, cell[1] + n / 3 % 3 - 1, cell[2] + n / 9 - 1};
+      const int offset[] = {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+      const Cell near{cell[0] + offset[0], cell[1] + offset[1], cell[2] + offset[2]};
       const auto [begin, end] = seen.equal_range(near);
       for (auto it = begin; it != end && on < 0; ++it)
         if ((x.row(v) - x.row(it->second)).norm() < tolerance) on = it->second;
