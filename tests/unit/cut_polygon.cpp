@@ -139,3 +139,11 @@ TEST_CASE("corners at one place, as at the poles of a sphere of quads, get trian
                                  CornerList{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}})
     CHECK(cut_polygon(pole).triangles.size() == 2);
 }
+
+TEST_CASE("a face all of whose corners but one coincide to round-off is a fan without area") {
+  const CornerList spike = {{0, 0, 0},     {1, 0, 0},     {1, 2.4, 777777777777},
+                            {0.4, 0.4, 0}, {0.4, 0.4, 0}, {0, 1, 0}};
+  const CutPolygon cut = cut_polygon(spike);
+  CHECK(cut.fault == "");
+  CHECK(cut.triangles.size() == 4);
+}

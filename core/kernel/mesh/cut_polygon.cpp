@@ -160,6 +160,7 @@ CutPolygon cut_polygon(const std::vector<Vector3d>& corners) {
                    std::to_string(static_cast<int>(std::round(100 * flat.bend))) +
                    " % of its diameter; cut it into triangles");
   const std::vector<int> kept = different_corners(flat.outline);
+  if (kept.size() < 3) return fan;  // has no area but by round-off
   Outline outline;
   for (const int k : kept) outline.push_back(flat.outline[k]);
   const bool is_simple_fan = is_fan(outline);
