@@ -90,7 +90,8 @@ TEST_CASE("what a test has started ends with the test, however that ends") {
                  folder.path);
     test.wait_until("the process runs", [&] { return std::filesystem::exists(folder / "number"); });
     const pid_t number = std::stoi(text_of(folder / "number"));
-    CHECK(name_of(number) == std::to_string(number) + " sleep 1000");
+    test.wait_until("the process sleeps",
+                    [&] { return name_of(number) == std::to_string(number) + " sleep 1000"; });
     test.send_alone(signal);
     CHECK(test.wait().exit_code == 128 + signal);
     wait_until("the process has ended", [&] { return !name_of(number).ends_with(" sleep 1000"); });
@@ -104,7 +105,7 @@ TEST_CASE("a command's group ends with its object, though the command has ended 
     Command command("sleep 1000 & echo $! > number", folder.path);
     REQUIRE(command.wait().exit_code == 0);
     number = std::stoi(text_of(folder / "number"));
-    CHECK(name_of(number).ends_with(" sleep 1000"));
+    wait_until("the process sleeps", [&] { return name_of(number).ends_with(" sleep 1000"); });
   }
   wait_until("the process has ended", [&] { return !name_of(number).ends_with(" sleep 1000"); });
 }
