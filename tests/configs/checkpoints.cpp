@@ -10,6 +10,7 @@
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
 #include "tests/support/command.h"
+#include "tests/support/drum.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"
 
@@ -207,20 +208,8 @@ TEST_CASE(
 }
 
 TEST_CASE("So does one whose contact stiffness is raised") {
-  // A light sheet that its border pulls over a ball.
   const Scratch folder;
-  folder.write("e.yaml", R"(name: drum
-cloth: {shape: square, side: 0.2, columns: 7, rows: 7}
-levels: 2
-material: {density: 5, thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}
-start: {translate: [-0.1, -0.1, 0.0215]}
-pins: [{region: border, translate: [-0.1, -0.1, 0]}]
-energies: [neo_hookean, hinge, gravity]
-contact: [ipc, shapes]
-obstacles: [{name: ball, shape: sphere, radius: 0.02}]
-friction: 0.1
-methods: {pcs: {}}
-)");
+  folder.write("e.yaml", drum("7", "2", "5", "pcs"));
   CHECK(check_in_parts(folder, {}) > 20);
   const Json levels = Json::parse(text_of(folder / "whole/results.json"))["methods"]["pcs"]["levels"];
   const auto stiffness = [&](int level) {

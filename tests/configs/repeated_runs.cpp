@@ -7,6 +7,7 @@
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/mesh/io.h"
 #include "tests/support/command.h"
+#include "tests/support/drum.h"
 #include "tests/support/folders.h"
 
 namespace {
@@ -71,20 +72,8 @@ TEST_CASE("so are runs with obstacles, self-contact, friction and a strain limit
 }
 
 TEST_CASE("so are runs whose contact stiffness is raised") {
-  // A light sheet that its border pulls over a ball.
   const Scratch folder;
-  folder.write("e.yaml", R"(name: drum
-cloth: {shape: square, side: 0.2, columns: 17, rows: 17}
-levels: 1
-material: {density: 20, thickness: 3e-4, membrane_modulus: 1e5, bending_modulus: 1e5}
-start: {translate: [-0.1, -0.1, 0.0215]}
-pins: [{region: border, translate: [-0.1, -0.1, 0]}]
-energies: [neo_hookean, hinge, gravity]
-contact: [ipc, shapes]
-obstacles: [{name: ball, shape: sphere, radius: 0.02}]
-friction: 0.1
-methods: {newton: {}}
-)");
+  folder.write("e.yaml", drum("17", "1", "20", "newton"));
   const auto run_with = [&](int threads) {
     const Ended ended = drape_with(
         "run e.yaml --out out --overwrite --quiet --no-report --threads " + std::to_string(threads),

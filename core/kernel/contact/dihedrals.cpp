@@ -14,7 +14,7 @@ constexpr double flat_angle = 1e-6;
 /// Edges with a larger angle are rims [rad].
 constexpr double rim_angle = M_PI / 6;
 
-/// For each vertex its two rim edges, -1 for none; for vertices that are not between two rim edges, both.
+/// The rim edges of each vertex that exactly two of them meet in; (-1, -1) for other vertices.
 std::vector<std::array<int, 2>> rims_through_vertices(const Surface& surface, const std::vector<char>& is_rim,
                                                       Eigen::Index vertex_count) {
   std::vector<std::array<int, 2>> rims(vertex_count, {-1, -1});
@@ -53,18 +53,14 @@ Dihedrals Dihedrals::of(const Surface& surface, const Positions& vertices) {
   d.edge_curvature.setZero(count);
   d.vertex_angle.setZero(n);
   d.vertex_curvature.setZero(n);
-  d.edge_on_boundary.resize(count);
   d.edge_is_rim.resize(count);
-  d.vertex_on_boundary.assign(n, 0);
   for (int e = 0; e < count; ++e) {
     const Eigen::Vector3d a = height[0].row(e), b = height[1].row(e);
-    d.edge_on_boundary[e] = triangles[e] == 1;
     d.edge_angle[e] = triangles[e] != 2 ? M_PI : std::atan2(a.cross(b).norm(), -a.dot(b));
     if (d.edge_angle[e] < flat_angle) d.edge_angle[e] = 0;
     if (triangles[e] == 2) d.edge_curvature[e] = 2 * d.edge_angle[e] / (a.norm() + b.norm());
     if (triangles[e] > 2) d.edge_curvature[e] = M_PI / least[e];
     d.edge_is_rim[e] = d.edge_angle[e] > rim_angle;
-    for (int k = 0; k < 2 && d.edge_on_boundary[e]; ++k) d.vertex_on_boundary[surface.edges(e, k)] = 1;
   }
   const auto rims = rims_through_vertices(surface, d.edge_is_rim, n);
   for (int e = 0; e < count; ++e)

@@ -16,7 +16,6 @@ struct Dihedrals {
   /// The largest of the vertex's edges. Where two of them are a rim, their own angle counts in place of those
   /// at them: a straight rim protrudes nowhere through a triangle of which no edge crosses it.
   Eigen::VectorXd vertex_angle, vertex_curvature;
-  std::vector<char> edge_on_boundary, vertex_on_boundary;
   std::vector<char> edge_is_rim;  ///< on the boundary, or with an angle above 30°
 
   /// Of a surface with its vertices at `vertices` (n×3) [m].
@@ -44,8 +43,7 @@ struct OperatorCoefficients {
   Eigen::VectorXd edge, vertex;
 
   /// Reduces the coefficients of edges whose radius of curvature is below 4 d̂, to 0 at d̂: around a narrower
-  /// pit the sum could become attractive. A vertex is reduced as the
-  /// least reduced of its edges. The nearest
+  /// pit the sum could become attractive. A vertex is reduced as the least reduced of its edges. The nearest
   /// feature of a point therefore has a total of at least 1. With equal coefficients the sum is the mean of
   /// those with and without the operator.
   static OperatorCoefficients of(const Surface& surface, const Dihedrals& dihedrals, double dhat);

@@ -1,12 +1,12 @@
 #include "core/kernel/contact/rim_contacts.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
 #include "core/kernel/contact/contact_kernel.h"
+#include "core/kernel/contact/projected_matrix.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/model/friction.h"
 
@@ -43,13 +43,6 @@ struct RimContact {
     return result;
   }
 };
-
-Matrix6d projected(const Matrix6d& h, Projection projection) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(h);
-  Vector6d values = eigen.eigenvalues();
-  for (double& value : values) value = projection.map(value);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-}
 
 class RimCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
@@ -95,7 +88,7 @@ class RimCollisions final : public Collisions, public FrictionalCollisions, publ
     parallel_for(contact_count(), rim_contacts_per_task, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         hessians[i] = hessian(contacts_[i]);
-        if (!projection.is_exact()) hessians[i] = projected(hessians[i], projection);
+        if (!projection.is_exact()) hessians[i] = projected_matrix(hessians[i], projection);
       }
     });
     for (int i = 0; i < contact_count(); ++i)

@@ -1,10 +1,10 @@
 #include "core/kernel/contact/surface_contacts.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 
 #include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/projected_matrix.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/model/friction.h"
 
@@ -14,13 +14,6 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector3d;
 
 constexpr int features_per_task = 1024;
-
-Matrix3d projected(const Matrix3d& h, Projection projection) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(h);
-  Vector3d values = eigen.eigenvalues();
-  for (double& value : values) value = projection.map(value);
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-}
 
 class SurfaceCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
  public:
@@ -81,7 +74,7 @@ class SurfaceCollisions final : public Collisions, public FrictionalCollisions, 
       // The Hessian b'' n nᵀ of a single plane is positive semidefinite.
       const NearestFeature& first = all_.features[contact.first];
       const bool is_one_plane = contact.last == contact.first + 1 && first.is_face() && first.coefficient > 0;
-      if (!projection.is_exact() && !is_one_plane) h = projected(h, projection);
+      if (!projection.is_exact() && !is_one_plane) h = projected_matrix(h, projection);
       sink.add(k, 0, 0, h.data());
     }
   }
