@@ -285,22 +285,3 @@ TEST_CASE("a metric that throws leaves a note, and the run continues") {
                Catch::Matchers::StartsWith("curvature: the triangles around vertex 0 "));
   }
 }
-
-TEST_CASE("a run with levels refined at early_refinement_tolerance counts as converged") {
-  const Scratch folder;
-  folder.write("e.yaml", small_experiment());
-  const Ended ended =
-      drape_with("run e.yaml --out out --method pcs --set methods.pcs.newton.early_refinement_tolerance=0.5",
-                 folder.path);
-  INFO(ended.err);
-  CHECK(ended.exit_code == 0);
-  const Json pcs = Json::parse(text_of(folder.path / "out" / "results.json"))["methods"]["pcs"];
-  CHECK(pcs["status"] == "converged");
-  REQUIRE(pcs["levels"].size() == 2);
-  CHECK(pcs["levels"][0]["status"] == "refined_early_at_tolerance");
-  CHECK(pcs["levels"][0]["force_residual"] < 0.5);
-  CHECK(pcs["levels"][1]["status"] == "converged");
-  const std::string report = text_of(folder.path / "out" / "report.html");
-  CHECK(report.find("1 of 1 method converged") != std::string::npos);
-  CHECK(report.find("What did not converge") == std::string::npos);
-}

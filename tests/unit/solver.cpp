@@ -10,7 +10,6 @@ TEST_CASE("the worst outcome of a method's levels does not depend on their order
     CHECK(worse_of(better, worse) == expected);
     CHECK(worse_of(worse, better) == expected);
   };
-  check(Outcome::refined_early_at_tolerance, Outcome::converged, Outcome::converged);
   const Outcome rising[] = {Outcome::converged,
                             Outcome::converged_to_rounding,
                             Outcome::refined_early_on_request,

@@ -110,7 +110,7 @@ std::string troubles(const RunData& run) {
       const std::string message = level.message.empty() ? "" : ": " + escape(level.message);
       if (level.status == "failed")
         items += where + ": failed" + message + "</li>\n";
-      else if (!succeeded(level.status) && !level.status.empty())
+      else if (!has_converged(level.status) && !level.status.empty())
         items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
                  " iterations at force residual " + number_text(level.force_residual) + message + "</li>\n";
       else if (!message.empty())

@@ -69,7 +69,7 @@ Json row_of(const RunData& run, const MethodRecord& method) {
     if (level.intersections)
       iterations.intersections = iterations.intersections.value_or(0) + *level.intersections;
     if (level.message.empty()) continue;
-    (succeeded(level.status) ? remark : fault) +=
+    (has_converged(level.status) ? remark : fault) +=
         (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
         "\n";
   }

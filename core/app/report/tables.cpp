@@ -17,7 +17,7 @@ using html::words;
 using Row = std::vector<Cell>;
 
 std::string status_badge(const std::string& status) {
-  const std::string kind = succeeded(status) ? "good" : status.empty() ? "none" : "poor";
+  const std::string kind = has_converged(status) ? "good" : status.empty() ? "none" : "poor";
   std::string text;
   for (const char c : status.empty() ? "–" : escape(status)) {
     text += c;

@@ -140,7 +140,7 @@ bool is_complete(const fs::path& folder) {
 bool all_methods_succeeded(const fs::path& folder) {
   const RunData run = read_run(folder);
   return run.complete && std::all_of(run.methods.begin(), run.methods.end(),
-                                     [](const MethodRecord& m) { return succeeded(m.status); });
+                                     [](const MethodRecord& m) { return has_converged(m.status); });
 }
 
 void refuse_damaged_results(const fs::path& folder) {

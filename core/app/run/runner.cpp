@@ -220,7 +220,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     recorder.method_finished(results, failure);
     bool converged = !failure;
     for (const LevelResult& r : results) {
-      converged = converged && succeeded(r.outcome);
+      converged = converged && has_converged(r.outcome);
       cancelled = cancelled || r.outcome == Outcome::cancelled;
     }
     all_converged = all_converged && converged;

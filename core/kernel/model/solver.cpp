@@ -34,20 +34,15 @@ constexpr std::pair<Outcome, const char*> names[] = {
     {Outcome::cancelled, "cancelled"},
     {Outcome::infeasible, "infeasible"},
     {Outcome::refined_early_on_request, "refined_early_on_request"},
-    {Outcome::refined_early_at_tolerance, "refined_early_at_tolerance"},
     {Outcome::converged_to_rounding, "converged_to_rounding"}};
-
-/// Whether `outcome` names an outcome that `holds`.
-bool names_outcome(const std::string& outcome, bool (*holds)(Outcome)) {
-  for (const auto& [value, name] : names)
-    if (name == outcome) return holds(value);
-  return false;
-}
 
 }  // namespace
 
-bool has_converged(const std::string& outcome) { return names_outcome(outcome, has_converged); }
-bool succeeded(const std::string& outcome) { return names_outcome(outcome, succeeded); }
+bool has_converged(const std::string& outcome) {
+  for (const auto& [value, name] : names)
+    if (name == outcome) return has_converged(value);
+  return false;
+}
 
 const char* to_string(Outcome outcome) {
   for (const auto& [value, name] : names)

@@ -32,7 +32,6 @@ struct Problem {
 };
 
 /// How a level ended. `refined_early_on_request`: an observer asked for the next level.
-/// `refined_early_at_tolerance`: the residual met `early_refinement_tolerance` or `early_refinement_ratio`.
 /// `converged_to_rounding`: as near to equilibrium as round-off allows, though above the tolerance.
 enum class Outcome {
   converged,
@@ -41,7 +40,6 @@ enum class Outcome {
   cancelled,
   infeasible,
   refined_early_on_request,
-  refined_early_at_tolerance,
   converged_to_rounding
 };
 const char* to_string(Outcome outcome);
@@ -49,16 +47,11 @@ const char* to_string(Outcome outcome);
 inline bool has_converged(Outcome outcome) {
   return outcome == Outcome::converged || outcome == Outcome::converged_to_rounding;
 }
-/// Whether a level converged or was refined at a tolerance that its experiment sets.
-inline bool succeeded(Outcome outcome) {
-  return has_converged(outcome) || outcome == Outcome::refined_early_at_tolerance;
-}
 /// The worse outcome, in rising order: converged, converged_to_rounding, refined_early_on_request,
-/// max_steps_reached, stalled, infeasible, cancelled. refined_early_at_tolerance counts as converged.
+/// max_steps_reached, stalled, infeasible, cancelled.
 Outcome worse_of(Outcome a, Outcome b);
-/// The same for outcomes by name, as in results.
+/// The same as has_converged for outcomes by name, as in results.
 bool has_converged(const std::string& outcome);
-bool succeeded(const std::string& outcome);
 
 /// One Newton iteration, for observers.
 struct IterationRow {

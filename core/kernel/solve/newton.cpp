@@ -21,9 +21,6 @@ constexpr double near_equilibrium = 10;
 constexpr double relaxed_residual = 1;
 /// … and after every so many steps of an increment in any case.
 constexpr int max_steps_between_moves = 5;
-/// Steps between checks of the residual on the next level, which costs an evaluation of its contacts and
-/// forces.
-constexpr int residual_check_interval = 4;
 /// Force residual below which contacts count as carrying the load and no more.
 constexpr double balanced = 1;
 /// Drift of the centroid, in bounding box diagonals, after which the cloth counts as falling without end.
@@ -154,7 +151,6 @@ class Newton {
         if (switch_to_plain()) continue;
         return end_at_equilibrium(in_tolerance);
       }
-      if (run_.finer_follows && early_refinement_due()) return End{Outcome::refined_early_at_tolerance};
       if (load_.loading() && !dirichlet_.active() && (at_equilibrium || load_.advances_at_once())) {
         advance_increment(at_equilibrium);
         if (load_.blocked())
@@ -195,16 +191,6 @@ class Newton {
   bool is_to_end() { return observer_.stop_requested() || check_.drift() > max_drift; }
 
   bool is_at_rounding_floor() { return check_.is_at_rounding_floor(step_.factor()); }
-
-  /// Whether a tolerance asks for early refinement. Never at the start, under load stepping, or before
-  /// Dirichlet vertices have reached their targets.
-  bool early_refinement_due() const {
-    if (result_.steps == 0 || load_.has_schedule() || dirichlet_.active() || dirichlet_.infeasible())
-      return false;
-    if (iterate_.force_residual() < p_.early_refinement_tolerance) return true;
-    return p_.early_refinement_ratio > 0 && result_.steps % residual_check_interval == 0 &&
-           iterate_.force_residual() < p_.early_refinement_ratio * run_.residual_on_next_level(iterate_.x());
-  }
 
   /// At the equilibrium of a proxy, restarts with the plain energy. Returns false if there is
   /// nothing to switch to, or if Dirichlet targets are infeasible.
@@ -300,7 +286,7 @@ class Newton {
 
   LevelResult finish(const End& end) {
     result_.outcome = end.outcome;
-    const bool failed = !succeeded(end.outcome) && end.outcome != Outcome::cancelled &&
+    const bool failed = !has_converged(end.outcome) && end.outcome != Outcome::cancelled &&
                         end.outcome != Outcome::refined_early_on_request && result_.x.allFinite();
     add_to_message(end.message);
     // At a start without finite forces pins have not been enforced.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/model/objective.h"
@@ -13,14 +12,12 @@ namespace drape {
 struct LevelRun {
   const Stopwatch& clock;  ///< the method's, for the observer's rows
   Observer& observer;
-  bool finer_follows = false;                ///< the level may be refined early, on request or at a tolerance
+  bool finer_follows = false;                ///< the level may be refined early, on request
   std::map<std::string, double> spent = {};  ///< on the level before this minimisation, by phase [s]
   const NewtonState* from = nullptr;         ///< state to resume from; null to start anew
   LoadStepping* load_stepping = nullptr;     ///< null without a schedule
   std::string remark = {};                   ///< beginning of the result's message
   ContactStiffness stiffness = {};           ///< at least this of each contact model [Pa]
-  /// Force residual of a state, prolonged to the next level; 0 if its energy or forces there are not finite.
-  std::function<double(const Positions& x)> residual_on_next_level = {};
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps

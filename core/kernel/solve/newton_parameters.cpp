@@ -55,23 +55,6 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
           "also required of the largest of the last three decrements; 0 disables it. The decrement is "
           "‖p‖ / (h √n), p the Newton direction: a velocity, not √(gᵀH⁻¹g)")
       .source("Li et al. 2021 (C-IPC)");
-  d.add("early_refinement_tolerance", &NewtonParameters::early_refinement_tolerance)
-      .formerly("refine_at")
-      .at_least(0)
-      .at_most(1e12)
-      .description(
-          "refine a level as soon as its force residual falls below this; 0 waits for convergence. Applies "
-          "to levels whose state starts the next one, and not under a schedule")
-      .source("PCS section 4: a level may be refined before it has converged");
-  d.add("early_refinement_ratio", &NewtonParameters::early_refinement_ratio)
-      .formerly("refine_ratio")
-      .at_least(0)
-      .at_most(1e3)
-      .description(
-          "refine a level as soon as its force residual falls below this fraction of the residual that its "
-          "prolonged state has on the next level; 0 waits for convergence. Applies to levels whose state "
-          "starts the next one, and not under a schedule")
-      .source("nested iteration: Hackbusch 1985, chapter 5; a departure from the paper");
   d.add_choice("projection", &NewtonParameters::projection,
                {{"clamp", Projection::clamp}, {"absolute", Projection::absolute}, {"none", Projection::none}})
       .description("treatment of negative eigenvalues of an element's Hessian")

@@ -25,8 +25,6 @@ struct NewtonParameters {
   int max_steps = 5000;
   double force_tolerance = 1e-3;
   double decrement_tolerance = 0;
-  double early_refinement_tolerance = 0;
-  double early_refinement_ratio = 0;
   Projection::Kind projection = Projection::clamp;
   PsdBlend psd_blend = PsdBlend::adaptive;
   int hessian_update_interval = 1;

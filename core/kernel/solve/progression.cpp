@@ -1,24 +1,9 @@
 #include "core/kernel/solve/progression.h"
 
-#include <cmath>
-
 #include "core/kernel/solve/newton_state.h"
 #include "core/kernel/solve/safe_refinement.h"
 
 namespace drape {
-namespace {
-
-/// Force residual of the state y, of which nothing is known; 0 if its energy or forces are not finite.
-double residual_at(Objective& objective, const Positions& y) {
-  Positions g;
-  objective.contacts().reset();
-  objective.contacts().begin_step(y);
-  if (!std::isfinite(objective.gradient(y, g))) return 0;
-  const double residual = free_norm(g, objective.model().fixed()) / objective.residual_scale(y, g);
-  return std::isfinite(residual) ? residual : 0;
-}
-
-}  // namespace
 
 std::vector<LevelResult> solve_progressively(
     const Problem& problem, const std::vector<ProlongationMatrix>& weights,
@@ -57,11 +42,6 @@ std::vector<LevelResult> solve_progressively(
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping, remark};
       if (!results.empty()) run.stiffness = results.back().contact_stiffness;
-      std::unique_ptr<Objective> next;
-      run.residual_on_next_level = [&](const Positions& x) {
-        if (!next) next = objective(l + 1);
-        return residual_at(*next, problem.prolong(weights[l], l, x));
-      };
       result = minimise(*objective(l), std::move(start.x), newton, run);
     }
     result.from_initial_state = l == first;

@@ -19,9 +19,6 @@ class NewtonSolver : public ResumableSolver {
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
     const Stopwatch clock(from.seconds);
-    NewtonParameters parameters = p_.newton;
-    // No level starts from another's state.
-    parameters.early_refinement_tolerance = parameters.early_refinement_ratio = 0;
     std::vector<LevelResult> results = from.finished;
     restore_load_stepping(problem, from);
     for (int l = from.level; l <= problem.finest(); ++l) {
@@ -29,7 +26,7 @@ class NewtonSolver : public ResumableSolver {
       if (!state) observer.level_started(l);
       if (problem.load_stepping && !state) problem.load_stepping->begin(l, true);
       PlainObjective objective(problem.model(l));
-      results.push_back(minimise(objective, problem.starts[l], parameters,
+      results.push_back(minimise(objective, problem.starts[l], p_.newton,
                                  {clock, observer, l < problem.finest(), {}, state, problem.load_stepping}));
       results.back().from_initial_state = true;
       observer.level_finished(results.back());

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "core/kernel/plugin/plugin.h"
 #include "core/kernel/solve/progression.h"
 #include "core/kernel/solve/resumable_solver.h"
@@ -25,7 +23,6 @@ class PcsSolver : public ResumableSolver {
  public:
   struct Parameters {
     ProxyInterpolation interpolation;
-    int target = 0;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
     Compression compression = Compression::elastic;
@@ -34,14 +31,6 @@ class PcsSolver : public ResumableSolver {
     static void declare(Declaration<Parameters>& d) {
       d.add_section("interpolation", &Parameters::interpolation)
           .description("how a coarse level sees the fine mesh whose energy it minimises");
-      d.add("target", &Parameters::target)
-          .at_least(0)
-          .at_most(8)
-          .description(
-              "how many levels above a coarse level the energy is that it minimises, at most the finest; 0: "
-              "the "
-              "finest")
-          .source("PCS section 4 for 0");
       d.add_choice("hessian", &Parameters::hessian,
                    {{"coarse", ProxyMatrix::coarse}, {"galerkin", ProxyMatrix::galerkin}})
           .description(
@@ -52,8 +41,7 @@ class PcsSolver : public ResumableSolver {
           .at_most(8)
           .description(
               "how many levels above a coarse level the Hessian is that the Galerkin product restricts, at "
-              "most "
-              "the proxy's target; for energies that are evaluated on a finer level");
+              "most the finest; for energies that are evaluated on the finest level");
       d.add_choice("compression", &Parameters::compression,
                    {{"elastic", Compression::elastic}, {"buckling", Compression::buckling}})
           .description(
@@ -80,17 +68,19 @@ class PcsSolver : public ResumableSolver {
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
       const int to_finest = problem.finest() - level;
       if (to_finest == 0) return std::make_unique<PlainObjective>(problem.model(level));
-      const int above = p_.target == 0 ? to_finest : std::min(p_.target, to_finest);
-      return std::make_unique<ProxyObjective>(problem, level,
-                                              proxy_parts(problem, level, above, p_.depth, p_.interpolation),
-                                              ProxyOptions{p_.hessian, p_.relaxation == Relaxation::plain,
-                                                           p_.compression == Compression::buckling});
+      return std::make_unique<ProxyObjective>(
+          problem, level, proxy_parts(problem, level, to_finest, p_.depth, p_.interpolation),
+          ProxyOptions{p_.hessian, p_.relaxation == Relaxation::plain, buckles()});
     };
     return solve_progressively(problem, problem.hierarchy.weights(p_.interpolation.state), objective,
                                p_.newton, from, observer);
   }
 
  private:
+  bool buckles() const {
+    return p_.compression == Compression::buckling && p_.interpolation.membrane == Interpolation::midpoint;
+  }
+
   Parameters p_;
 };
 
