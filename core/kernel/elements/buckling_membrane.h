@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "core/kernel/elements/membrane_kernel.h"
@@ -27,8 +28,9 @@ template <template <class> class Law>
 struct BucklingLaw {
   static constexpr int constants = 4;  ///< A d μ, A d λ, s [J], and the stretch τ of both axes wrinkled [1]
   static constexpr bool convex = false;
-  static constexpr double largest_shortening = 2;  ///< κ [1]
-  static constexpr double remainder = 0.01;        ///< r [1]
+  /// κ [1]: of a fold that turns by half a circle, over its chord.
+  static constexpr double largest_shortening = std::numbers::pi / 2;
+  static constexpr double remainder = 0.01;  ///< r [1]
 
   /// The constants that follow the rest triangle's, for a bound s [J].
   static Eigen::Vector4d constants_of(double mu, double lambda, double s) {

@@ -25,7 +25,7 @@ class PcsSolver : public ResumableSolver {
     ProxyInterpolation interpolation;
     ProxyMatrix hessian = ProxyMatrix::galerkin;
     int depth = 2;
-    Compression compression = Compression::elastic;
+    Compression compression = Compression::buckling;
     Relaxation relaxation = Relaxation::plain;
     NewtonParameters newton;
     static void declare(Declaration<Parameters>& d) {
@@ -47,7 +47,7 @@ class PcsSolver : public ResumableSolver {
           .description(
               "how membranes of coarse levels answer compression, unless they are seen by the refiner: by "
               "their law, or at the stress at which the cloth buckles below the mesh")
-          .source("Pipkin 1986 for buckling (docs/theory/locking.md)");
+          .source("PCS section 4 for elastic; buckling is a departure (docs/theory/locking.md)");
       d.add_choice("relaxation", &Parameters::relaxation,
                    {{"plain", Relaxation::plain}, {"none", Relaxation::none}})
           .description(
