@@ -140,7 +140,7 @@ test('opens on fine energy and distance over time, a line a method, and no table
     assert.deepEqual(await legendOf(page, id), methods);
     assert.ok(await drawnShare(page, '#' + id) > .01, id);
     const titles = await page.evaluate(name => ['x', 'y'].map(k => Chart.getChart(name).options.scales[k].title.text), id);
-    assert.deepEqual(titles, ['time [s]', id === 'errors' ? 'distance, RMS [diagonal]' : 'energy gap, relative']);
+    assert.deepEqual(titles, ['time [s]', id === 'errors' ? 'distance, RMS [diagonal]' : 'energy gap, over the energy released']);
     const levels = await page.evaluate(name => Chart.getChart(name).data.datasets.map(set =>
       [...new Set(set.data.map(point => point.level))].join()), id);
     assert.ok(levels[0].startsWith('0') && levels[1].startsWith('0'), levels.join('; '));

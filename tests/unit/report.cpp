@@ -488,13 +488,17 @@ TEST_CASE("every method has a verdict beside the others that converged") {
     }
   }
   CHECK(method_verdict(run, run.methods[0]) == "fastest; lowest energy; best preview");
-  CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy 16.7&nbsp;% higher");
+  CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy higher by 0.500&nbsp;J");
+  run.energy_of_start = 2;
+  CHECK(method_verdict(run, run.methods[1]) ==
+        "1.50× the fastest's time; energy higher by 10.0&nbsp;% of what was released");
   CHECK(method_verdict(run, run.methods[2]) == "did not converge; its figures are of where it stopped");
   run.force_tolerance = 0.001;
   CHECK(contains(outcome_sentence(run), "2 of 3 methods converged (force residual below 0.001); <b>pcs</b>"));
 
   run.methods[2].status = "converged_to_rounding";
-  CHECK(method_verdict(run, run.methods[2]) == "3.00× the fastest's time; energy 16.7&nbsp;% higher");
+  CHECK(method_verdict(run, run.methods[2]) ==
+        "3.00× the fastest's time; energy higher by 10.0&nbsp;% of what was released");
   CHECK(contains(outcome_sentence(run),
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }

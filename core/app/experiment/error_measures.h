@@ -17,7 +17,8 @@ struct ErrorMeasure {
   Better better = Better::lower;  ///< of that value: if higher, the error is 1 − value
 };
 
-/// The relative energy difference, which the run itself measures.
+/// The energy above the target's, over what the cloth releases from the start to the target; the run itself
+/// measures it.
 inline constexpr const char* energy_gap = "energy_gap";
 
 /// The measures that metrics declare, those that rank first, and the energy gap, last.

@@ -133,11 +133,13 @@ OptionalNumber final_energy(const RunData& run, const MethodRecord& method) {
 
 namespace {
 
-std::string energy_words(double energy, double lowest) {
-  const double percent = 100 * (energy - lowest) / std::abs(lowest);
-  if (percent == 0) return "lowest energy";
+/// Relative to the energy that the lowest state has released: energies themselves count from an origin.
+std::string energy_words(double energy, double lowest, const OptionalNumber& start) {
+  if (energy == lowest) return "lowest energy";
+  if (!start || *start <= lowest) return "energy higher by " + number_text(energy - lowest) + "&nbsp;J";
+  const double percent = 100 * (energy - lowest) / (*start - lowest);
   return percent < 0.1 ? "energy within 0.1&nbsp;% of the lowest"
-                       : "energy " + number_text(percent) + "&nbsp;% higher";
+                       : "energy higher by " + number_text(percent) + "&nbsp;% of what was released";
 }
 
 }  // namespace
@@ -165,7 +167,7 @@ std::string method_verdict(const RunData& run, const MethodRecord& method) {
   std::string text;
   if (seconds && *fastest > 0)
     text = *seconds == *fastest ? "fastest" : number_text(*seconds / *fastest) + "× the fastest's time";
-  if (energy && *lowest != 0) text += (text.empty() ? "" : "; ") + energy_words(*energy, *lowest);
+  if (energy) text += (text.empty() ? "" : "; ") + energy_words(*energy, *lowest, run.energy_of_start);
   if (best_preview && preview(method) == best_preview) text += "; best preview";
   return text;
 }

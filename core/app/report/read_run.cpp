@@ -227,6 +227,7 @@ RunData read_run(const std::filesystem::path& folder) {
   run.reference_is_file = !text_member(reference, "file").empty();
   run.reference_is_lowest = text_member(reference, "chosen") == ReferenceParameters::lowest;
   run.reference_tolerance = number(member_of(reference, "force_tolerance"));
+  run.energy_of_start = number(member_of(json, "energy_of_start"));
   run.force_tolerance = number(member_of(member_of(json, "tolerance"), "force_residual"));
   const Json& methods = member_of(json, "methods");
   const Json& declared = member_of(json, "metrics");

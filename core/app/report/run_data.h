@@ -113,6 +113,7 @@ struct RunData {
   bool complete = false;
   std::string aborted;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
+  OptionalNumber energy_of_start;            ///< of the finest level, without noise [J]
   std::vector<std::string> remarks;          ///< on the input, such as the repair of an obstacle
   std::vector<std::string> obstacles;        ///< meshes, relative to the folder
   std::vector<std::string> obstacle_names;   ///< of each of them; empty for an obstacle without a name

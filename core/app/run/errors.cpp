@@ -21,6 +21,8 @@ std::string cells(const StateError& error) {
 
 }  // namespace
 
+double energy_of_start(const Scene& scene) { return scene.finest_model().value(scene.placed.back()); }
+
 double energy_on_finest(const Scene& scene, const std::vector<ProlongationMatrix>& weights, int level,
                         const Positions& x) {
   return scene.finest_model().value(
@@ -44,7 +46,7 @@ StateError state_error(const std::vector<ErrorMeasure>& measures, const Experime
       fault(name + ": " + reason_of(problem));
     }
   }
-  if (target.energy != 0) error.back() = (energy - target.energy) / std::abs(target.energy);
+  if (target.released > 0) error.back() = (energy - target.energy) / target.released;
   return error;
 }
 
@@ -81,13 +83,17 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
   for (const char* target : error_targets)
     for (const ErrorMeasure& measure : measures_) text += "," + std::string(target) + "_" + measure.name;
   text += "\n";
+  const double start = energy_of_start(scene_);
+  const auto target_at = [&](const Positions& x, double energy) {
+    return ErrorTarget{x, energy, start - energy};
+  };
   std::optional<ErrorTarget> standard;
-  if (reference) standard = {*reference, scene_.finest_model().value(*reference)};
+  if (reference) standard = target_at(*reference, scene_.finest_model().value(*reference));
   for (const LevelSnapshots& level : levels_) {
     std::optional<ErrorTarget> own;
     for (const LevelSnapshots& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
-        own = {other.last, other.energies.back()};
+        own = target_at(other.last, other.energies.back());
     const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();

@@ -20,10 +20,15 @@ using StateError = std::vector<std::optional<double>>;
 /// A state on the finest level that others are measured against.
 struct ErrorTarget {
   Positions x;
-  double energy = 0;  ///< of the finest level there, without limits and contact [J]
+  double energy = 0;    ///< of the finest level there, without limits and contact [J]
+  double released = 0;  ///< what the cloth releases of that energy from the scene's start to there [J]
 };
 
-/// The error of a state x of the finest level, whose energy is given [J]. A metric that throws is reported to
+/// The finest level's energy at the scene's start, without noise and with pins where they begin [J].
+double energy_of_start(const Scene& scene);
+
+/// The error of a state x of the finest level, whose energy is given [J]. There is no energy gap to a target
+/// that releases none. A metric that throws is reported to
 /// `fault`; its values stay absent.
 StateError state_error(const std::vector<ErrorMeasure>& measures, const Experiment& experiment,
                        const Scene& scene, const Positions& x, double energy, const ErrorTarget& target,

@@ -39,6 +39,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["commit"] = commit();
   results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
+  results_["energy_of_start"] = finite_or_null(energy_of_start(scene));
   const std::vector<std::string> remarks = experiment.remarks(scene);
   if (!remarks.empty()) results_["remarks"] = remarks;
   results_["metrics"] = json_of(declared_metrics(experiment.metrics));
