@@ -105,6 +105,22 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
   CHECK(medians.methods[0].pair(0, 1)->metrics.of("d_H_fit").value() > 0);
 }
 
+TEST_CASE("a final state is not compared with itself where it was the reference") {
+  const RunCollection collection = read_runs({sweep()});
+  const std::vector<RunRow> rows = rows_of(collection);
+  for (const RowQuantity& f : row_quantities(collection.error_measures())) {
+    if (f.name != "error_rms" && f.name != "energy_gap") continue;
+    for (const RunRow& row : rows) {
+      INFO(row.title(true) << " " << f.name);
+      CHECK(spread_of(row, f).has_value() == (row.method != "newton"));
+    }
+  }
+  CHECK_THAT(collection_summary(collection),
+             Contains(" Final states that were the reference themselves are not compared with it: "
+                      "matrix=galerkin, newton in 3 of 3, matrix=coarse, newton in 3 of 3.") &&
+                 !Contains("Nearest to the reference (RMS distance): <b>matrix=galerkin, newton"));
+}
+
 TEST_CASE("a direct method's cost is that of the level it ends with") {
   const RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
   for (const MethodRecord& m : collection.runs[0].data->methods) {

@@ -24,6 +24,7 @@ const ErrorRow* last_error(const RunData& run, const MethodRecord& method, bool 
 RowQuantity error_quantity(const std::string& name, const std::string& title, bool preview,
                            std::size_t target, const std::string& measure) {
   return {name, title, [=](const RunData& run, const MethodRecord& method) {
+            if (target == reference && is_own_reference(run, method)) return OptionalNumber();
             const ErrorRow* row = last_error(run, method, preview);
             return row ? row->error[target].of(measure) : OptionalNumber();
           }};
@@ -42,6 +43,10 @@ OptionalNumber preview_seconds(const RunData&, const MethodRecord& m) {
 
 std::string error_name(const ErrorMeasure& measure) {
   return measure.name == energy_gap ? measure.name : "error_" + measure.name;
+}
+
+bool is_own_reference(const RunData& run, const MethodRecord& method) {
+  return !run.reference_is_file && run.reference == method.name;
 }
 
 std::string preview_name(const ErrorMeasure& measure) { return "preview_" + measure.name; }

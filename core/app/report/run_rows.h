@@ -38,7 +38,11 @@ struct RowQuantity {
 /// that every run has, then the errors that are measured.
 std::vector<RowQuantity> row_quantities(const std::vector<ErrorMeasure>& measures);
 
-/// The quantity that is a measure's error of the final state against the reference.
+/// Whether the run's reference is the method's own final state, whose error says nothing.
+bool is_own_reference(const RunData& run, const MethodRecord& method);
+
+/// The quantity that is a measure's error of the final state against the reference. Absent where that is the
+/// method's own.
 std::string error_name(const ErrorMeasure& measure);
 /// The quantity that is a measure's error of the preview against the method's own final state.
 std::string preview_name(const ErrorMeasure& measure);

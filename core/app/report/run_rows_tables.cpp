@@ -102,6 +102,21 @@ std::string lowest(const std::vector<RunRow>& rows, bool several, const Quantiti
   return best ? "<b>" + escape(best->title(several)) + "</b> (" + number_text(least->median) + ")" : "";
 }
 
+/// Says which methods' final states were the reference, so that their errors are left out.
+std::string own_references(const std::vector<RunRow>& rows, bool several) {
+  std::string text;
+  for (const RunRow& row : rows) {
+    const auto own = std::count_if(row.repeats.begin(), row.repeats.end(), [](const Repeat& repeat) {
+      return is_own_reference(*repeat.run->data, *repeat.method);
+    });
+    if (own == 0) continue;
+    text += (text.empty() ? "" : ", ") + escape(row.title(several)) + " in " + std::to_string(own) + " of " +
+            std::to_string(row.repeats.size());
+  }
+  if (text.empty()) return "";
+  return " Final states that were the reference themselves are not compared with it: " + text + ".";
+}
+
 }  // namespace
 
 std::string rows_table(const RunCollection& collection) {
@@ -175,7 +190,7 @@ std::string collection_summary(const RunCollection& collection) {
   for (const auto& [name, title] : titles)
     if (const std::string best = lowest(rows, several, quantities, name); rows.size() > 1 && !best.empty())
       text += " " + title + best + ".";
-  return text;
+  return text + own_references(rows, several);
 }
 
 std::string rows_chart_data(const RunCollection& collection) {
