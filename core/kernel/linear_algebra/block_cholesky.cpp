@@ -90,7 +90,7 @@ Supernodes supernodes_of(const cholmod_factor& factor) {
 
 std::unique_ptr<NumericFactor> make_factor(LinearSolver solver) {
   if (solver == LinearSolver::cholmod) return make_cholmod_factor();
-  return std::make_unique<SupernodalFactor>();
+  return std::make_unique<SupernodalFactor<double>>();
 }
 
 }  // namespace

@@ -20,22 +20,25 @@ inline constexpr int native_pack_width = 4;
 inline constexpr int native_pack_width = 2;
 #endif
 
-/// GCC vector types of W doubles and W integers.
+/// GCC vector types of W doubles, W integers, and as many floats as take the same space.
 template <int W>
 struct VectorOf;
 template <>
 struct VectorOf<2> {
   typedef double Doubles __attribute__((vector_size(16)));
+  typedef float Floats __attribute__((vector_size(16)));
   typedef long long Integers __attribute__((vector_size(16)));
 };
 template <>
 struct VectorOf<4> {
   typedef double Doubles __attribute__((vector_size(32)));
+  typedef float Floats __attribute__((vector_size(32)));
   typedef long long Integers __attribute__((vector_size(32)));
 };
 template <>
 struct VectorOf<8> {
   typedef double Doubles __attribute__((vector_size(64)));
+  typedef float Floats __attribute__((vector_size(64)));
   typedef long long Integers __attribute__((vector_size(64)));
 };
 

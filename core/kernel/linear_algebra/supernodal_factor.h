@@ -16,6 +16,10 @@ namespace drape {
 /// matrices, eliminates its pivots, and passes its update matrix to its parent. Subtrees run in parallel;
 /// then the supernodes above them one by one, their fronts in parallel by tiles. Tree, tiles and the order of
 /// additions do not depend on the number of threads, so the factor is bitwise reproducible.
+///
+/// Scalar is double or float. In float a matrix that is definite to a ten-millionth or so may be refused, and
+/// one that is not may be accepted.
+template <class Scalar>
 class SupernodalFactor : public NumericFactor {
  public:
   /// Reuses the memory of an earlier structure if it suffices.
@@ -32,9 +36,11 @@ class SupernodalFactor : public NumericFactor {
     bool transposed;
   };
 
-  Front front(int s);
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+
+  Front<Scalar> front(int s);
   bool eliminate(int s, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
-  void assemble(int s, const Front& f, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
+  void assemble(int s, const Front<Scalar>& f, const BlockMatrix& matrix, const Eigen::VectorXd& shift);
   void forward(int s, const Eigen::VectorXd& x);
   void backward(int s, Eigen::VectorXd& x);
 
@@ -42,9 +48,9 @@ class SupernodalFactor : public NumericFactor {
   std::vector<int> ordering_;
   std::vector<int> entry_start_;  // of each supernode
   std::vector<Entry> entries_;
-  Eigen::VectorXd panels_, updates_;
+  Vector panels_, updates_;
   std::vector<int> vector_start_;  // of each supernode's work space in a solve
-  Eigen::VectorXd work_;
+  Vector work_;
   std::atomic<bool> failed_ = false;
 };
 

@@ -1,14 +1,14 @@
 #include "core/kernel/linear_algebra/supernodal_kernels.h"
 
 #include <cmath>
+#include <cstring>
 
 namespace drape {
 namespace {
 
-using Vector = VectorOf<lanes>::Doubles;
-
 /// Keeps v in a register. For AVX2, GCC 12 would load a vector that several products share again for each of
 /// them; at two loads a cycle that takes longer than the products.
+template <class Vector>
 [[gnu::always_inline]] inline Vector in_register(Vector v) {
 #ifdef __AVX__
   asm("" : "+v"(v));
@@ -16,64 +16,68 @@ using Vector = VectorOf<lanes>::Doubles;
   return v;
 }
 
-/// `lanes` columns of V vectors each: fills the registers that the operands leave.
-template <int V>
+/// `tile_columns` columns of V vectors each: fills the registers that the operands leave.
+template <class Scalar, int V>
 struct Tile {
-  Vector columns[lanes][V];
+  static constexpr int lanes = drape::lanes<Scalar>;
+  using Vector = SimdVector<Scalar>;
+  Vector columns[tile_columns][V];
 
-  [[gnu::always_inline]] void load(const double* c) {
+  [[gnu::always_inline]] void load(const Scalar* c) {
     const auto* from = reinterpret_cast<const Vector*>(c);
 #pragma GCC unroll 8
-    for (int j = 0; j < lanes; ++j)
+    for (int j = 0; j < tile_columns; ++j)
 #pragma GCC unroll 3
       for (int v = 0; v < V; ++v) columns[j][v] = from[j * V + v];
   }
-  [[gnu::always_inline]] void store(double* c) const {
+  [[gnu::always_inline]] void store(Scalar* c) const {
     auto* to = reinterpret_cast<Vector*>(c);
 #pragma GCC unroll 8
-    for (int j = 0; j < lanes; ++j)
+    for (int j = 0; j < tile_columns; ++j)
 #pragma GCC unroll 3
       for (int v = 0; v < V; ++v) to[j * V + v] = columns[j][v];
   }
-  /// Subtracts a bᵀ over `depth` columns of a row panel of V vectors and of `lanes` rows at b.
-  [[gnu::always_inline]] void subtract(const double* a, const double* b, int b_height, int depth) {
+  /// Subtracts a bᵀ over `depth` columns of a row panel of V vectors and of `tile_columns` rows at b.
+  [[gnu::always_inline]] void subtract(const Scalar* a, const Scalar* b, int b_height, int depth) {
     for (int k = 0; k < depth; ++k, a += V * lanes, b += b_height) {
       Vector rows[V];
 #pragma GCC unroll 3
       for (int v = 0; v < V; ++v) rows[v] = in_register(reinterpret_cast<const Vector*>(a)[v]);
 #pragma GCC unroll 8
-      for (int j = 0; j < lanes; ++j)
+      for (int j = 0; j < tile_columns; ++j)
 #pragma GCC unroll 3
         for (int v = 0; v < V; ++v) columns[j][v] -= rows[v] * b[j];
     }
   }
   /// Multiplies by the inverse transpose of the lower triangle at l, with reciprocals on its diagonal.
-  [[gnu::always_inline]] void solve(const double* l, int height) {
+  [[gnu::always_inline]] void solve(const Scalar* l, int height) {
 #pragma GCC unroll 8
-    for (int k = 0; k < lanes; ++k) {
+    for (int k = 0; k < tile_columns; ++k) {
 #pragma GCC unroll 3
       for (int v = 0; v < V; ++v) columns[k][v] *= l[k * height + k];
 #pragma GCC unroll 8
-      for (int j = k + 1; j < lanes; ++j)
+      for (int j = k + 1; j < tile_columns; ++j)
 #pragma GCC unroll 3
         for (int v = 0; v < V; ++v) columns[j][v] -= columns[k][v] * l[k * height + j];
     }
   }
 };
 
-template <int V>
-void subtract_product_of(const RowPanel& a, const RowPanel& b, int begin, int end, double* c) {
-  for (int row = 0; row < b.height; row += lanes, c += lanes * V * lanes) {
-    Tile<V> tile;
+template <int V, class Scalar>
+void subtract_product_of(const RowPanel<Scalar>& a, const RowPanel<Scalar>& b, int begin, int end,
+                         Scalar* c) {
+  for (int row = 0; row < b.height; row += tile_columns, c += tile_columns * V * lanes<Scalar>) {
+    Tile<Scalar, V> tile;
     tile.load(c);
     tile.subtract(a.column(begin), b.column(begin) + row, b.height, end - begin);
     tile.store(c);
   }
 }
 
-template <int V>
-void columns_below(const RowPanel& a, const RowPanel& diagonal, int row, int begin, int column) {
-  Tile<V> tile;
+template <int V, class Scalar>
+void columns_below(const RowPanel<Scalar>& a, const RowPanel<Scalar>& diagonal, int row, int begin,
+                   int column) {
+  Tile<Scalar, V> tile;
   tile.load(a.column(column));
   tile.subtract(a.column(begin), diagonal.column(begin) + row, diagonal.height, column - begin);
   tile.solve(diagonal.column(column) + row, diagonal.height);
@@ -81,117 +85,175 @@ void columns_below(const RowPanel& a, const RowPanel& diagonal, int row, int beg
 }
 
 /// Unblocked Cholesky of the lower triangle of the block at l.
-bool factorise_block(double* l, int height) {
-  for (int k = 0; k < lanes; ++k) {
-    double* column = l + k * height;
+template <class Scalar>
+bool factorise_block(Scalar* l, int height) {
+  for (int k = 0; k < tile_columns; ++k) {
+    Scalar* column = l + k * height;
     if (!(column[k] > 0)) return false;
-    const double reciprocal = 1 / std::sqrt(column[k]);
+    const Scalar reciprocal = 1 / std::sqrt(column[k]);
     column[k] = reciprocal;
-    for (int i = k + 1; i < lanes; ++i) column[i] *= reciprocal;
-    for (int j = k + 1; j < lanes; ++j)
-      for (int i = j; i < lanes; ++i) l[j * height + i] -= column[i] * column[j];
+    for (int i = k + 1; i < tile_columns; ++i) column[i] *= reciprocal;
+    for (int j = k + 1; j < tile_columns; ++j)
+      for (int i = j; i < tile_columns; ++i) l[j * height + i] -= column[i] * column[j];
   }
   return true;
 }
 
-template <int V>
-bool diagonal_columns(const RowPanel& diagonal, int row, int begin, int column) {
-  Tile<V> tile;
+template <int V, class Scalar>
+bool diagonal_columns(const RowPanel<Scalar>& diagonal, int row, int begin, int column) {
+  Tile<Scalar, V> tile;
   tile.load(diagonal.column(column));
-  tile.subtract(diagonal.column(begin), diagonal.column(begin) + row, V * lanes, column - begin);
-  alignas(64) double block[lanes * lanes];
+  tile.subtract(diagonal.column(begin), diagonal.column(begin) + row, V * lanes<Scalar>, column - begin);
+  alignas(64) Scalar block[tile_columns * tile_columns];
   tile.store(diagonal.column(column));
-  for (int c = 0; c < lanes; ++c)
-    for (int r = 0; r < lanes; ++r) block[c * lanes + r] = diagonal.column(column + c)[row + r];
-  if (!factorise_block(block, lanes)) return false;
-  tile.solve(block, lanes);
+  for (int c = 0; c < tile_columns; ++c)
+    for (int r = 0; r < tile_columns; ++r) block[c * tile_columns + r] = diagonal.column(column + c)[row + r];
+  if (!factorise_block(block, tile_columns)) return false;
+  tile.solve(block, tile_columns);
   tile.store(diagonal.column(column));
-  for (int c = 0; c < lanes; ++c)
-    for (int r = c; r < lanes; ++r) diagonal.column(column + c)[row + r] = block[c * lanes + r];
+  for (int c = 0; c < tile_columns; ++c)
+    for (int r = c; r < tile_columns; ++r) diagonal.column(column + c)[row + r] = block[c * tile_columns + r];
   return true;
 }
 
-template <int V>
-void subtract_times_of(const RowPanel& a, int columns, const double* x, double* y) {
-  auto* rows = reinterpret_cast<Vector*>(y);
-  const auto* column = reinterpret_cast<const Vector*>(a.data);
-  Vector sum[V];
+template <int V, class Scalar>
+void subtract_times_of(const RowPanel<Scalar>& a, int columns, const Scalar* x, Scalar* y) {
+  auto* rows = reinterpret_cast<SimdVector<Scalar>*>(y);
+  const auto* column = reinterpret_cast<const SimdVector<Scalar>*>(a.data);
+  SimdVector<Scalar> sum[V];
   for (int v = 0; v < V; ++v) sum[v] = rows[v];
   for (int c = 0; c < columns; ++c, column += V)
     for (int v = 0; v < V; ++v) sum[v] -= column[v] * x[c];
   for (int v = 0; v < V; ++v) rows[v] = sum[v];
 }
 
-template <int V>
-void subtract_transposed_times_of(const double* a, const double* x, double* y) {
-  const auto* column = reinterpret_cast<const Vector*>(a);
-  const auto* rows = reinterpret_cast<const Vector*>(x);
-  for (int c = 0; c < lanes; ++c, column += V) {
-    Vector products = column[0] * rows[0];
-    for (int v = 1; v < V; ++v) products += column[v] * rows[v];
-    double sum = 0;
-    for (int l = 0; l < lanes; ++l) sum += products[l];
-    y[c] -= sum;
+/// The sum of N scalars, a power of two, added by halves.
+template <int N, class Scalar>
+[[gnu::always_inline]] inline Scalar sum_of(const Scalar* from) {
+  if constexpr (N == 1) {
+    return *from;
+  } else {
+    typedef Scalar Half __attribute__((vector_size(N / 2 * sizeof(Scalar))));
+    Half halves[2];
+    std::memcpy(halves, from, sizeof halves);
+    halves[0] += halves[1];
+    return sum_of<N / 2>(reinterpret_cast<const Scalar*>(halves));
   }
+}
+template <class Scalar>
+[[gnu::always_inline]] inline Scalar sum_of(const SimdVector<Scalar>& v) {
+  return sum_of<lanes<Scalar>>(reinterpret_cast<const Scalar*>(&v));
+}
+
+template <int V, class Scalar>
+void add_transposed_product(const Scalar* a, const Scalar* x, SimdVector<Scalar>* products) {
+  const auto* column = reinterpret_cast<const SimdVector<Scalar>*>(a);
+  const auto* rows = reinterpret_cast<const SimdVector<Scalar>*>(x);
+  for (int c = 0; c < lanes<Scalar>; ++c, column += V)
+    for (int v = 0; v < V; ++v) products[c] += column[v] * rows[v];
 }
 
 }  // namespace
 
-void subtract_product(const RowPanel& a, const RowPanel& b, int begin, int end, double* c) {
-  if (a.height == 3 * lanes)
+template <class Scalar>
+void subtract_product(const RowPanel<Scalar>& a, const RowPanel<Scalar>& b, int begin, int end, Scalar* c) {
+  if (a.height == 3 * lanes<Scalar>)
     subtract_product_of<3>(a, b, begin, end, c);
-  else if (a.height == 2 * lanes)
+  else if (a.height == 2 * lanes<Scalar>)
     subtract_product_of<2>(a, b, begin, end, c);
   else
     subtract_product_of<1>(a, b, begin, end, c);
 }
 
-void factorise_columns_below(const RowPanel& a, const RowPanel& diagonal, int row, int begin, int column) {
-  if (a.height == 3 * lanes)
+template <class Scalar>
+void factorise_columns_below(const RowPanel<Scalar>& a, const RowPanel<Scalar>& diagonal, int row, int begin,
+                             int column) {
+  if (a.height == 3 * lanes<Scalar>)
     columns_below<3>(a, diagonal, row, begin, column);
-  else if (a.height == 2 * lanes)
+  else if (a.height == 2 * lanes<Scalar>)
     columns_below<2>(a, diagonal, row, begin, column);
   else
     columns_below<1>(a, diagonal, row, begin, column);
 }
 
-bool factorise_columns_diagonal(const RowPanel& diagonal, int row, int begin, int column) {
-  if (diagonal.height == 3 * lanes) return diagonal_columns<3>(diagonal, row, begin, column);
-  if (diagonal.height == 2 * lanes) return diagonal_columns<2>(diagonal, row, begin, column);
+template <class Scalar>
+bool factorise_columns_diagonal(const RowPanel<Scalar>& diagonal, int row, int begin, int column) {
+  if (diagonal.height == 3 * lanes<Scalar>) return diagonal_columns<3>(diagonal, row, begin, column);
+  if (diagonal.height == 2 * lanes<Scalar>) return diagonal_columns<2>(diagonal, row, begin, column);
   return diagonal_columns<1>(diagonal, row, begin, column);
 }
 
-void subtract_times(const RowPanel& a, int columns, const double* x, double* y) {
-  if (a.height == 3 * lanes)
+template <class Scalar>
+void subtract_times(const RowPanel<Scalar>& a, int columns, const Scalar* x, Scalar* y) {
+  if (a.height == 3 * lanes<Scalar>)
     subtract_times_of<3>(a, columns, x, y);
-  else if (a.height == 2 * lanes)
+  else if (a.height == 2 * lanes<Scalar>)
     subtract_times_of<2>(a, columns, x, y);
   else
     subtract_times_of<1>(a, columns, x, y);
 }
 
-void subtract_transposed_times(const RowPanel& a, int column, const double* x, double* y) {
-  if (a.height == 3 * lanes)
-    subtract_transposed_times_of<3>(a.column(column), x, y);
-  else if (a.height == 2 * lanes)
-    subtract_transposed_times_of<2>(a.column(column), x, y);
+template <class Scalar>
+void TransposedProduct<Scalar>::add(const RowPanel<Scalar>& a, int column, const Scalar* x) {
+  if (a.height == 3 * lanes<Scalar>)
+    add_transposed_product<3>(a.column(column), x, products_);
+  else if (a.height == 2 * lanes<Scalar>)
+    add_transposed_product<2>(a.column(column), x, products_);
   else
-    subtract_transposed_times_of<1>(a.column(column), x, y);
+    add_transposed_product<1>(a.column(column), x, products_);
 }
 
-void solve_lower(const double* l, int height, int size, double* x) {
-  for (int c = 0; c < size; ++c, l += height) {
-    x[c] *= l[c];
-    for (int r = c + 1; r < size; ++r) x[r] -= l[r] * x[c];
+template <class Scalar>
+void TransposedProduct<Scalar>::subtract_from(Scalar* y) const {
+  for (int c = 0; c < lanes<Scalar>; ++c) y[c] -= sum_of<Scalar>(products_[c]);
+}
+
+template <class Scalar>
+void solve_lower(const RowPanel<Scalar>& a, int column, Scalar* x) {
+  for (int begin = 0; begin < a.height; begin += lanes<Scalar>) {
+    const int end = begin + lanes<Scalar>;
+    for (int c = begin; c < end; ++c) {
+      const Scalar* l = a.column(column + c);
+      x[c] *= l[c];
+      for (int r = c + 1; r < end; ++r) x[r] -= l[r] * x[c];
+    }
+    for (int row = end; row < a.height; row += lanes<Scalar>) {
+      auto& rows = *reinterpret_cast<SimdVector<Scalar>*>(x + row);
+      for (int c = begin; c < end; ++c)
+        rows -= *reinterpret_cast<const SimdVector<Scalar>*>(a.column(column + c) + row) * x[c];
+    }
   }
 }
 
-void solve_lower_transposed(const double* l, int height, int size, double* x) {
-  for (int c = size - 1; c >= 0; --c) {
-    const double* column = l + c * height;
-    for (int r = c + 1; r < size; ++r) x[c] -= column[r] * x[r];
-    x[c] *= column[c];
+template <class Scalar>
+void solve_lower_transposed(const RowPanel<Scalar>& a, int column, Scalar* x) {
+  for (int begin = a.height - lanes<Scalar>; begin >= 0; begin -= lanes<Scalar>) {
+    const int end = begin + lanes<Scalar>;
+    for (int c = begin; c < end; ++c) {
+      const auto* l = reinterpret_cast<const SimdVector<Scalar>*>(a.column(column + c));
+      const auto* rows = reinterpret_cast<const SimdVector<Scalar>*>(x);
+      SimdVector<Scalar> products = {};
+      for (int v = end / lanes<Scalar>; v < a.height / lanes<Scalar>; ++v) products += l[v] * rows[v];
+      x[c] -= sum_of<Scalar>(products);
+    }
+    for (int c = end - 1; c >= begin; --c) {
+      x[c] *= a.column(column + c)[c];
+      for (int r = begin; r < c; ++r) x[r] -= a.column(column + r)[c] * x[c];
+    }
   }
 }
+
+// The scalars for which there are kernels.
+#define DRAPE_KERNELS(Scalar)                                                                             \
+  template void subtract_product(const RowPanel<Scalar>&, const RowPanel<Scalar>&, int, int, Scalar*);    \
+  template void factorise_columns_below(const RowPanel<Scalar>&, const RowPanel<Scalar>&, int, int, int); \
+  template bool factorise_columns_diagonal(const RowPanel<Scalar>&, int, int, int);                       \
+  template void subtract_times(const RowPanel<Scalar>&, int, const Scalar*, Scalar*);                     \
+  template class TransposedProduct<Scalar>;                                                               \
+  template void solve_lower(const RowPanel<Scalar>&, int, Scalar*);                                       \
+  template void solve_lower_transposed(const RowPanel<Scalar>&, int, Scalar*);
+DRAPE_KERNELS(double)
+DRAPE_KERNELS(float)
+#undef DRAPE_KERNELS
 
 }  // namespace drape

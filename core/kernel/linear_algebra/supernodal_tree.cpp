@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/kernel/linear_algebra/supernodal_front.h"
-
 namespace drape {
 namespace {
 
@@ -18,19 +16,19 @@ double work(double pivots, double updates) {
 
 }  // namespace
 
-SupernodalTree::SupernodalTree(std::vector<int> first, AdjacencyList rows)
-    : first_(std::move(first)), rows_(std::move(rows)) {
+SupernodalTree::SupernodalTree(Supernodes supernodes, FrontSizes sizes)
+    : first_(std::move(supernodes.first)), rows_(std::move(supernodes.rows)) {
   find_children();
   panel_.assign(1, 0);
-  for (int s = 0; s < count(); ++s) panel_.push_back(panel_[s] + Front::panel_size(pivots(s), rows_.size(s)));
+  for (int s = 0; s < count(); ++s) panel_.push_back(panel_[s] + sizes.panel(pivots(s), rows_.size(s)));
   cut();
   update_.resize(count());
   for (const Range& r : subtrees_) {
     std::vector<int> part(r.end - r.begin);
     std::iota(part.begin(), part.end(), r.begin);
-    place_updates(part);
+    place_updates(part, sizes);
   }
-  place_updates(top_);
+  place_updates(top_, sizes);
 }
 
 void SupernodalTree::find_children() {
@@ -97,7 +95,7 @@ void SupernodalTree::cut() {
 
 /// Two stacks, for supernodes of even and odd depth: when s is done, in postorder, its children are on top of
 /// one stack, and s goes onto the other.
-void SupernodalTree::place_updates(const std::vector<int>& part) {
+void SupernodalTree::place_updates(const std::vector<int>& part, FrontSizes sizes) {
   std::size_t top[2] = {0, 0}, peak[2] = {0, 0};
   std::vector<int> odd(part.size());  // depth
   const auto index = [&](int s) {     // in the part, or its size
@@ -109,7 +107,7 @@ void SupernodalTree::place_updates(const std::vector<int>& part) {
   for (std::size_t k = 0; k < part.size(); ++k) {
     const int s = part[k], mine = odd[k];
     update_[s] = top[mine];
-    top[mine] += Front::update_size(rows_.size(s));
+    top[mine] += sizes.update(rows_.size(s));
     peak[mine] = std::max(peak[mine], top[mine]);
     for (const int* c = children_.begin(s); c != children_.end(s); ++c)
       if (index(*c) < part.size()) {

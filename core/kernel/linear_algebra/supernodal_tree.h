@@ -3,18 +3,24 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/kernel/linear_algebra/numeric_factor.h"
 #include "core/kernel/mesh/topology.h"
 
 namespace drape {
 
 /// Assembly tree of a supernodal factorisation of a matrix of 3×3 blocks: which vertices are eliminated
-/// together, the order of elimination, and the memory layout. Depends on the pattern only.
+/// together, the order of elimination, and the memory layout. Depends on the pattern and the scalar only.
 class SupernodalTree {
  public:
+  /// Scalars that a front's panel and update matrix take up, by its numbers of vertices.
+  struct FrontSizes {
+    std::size_t (*panel)(int pivots, int updates);
+    std::size_t (*update)(int updates);
+  };
+
   SupernodalTree() = default;
-  /// Supernode s eliminates the positions first[s] … first[s + 1] - 1; below them its columns have the rows
-  /// `rows` of s, ascending. Supernodes are in postorder.
-  SupernodalTree(std::vector<int> first, AdjacencyList rows);
+  /// Supernodes are in postorder.
+  SupernodalTree(Supernodes supernodes, FrontSizes sizes);
 
   int count() const { return static_cast<int>(first_.size()) - 1; }
   int first(int s) const { return first_[s]; }
@@ -34,17 +40,17 @@ class SupernodalTree {
   /// The supernodes above them, ascending.
   const std::vector<int>& top() const { return top_; }
 
-  /// Offset of the panel of s, and size of all panels [doubles].
+  /// Offset of the panel of s, and size of all panels [scalars].
   std::size_t panel(int s) const { return panel_[s]; }
   std::size_t panel_size() const { return panel_.back(); }
-  /// Offset of the update matrix of s, and size of the space that they share [doubles].
+  /// Offset of the update matrix of s, and size of the space that they share [scalars].
   std::size_t update(int s) const { return update_[s]; }
   std::size_t update_size() const { return update_size_; }
 
  private:
   void find_children();
   void cut();
-  void place_updates(const std::vector<int>& part);
+  void place_updates(const std::vector<int>& part, FrontSizes sizes);
 
   std::vector<int> first_;
   AdjacencyList rows_, children_;
