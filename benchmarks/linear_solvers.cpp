@@ -1,6 +1,6 @@
-// newton.linear_solver: drape's supernodal factorisation against CHOLMOD's with the BLAS that is loaded, on
-// the Newton matrix of the finest level of configs/pinned_square.yaml and configs/sphere.yaml, at 25K and 98K
-// vertices, with one thread and with all:
+// newton.linear_solver: drape's supernodal factorisation, in single precision with conjugate gradients and in
+// double precision, and CHOLMOD's with the BLAS that is loaded, on the Newton matrix of the finest level of
+// configs/pinned_square.yaml and configs/sphere.yaml, at 25K and 98K vertices, with one thread and with all:
 //
 //     drape_bench_linear_solvers [RESULT.json]
 //
@@ -175,18 +175,15 @@ class Measurement {
 };
 
 void compare(const System& system, const ordered_json& head, ordered_json& rows) {
-  Measurement supernodal("supernodal", LinearSolver::supernodal), cholmod("cholmod", LinearSolver::cholmod);
-  supernodal.analyse(system);
-  cholmod.analyse(system);
+  Measurement mixed("mixed", LinearSolver::mixed), supernodal("supernodal", LinearSolver::supernodal),
+      cholmod("cholmod", LinearSolver::cholmod);
+  for (Measurement* measurement : {&mixed, &supernodal, &cholmod}) measurement->analyse(system);
   for (const int threads : std::set<int>{1, core_count()}) {
     set_thread_count(threads);
     const int blas_threads = set_blas_threads(threads);
-    supernodal.warm_up(system);
-    cholmod.warm_up(system);
-    for (int i = 0; i < repeats; ++i) {  // in turn: the machine's speed drifts
-      supernodal.round(system, i);
-      cholmod.round(system, i);
-    }
+    for (Measurement* measurement : {&mixed, &supernodal, &cholmod}) measurement->warm_up(system);
+    for (int i = 0; i < repeats; ++i)  // in turn: the machine's speed drifts
+      for (Measurement* measurement : {&mixed, &supernodal, &cholmod}) measurement->round(system, i);
     std::printf("%s, %d vertices, %.1f GFlop, %d threads (BLAS %d)\n",
                 head["scene"].get<std::string>().c_str(), head["vertices"].get<int>(),
                 supernodal.flops() * 1e-9, threads, blas_threads);
@@ -194,8 +191,12 @@ void compare(const System& system, const ordered_json& head, ordered_json& rows)
     row["gflops"] = supernodal.flops() * 1e-9;
     row["threads"] = threads;
     row["blas_threads"] = blas_threads;
+    row["mixed"] = mixed.row(system);
     row["supernodal"] = supernodal.row(system);
     row["cholmod"] = cholmod.row(system);
+    row["mixed_over_supernodal"] = {
+        {"factorisation", mixed.factorisation_seconds() / supernodal.factorisation_seconds()},
+        {"solve", mixed.solve_seconds() / supernodal.solve_seconds()}};
     row["cholmod_over_supernodal"] = {
         {"analysis", cholmod.analysis_seconds / supernodal.analysis_seconds},
         {"factorisation", cholmod.factorisation_seconds() / supernodal.factorisation_seconds()},

@@ -27,6 +27,17 @@ TEST_CASE("Linear solvers share ordering and counts, and differ by round-off", "
   CHECK((y - x).norm() < 1e-12 * x.norm());
   CHECK(y != x);  // two implementations, which add in different orders
 
+  BlockCholesky mixed;
+  mixed.use(LinearSolver::mixed);
+  mixed.analyse(a.pattern, fixed);
+  REQUIRE(mixed.factorise(a, Eigen::VectorXd::Ones(n)));
+  REQUIRE(mixed.solve(b, z));
+  CHECK(mixed.analysis().ordering == supernodal.analysis().ordering);
+  CHECK(mixed.flops() == supernodal.flops());
+  CHECK(z.row(3).isZero(0));
+  CHECK((z - x).norm() < 1e-3 * x.norm());
+  CHECK(z != x);
+
   // A checkpoint of one solver's run can be continued by the other.
   BlockCholesky restored(LinearSolver::cholmod);
   restored.restore(a.pattern, supernodal.analysis());
@@ -52,7 +63,8 @@ contact: shapes
 obstacles: [{name: ball, shape: sphere, radius: 0.15}]
 newton: {force_tolerance: 1e-7}
 methods:
-  supernodal: {type: cascadic}
+  supernodal: {type: cascadic, newton: {linear_solver: supernodal}}
+  mixed: {type: cascadic}
   cholmod: {type: cascadic, newton: {linear_solver: cholmod}}
 )");
   const auto energy = [&] {
@@ -68,9 +80,11 @@ methods:
   const Positions x = s.x();
   const double expected = energy();
 
-  run_method(s, "cholmod");
-  CAPTURE(s.levels.back().message);
-  REQUIRE(has_converged(s.levels.back().outcome));
-  CHECK(energy() == Approx(expected).epsilon(1e-9).margin(1e-10));
-  CHECK(s.x() != x);  // the parameter has chosen the other implementation
+  for (const char* other : {"mixed", "cholmod"}) {
+    run_method(s, other);
+    CAPTURE(other, s.levels.back().message);
+    REQUIRE(has_converged(s.levels.back().outcome));
+    CHECK(energy() == Approx(expected).epsilon(1e-9).margin(1e-10));
+    CHECK(s.x() != x);  // the parameter has chosen the other implementation
+  }
 }

@@ -383,7 +383,7 @@ TEST_CASE("A minimisation resumed at any step continues bit for bit", "[newton]"
     bool checkpoint_due() override { return true; }
     void checkpoint(const NewtonState& state) override { states.push_back(state); }
   };
-  const LinearSolver solver = GENERATE(LinearSolver::supernodal, LinearSolver::cholmod);
+  const LinearSolver solver = GENERATE(LinearSolver::mixed, LinearSolver::supernodal, LinearSolver::cholmod);
   for (const int interval : {1, 3})
     for (const int iterations : {1, 2})
       for (const NewtonForm form : {NewtonForm::quasistatic, NewtonForm::statics}) {

@@ -115,7 +115,7 @@ void fields(A& a, HessianModification::State& s) {
 
 template <class A>
 void fields(A& a, FactorCache::State& s) {
-  a(s.modification, s.pattern, s.analysis, s.age, s.shift, s.values);
+  a(s.modification, s.pattern, s.analysis, s.age, s.updates_in_double, s.mixed, s.shift, s.values);
 }
 
 template <class A>
@@ -188,7 +188,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 14;
+constexpr std::uint32_t format = 15;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

@@ -44,6 +44,13 @@ struct SymbolicAnalysis : CholmodContext {
 /// as it did there: computing a new one takes longer than several factorisations.
 constexpr double max_flops_growth = 1.5;
 
+/// Conjugate gradients with a factor in single precision: relative residual at which they end, commonly after
+/// two iterations, and iterations after which the factor counts as of no use. A residual of 1e-3 takes one
+/// iteration and Newton no more of its own, but keeps less of a distance to soft modes, of which the residual
+/// shows little.
+constexpr double mixed_tolerance = 1e-5;
+constexpr int mixed_iterations = 12;
+
 /// The ordering of vertices as indices into `free`.
 std::vector<int> indices_in(const std::vector<int>& free, const std::vector<int>& ordering, int vertices) {
   std::vector<int> index(vertices, -1), indices;
@@ -90,12 +97,22 @@ Supernodes supernodes_of(const cholmod_factor& factor) {
 
 std::unique_ptr<NumericFactor> make_factor(LinearSolver solver) {
   if (solver == LinearSolver::cholmod) return make_cholmod_factor();
+  if (solver == LinearSolver::mixed) return std::make_unique<SupernodalFactor<float>>();
   return std::make_unique<SupernodalFactor<double>>();
 }
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(LinearSolver solver) : factor_(make_factor(solver)) {}
+BlockCholesky::BlockCholesky(LinearSolver solver) : solver_(solver), factor_(make_factor(solver)) {}
+
+void BlockCholesky::use(LinearSolver solver) {
+  if (solver == solver_) return;
+  factor_.reset();  // first, so that two factors never take up memory together
+  factor_ = make_factor(solver);
+  solver_ = solver;
+  has_factor_ = false;
+  if (pattern_ && !ordering_.empty()) set_structure();
+}
 
 void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const std::vector<char>& fixed) {
   if (pattern == pattern_ && fixed == fixed_) return;
@@ -148,22 +165,49 @@ void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flop
       entries_ += column;
       flops_ += column * column;
     }
+  supernodes_ = supernodes_of(*c.factor);
+  set_structure();
+}
+
+void BlockCholesky::set_structure() {
   try {
-    factor_->set_structure(*pattern_, ordering_, supernodes_of(*c.factor));
+    factor_->set_structure(*pattern_, ordering_, supernodes_);
   } catch (const std::bad_alloc&) {
-    throw std::runtime_error("sparse Cholesky: no memory for a factor of " + three_digits(entries_ * 8e-9) +
+    const double bytes = entries_ * (solver_ == LinearSolver::mixed ? 4 : 8);
+    throw std::runtime_error("sparse Cholesky: no memory for a factor of " + three_digits(bytes * 1e-9) +
                              " GB; use a coarser mesh");
   }
 }
 
 bool BlockCholesky::factorise(const BlockMatrix& matrix, const Eigen::VectorXd& shift) {
+  if (solver_ == LinearSolver::mixed) matrix_ = &matrix, shift_ = shift;
   return has_factor_ = ordering_.empty() || factor_->factorise(matrix, shift);
 }
 
-void BlockCholesky::solve(const Positions& right_hand_side, Positions& solution) {
-  solution.setZero(right_hand_side.rows(), 3);
-  if (ordering_.empty()) return;
+bool BlockCholesky::solve(const Positions& right_hand_side, Positions& solution) {
+  if (ordering_.empty()) {
+    solution.setZero(right_hand_side.rows(), 3);
+    return true;
+  }
   if (!has_factor_) throw std::logic_error("sparse Cholesky: solve before a successful factorise");
+  if (solver_ != LinearSolver::mixed) {
+    apply_factor(right_hand_side, solution);
+    return true;
+  }
+  const auto end = gradients_.solve(
+      *matrix_, shift_, fixed_, right_hand_side,
+      [&](const Positions& r, Positions& z) {
+        // To numbers of the order of 1, so that none is lost in single precision.
+        const double scale = r.cwiseAbs().maxCoeff();
+        apply_factor(r / scale, z);
+        z *= scale;
+      },
+      mixed_tolerance, mixed_iterations, solution);
+  return end == ConjugateGradients::End::converged;
+}
+
+void BlockCholesky::apply_factor(const Positions& right_hand_side, Positions& solution) {
+  solution.setZero(right_hand_side.rows(), 3);
   x_.resize(unknowns());
   for (std::size_t p = 0; p < ordering_.size(); ++p)
     for (int c = 0; c < 3; ++c) x_[3 * p + c] = right_hand_side(ordering_[p], c);

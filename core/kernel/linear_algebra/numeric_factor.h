@@ -9,9 +9,12 @@
 
 namespace drape {
 
-/// The implementations of NumericFactor: drape's own SupernodalFactor, and CHOLMOD's with the BLAS and LAPACK
-/// that the machine has.
-enum class LinearSolver { supernodal, cholmod };
+/// How BlockCholesky solves.
+enum class LinearSolver {
+  mixed,       ///< SupernodalFactor in single precision as preconditioner of conjugate gradients in double
+  supernodal,  ///< SupernodalFactor in double precision
+  cholmod      ///< CHOLMOD's factor, with the BLAS and LAPACK that the machine has
+};
 
 /// Supernodes of the Cholesky factor of a graph of vertices, in postorder.
 struct Supernodes {

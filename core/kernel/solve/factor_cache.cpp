@@ -4,15 +4,59 @@
 
 namespace drape {
 
+namespace {
+
+/// Updates of the Hessian for which factors stay in double precision after one in single precision failed
+/// with the whole projection.
+constexpr int updates_in_double = 10;
+
+}  // namespace
+
 FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters)
     : iterate_(iterate),
       interval_(parameters.hessian_update_interval),
+      direct_(parameters.linear_solver == LinearSolver::cholmod ? LinearSolver::cholmod
+                                                                : LinearSolver::supernodal),
+      mixed_(parameters.linear_solver == LinearSolver::mixed && parameters.form == NewtonForm::quasistatic),
       modification_(parameters),
-      cholesky_(parameters.linear_solver) {}
+      cholesky_(mixed_ ? LinearSolver::mixed : direct_) {}
+
+bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
+                        const Positions& right_hand_side, Positions& solution) {
+  if (has_fresh_factor() && solve_with_factor(right_hand_side, solution)) return true;
+  age_ = 0;
+  const bool in_double = !mixed_ || updates_in_double_ > 0;
+  if (updates_in_double_ > 0) --updates_in_double_;
+  cholesky_.use(in_double ? direct_ : LinearSolver::mixed);
+  bool has_whole_projection = false;
+  fault_ = modification_.factorise(
+      [&](Projection projection) -> const BlockMatrix& {
+        has_whole_projection = projection.kind == Projection::none || projection.blend == 1;
+        return iterate_.hessian(projection);
+      },
+      [&](const BlockMatrix& matrix, double shift) {
+        const auto serves = [&] {
+          return factorise(matrix, fixed, mass_shift + shift) && solve_with_factor(right_hand_side, solution);
+        };
+        if (serves()) return true;
+        if (cholesky_.solver() != LinearSolver::mixed || !has_whole_projection) return false;
+        updates_in_double_ = updates_in_double;
+        cholesky_.use(direct_);
+        return serves();
+      },
+      fixed, step_length == 1);
+  return fault_.empty();
+}
+
+bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions& solution) {
+  PhaseTimer t(iterate_.result().seconds_by_phase, "solve");
+  return cholesky_.solve(right_hand_side, solution);
+}
 
 bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
-  if (has_fresh_factor()) return true;
+  if (has_fresh_factor() && cholesky_.solver() != LinearSolver::mixed) return true;
   age_ = 0;
+  cholesky_.use(direct_);
   fault_ = modification_.factorise(
       [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); },
       [&](const BlockMatrix& matrix, double shift) { return factorise(matrix, fixed, mass_shift + shift); },
@@ -57,7 +101,9 @@ FactorCache::State FactorCache::state() const {
   s.pattern = iterate_.objective().pattern_state();
   s.analysis = cholesky_.analysis();
   s.age = age_;
+  s.updates_in_double = updates_in_double_;
   if (has_fresh_factor()) {
+    s.mixed = cholesky_.solver() == LinearSolver::mixed;
     s.shift = shift_;
     s.values = factored_->values;
   }
@@ -67,6 +113,7 @@ FactorCache::State FactorCache::state() const {
 void FactorCache::restore(const State& s) {
   modification_.restore(s.modification);
   age_ = s.age;
+  updates_in_double_ = s.updates_in_double;
   if (s.analysis.count == 0) return;
   const std::shared_ptr<const BlockPattern> pattern = iterate_.objective().restore(s.pattern, iterate_.x());
   cholesky_.restore(pattern, s.analysis);
@@ -75,9 +122,10 @@ void FactorCache::restore(const State& s) {
   if (s.values.size() != matrix.values.size())
     throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
   matrix.values = s.values;
-  cholesky_.factorise(matrix, s.shift * iterate_.model().masses());
   restored_ = std::move(matrix);
   factored_ = &restored_;
+  cholesky_.use(s.mixed ? LinearSolver::mixed : direct_);
+  cholesky_.factorise(restored_, s.shift * iterate_.model().masses());
   shift_ = s.shift;
 }
 

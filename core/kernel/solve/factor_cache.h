@@ -11,14 +11,21 @@ namespace drape {
 
 /// The factorised Newton matrix of a minimisation. One factor serves `hessian_update_interval` iterations,
 /// unless a shortened step shows that it is stale.
+///
+/// With LinearSolver::mixed, a factor in single precision that gives no solution counts as that of a matrix
+/// which is not positive definite, so more of the projection is blended in. If the whole does not suffice,
+/// the matrix is ill-conditioned, and factors are in double precision for some iterations. The static form,
+/// whose matrix has no inertia and may be singular, always has them so.
 class FactorCache {
  public:
   struct State {
     HessianModification::State modification;
     Objective::PatternState pattern;
     BlockCholesky::Analysis analysis;
-    int age = 0;  ///< iterations since the Hessian was updated
+    int age = 0;                ///< iterations since the Hessian was updated
+    int updates_in_double = 0;  ///< further updates of the Hessian with factors in double precision
     // A factor that later iterations reuse; without values there is none.
+    bool mixed = false;          ///< its LinearSolver was `mixed`
     double shift = 0;            ///< multiple of the masses that was added to the matrix [1/s²]
     std::vector<double> values;  ///< blocks of the factorised matrix
   };
@@ -29,14 +36,18 @@ class FactorCache {
   /// Refers to the iterate. Its result counts the factorisations, their operations and seconds.
   FactorCache(Iterate& iterate, const NewtonParameters& parameters);
 
-  /// If the present factor is stale, factorises the Hessian at the iterate plus `mass_shift` [1/s²] times the
-  /// masses, without the rows and columns of fixed vertices (one flag a vertex). `step_length` is the last α.
-  /// Returns false if that fails; fault() then says why.
+  /// Solves with the Newton matrix; n×3 right-hand side [N] and solution [m], whose fixed rows are zero. If
+  /// the present factor is stale, first factorises the Hessian at the iterate plus `mass_shift` [1/s²] times
+  /// the masses, without the rows and columns of fixed vertices (one flag a vertex). `step_length` is the
+  /// last α. Returns false if that fails; fault() then says why.
+  bool solve(const std::vector<char>& fixed, double mass_shift, double step_length,
+             const Positions& right_hand_side, Positions& solution);
+  /// Factorises in double precision, as solve() would, a matrix that any number of right-hand sides follow.
   bool update(const std::vector<char>& fixed, double mass_shift, double step_length);
   /// Why the last factorisation failed; empty if it did not.
   const std::string& fault() const { return fault_; }
 
-  /// Solves with the factor; n×3 right-hand side [N] and solution [m], whose fixed rows are zero.
+  /// Solves with the factor of update().
   void solve(const Positions& right_hand_side, Positions& solution) {
     cholesky_.solve(right_hand_side, solution);
   }
@@ -62,15 +73,19 @@ class FactorCache {
   bool has_fresh_factor() const { return cholesky_.has_factor() && age_ < interval_; }
   void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
   bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
+  bool solve_with_factor(const Positions& right_hand_side, Positions& solution);
 
   Iterate& iterate_;
   const int interval_;
+  const LinearSolver direct_;  // for matrices of which nothing is known
+  const bool mixed_;
   HessianModification modification_;
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's matrix, or restored_
   BlockMatrix restored_;
   double shift_ = 0;
   int age_ = 0;
+  int updates_in_double_ = 0;
   std::string fault_;
 };
 

@@ -74,10 +74,16 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .description("iterations that share one Hessian and its factor")
       .source("departure from the paper");
   d.add_choice("linear_solver", &NewtonParameters::linear_solver,
-               {{"supernodal", LinearSolver::supernodal}, {"cholmod", LinearSolver::cholmod}})
+               {{"mixed", LinearSolver::mixed},
+                {"supernodal", LinearSolver::supernodal},
+                {"cholmod", LinearSolver::cholmod}})
       .description(
-          "numeric Cholesky factorisation: drape's own, which is parallel and gives the same bits with any "
-          "number of threads, or CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
+          "mixed: drape's Cholesky factorisation in single precision, as preconditioner of conjugate "
+          "gradients "
+          "in double precision; the static form, ill-conditioned matrices and moved pins take the next. "
+          "supernodal: the same in double precision. Both are parallel and give the same bits with any "
+          "number "
+          "of threads. cholmod: CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
 }
 

@@ -101,13 +101,10 @@ bool NewtonStep::iterate() {
   LevelResult& result = iterate_.result();
   while (true) {
     step_.evaluate(iterate_, controller_.inverse_h2());
-    if (!factor_.update(iterate_.fixed(), controller_.mass_shift(), line_search_.step_length()))
+    if (!factor_.solve(iterate_.fixed(), controller_.mass_shift(), line_search_.step_length(),
+                       step_.gradient(), direction_))
       return fail(factor_.fault());
-    {
-      PhaseTimer t(result.seconds_by_phase, "solve");
-      factor_.solve(step_.gradient(), direction_);
-      direction_ *= -1;
-    }
+    direction_ *= -1;
     if (line_search_.search(iterate_, step_, direction_)) break;
     if (is_solved_to(round_off_fraction)) {
       line_search_.accept_zero_step();
