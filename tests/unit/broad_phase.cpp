@@ -124,6 +124,47 @@ TEST_CASE("broad phase: every kind finds the pairs of a brute-force search") {
     }
 }
 
+TEST_CASE("broad phase: boxes of primitives that share a vertex are no pair") {
+  std::mt19937 random(9);
+  const int count = 700, vertex_count = 90;
+  std::uniform_int_distribution<int> vertex(0, vertex_count - 1);
+  for (const int size : {1, 2, 3}) {
+    Stencils vertices(count, size), others(vertex_count, 1);
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < size; ++k) vertices(i, k) = vertex(random);
+    for (int i = 0; i < vertex_count; ++i) others(i, 0) = i;
+    const std::vector<Box> boxes = random_boxes(count, 0.6, 4), points = random_boxes(vertex_count, 0.3, 6);
+    const auto share = [](const auto& a, const auto& b) {
+      for (const int v : a)
+        for (const int w : b)
+          if (v == w) return true;
+      return false;
+    };
+    AdjacencyList own, against;
+    own.start = against.start = {0};
+    for (int i = 0; i < count; ++i) {
+      for (int j = i + 1; j < count; ++j)
+        if (boxes[i].overlaps(boxes[j]) && !share(vertices.row(i), vertices.row(j))) own.items.push_back(j);
+      for (int j = 0; j < vertex_count; ++j)
+        if (boxes[i].overlaps(points[j]) && !share(vertices.row(i), others.row(j)))
+          against.items.push_back(j);
+      own.start.push_back(static_cast<int>(own.items.size()));
+      against.start.push_back(static_cast<int>(against.items.size()));
+    }
+    REQUIRE(own.items.size() < brute_force(boxes, boxes, true).items.size());
+    REQUIRE(against.items.size() > 100);
+    for (const BroadPhaseKind kind : kinds) {
+      const auto phase = make_broad_phase(kind, vertices), other = make_broad_phase(kind, others);
+      phase->update(boxes);
+      other->update(points);
+      check_same(pairs_of(*phase), own);
+      AdjacencyList found;
+      REQUIRE(phase->overlaps(*other, unlimited, found));
+      check_same(found, against);
+    }
+  }
+}
+
 TEST_CASE("broad phase: degenerate, equal and touching boxes") {
   const Vector p(0.25, 0.5, 0.75);
   std::vector<Box> boxes(20, Box::around(p, p, 0));  // equal: all pairs

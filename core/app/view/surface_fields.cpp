@@ -33,8 +33,8 @@ void lower_to_distance(Eigen::VectorXd& gap, const BoxTree& points, const Positi
   if (triangles.rows() == 0) return;
   BoxTree tree;
   tree.build(triangle_boxes(y, triangles, range));
-  for (int group = 0; group < points.leaf_groups(); ++group)
-    points.overlaps(tree, group, [&](int i, int t) {
+  for (int run = 0; run < points.runs(); ++run)
+    points.overlaps(tree, run, [&](int i, int t) {
       if (!counts(i, t)) return;
       const auto v = triangles.row(t);
       const Eigen::Vector3d a = y.row(v[0]), b = y.row(v[1]), c = y.row(v[2]), p = x.row(i);

@@ -13,11 +13,21 @@ constexpr int groups_per_task = 512;
 /// Orders the boxes by median splits; every aligned run of 8, 64, 512, … boxes becomes compact.
 class MedianSplit {
  public:
-  MedianSplit(const std::vector<Box>& boxes, std::vector<int>& order)
-      : centres_(boxes.size()), order_(order) {
-    for (std::size_t i = 0; i < boxes.size(); ++i)
-      for (int k = 0; k < 3; ++k) centres_[i][k] = 0.5F * (boxes[i].lower[k] + boxes[i].upper[k]);
+  explicit MedianSplit(const std::vector<Box>& boxes) : items_(boxes.size()) {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      items_[i].index = static_cast<int>(i);
+      for (int k = 0; k < 3; ++k) items_[i].centre[k] = 0.5F * (boxes[i].lower[k] + boxes[i].upper[k]);
+    }
+    sort(0, static_cast<int>(items_.size()));
   }
+
+  int index(int i) const { return items_[i].index; }
+
+ private:
+  struct Item {
+    float centre[3];
+    int index;
+  };
 
   void sort(int begin, int end) {
     const int size = end - begin;
@@ -26,28 +36,28 @@ class MedianSplit {
     while (size > 8LL * run) run *= 8;
     const int middle = begin + ((size + run - 1) / run + 1) / 2 * run;
     const int axis = longest_axis(begin, end);
-    std::nth_element(
-        order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int a, int b) {
-          return centres_[a][axis] != centres_[b][axis] ? centres_[a][axis] < centres_[b][axis] : a < b;
-        });
+    std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
+                     [axis](const Item& a, const Item& b) {
+                       return a.centre[axis] != b.centre[axis] ? a.centre[axis] < b.centre[axis]
+                                                               : a.index < b.index;
+                     });
     sort(begin, middle);
     sort(middle, end);
   }
 
- private:
   int longest_axis(int begin, int end) const {
-    Eigen::Array3f low = centres_[order_[begin]], high = low;
+    const auto centre = [&](int i) { return Eigen::Array3f::Map(items_[i].centre); };
+    Eigen::Array3f low = centre(begin), high = low;
     for (int i = begin + 1; i < end; ++i) {
-      low = low.min(centres_[order_[i]]);
-      high = high.max(centres_[order_[i]]);
+      low = low.min(centre(i));
+      high = high.max(centre(i));
     }
     int axis = 0;
     (high - low).maxCoeff(&axis);
     return axis;
   }
 
-  std::vector<Eigen::Array3f> centres_;
-  std::vector<int>& order_;
+  std::vector<Item> items_;
 };
 
 }  // namespace
@@ -63,15 +73,6 @@ void BoxGroup::set(int lane, const Box& box) {
   }
 }
 
-Box BoxGroup::box(int lane) const {
-  Box b;
-  for (int k = 0; k < 3; ++k) {
-    b.lower[k] = lower[k][lane];
-    b.upper[k] = upper[k][lane];
-  }
-  return b;
-}
-
 Box BoxGroup::bounds() const {
   Box b;
   for (int k = 0; k < 3; ++k) {
@@ -81,13 +82,18 @@ Box BoxGroup::bounds() const {
   return b;
 }
 
-void BoxTree::build(const std::vector<Box>& boxes) {
+void BoxTree::build(const std::vector<Box>& boxes, const Stencils& vertices) {
+  const MedianSplit split(boxes);
   order_.resize(boxes.size());
-  std::iota(order_.begin(), order_.end(), 0);
-  MedianSplit(boxes, order_).sort(0, size());
+  for (int i = 0; i < size(); ++i) order_[i] = split.index(i);
   levels_.clear();
   for (int groups = leaf_groups(); groups > 0; groups = groups > 1 ? (groups + 7) / 8 : 0)
     levels_.emplace_back(groups);
+  vertex_count_ = static_cast<int>(vertices.cols());
+  vertices_.assign(vertex_count_ > 0 ? leaf_groups() : 0, {});
+  for (int leaf = 0; leaf < size(); ++leaf)
+    for (int c = 0; c < vertex_count_; ++c)
+      vertices_[leaf / 8].vertices[c][leaf % 8] = vertices(order_[leaf], c);
   refit(boxes);
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/kernel/contact/box.h"
+#include "core/kernel/linear_algebra/block_matrix.h"
 #include "core/kernel/mesh/topology.h"
 
 namespace drape {
@@ -14,7 +15,7 @@ enum class BroadPhaseKind {
   fcl   ///< FCL's BVHModel, refitted too
 };
 
-/// Finds the overlapping pairs of closed boxes.
+/// Finds the overlapping pairs of closed boxes, except for boxes of primitives that share a vertex.
 class BroadPhase {
  public:
   virtual ~BroadPhase() = default;
@@ -32,7 +33,8 @@ class BroadPhase {
   virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
 };
 
-/// An empty broad phase of this kind.
-std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind);
+/// An empty broad phase of this kind. Row i of `vertices`, if it has any, names the vertices of the primitive
+/// in box i, at most three; the number of boxes is then that of the rows.
+std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind, const Stencils& vertices = {});
 
 }  // namespace drape

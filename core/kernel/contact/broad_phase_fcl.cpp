@@ -10,6 +10,8 @@ using Model = fcl::BVHModel<fcl::AABBd>;
 
 class FclBroadPhase final : public BroadPhase {
  public:
+  explicit FclBroadPhase(const Stencils& vertices) : vertices_(vertices) {}
+
   void update(const std::vector<Box>& boxes) override {
     // FCL refits triangles only: a triangle with the box's corners has the same bounds.
     std::vector<fcl::Vector3d> corners(3 * boxes.size());
@@ -42,20 +44,20 @@ class FclBroadPhase final : public BroadPhase {
  private:
   bool collect(const FclBroadPhase& other, long limit, AdjacencyList& pairs) const {
     std::vector<IndexPairs> lists(1);
-    if (size_ > 0 && other.size_ > 0 && !search(*other.model_, limit, lists[0])) return false;
+    if (size_ > 0 && other.size_ > 0 && !search(other, limit, lists[0])) return false;
     pairs = rows_of(lists, static_cast<int>(size_), static_cast<int>(other.size_));
     return true;
   }
 
   /// Traverses both trees top-down. A node against itself becomes its children against themselves and each
   /// other.
-  bool search(const Model& other, long limit, IndexPairs& list) const {
-    const bool self = &other == model_.get();
+  bool search(const FclBroadPhase& other, long limit, IndexPairs& list) const {
+    const bool self = &other == this;
     std::vector<std::pair<int, int>> stack{{0, 0}};
     while (!stack.empty()) {
       const auto [at, other_at] = stack.back();
       stack.pop_back();
-      const auto &node = model_->getBV(at), &other_node = other.getBV(other_at);
+      const auto &node = model_->getBV(at), &other_node = other.model_->getBV(other_at);
       if (self && at == other_at) {
         if (node.isLeaf()) continue;
         stack.emplace_back(node.leftChild(), node.leftChild());
@@ -65,6 +67,7 @@ class FclBroadPhase final : public BroadPhase {
         continue;
       } else if (node.isLeaf() && other_node.isLeaf()) {
         const int i = node.primitiveId(), j = other_node.primitiveId();
+        if (share_vertex(i, other, j)) continue;
         list.emplace_back(self ? std::min(i, j) : i, self ? std::max(i, j) : j);
         if (static_cast<long>(list.size()) > limit) return false;
       } else if (other_node.isLeaf() || (!node.isLeaf() && node.bv.size() > other_node.bv.size())) {
@@ -78,12 +81,22 @@ class FclBroadPhase final : public BroadPhase {
     return true;
   }
 
+  bool share_vertex(int i, const FclBroadPhase& other, int j) const {
+    for (Eigen::Index a = 0; a < vertices_.cols(); ++a)
+      for (Eigen::Index b = 0; b < other.vertices_.cols(); ++b)
+        if (vertices_(i, a) == other.vertices_(j, b)) return true;
+    return false;
+  }
+
+  Stencils vertices_;
   std::size_t size_ = 0;
   std::unique_ptr<Model> model_;
 };
 
 }  // namespace
 
-std::unique_ptr<BroadPhase> make_fcl_broad_phase() { return std::make_unique<FclBroadPhase>(); }
+std::unique_ptr<BroadPhase> make_fcl_broad_phase(const Stencils& vertices) {
+  return std::make_unique<FclBroadPhase>(vertices);
+}
 
 }  // namespace drape

@@ -9,7 +9,7 @@ namespace drape {
 
 // Shared by the implementations of BroadPhase.
 
-std::unique_ptr<BroadPhase> make_fcl_broad_phase();
+std::unique_ptr<BroadPhase> make_fcl_broad_phase(const Stencils& vertices);
 
 using IndexPairs = std::vector<std::pair<int, int>>;
 
