@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "core/kernel/contact/barrier.h"
+#include "core/kernel/contact/candidate_pairs.h"
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/linear_algebra/parallel.h"
 
@@ -13,50 +13,11 @@ namespace {
 
 constexpr int rows_per_task = 256;
 
-/// Whether a pair can come within d̂: a bound from its distance and the relative motion of its primitives.
-bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
-  const PairPositions at = positions_of(pair, motion.x0, motion.obstacles0);
-  PairPositions displacement = positions_of(pair, motion.x1, motion.obstacles1) - at;
-  displacement.colwise() -= Eigen::Vector3d(displacement.rowwise().mean());
-  double largest[2] = {0, 0};
-  const int first_end = first_primitive_size(pair.kind);
-  for (int k = 0; k < 4; ++k)
-    largest[k >= first_end] = std::max(largest[k >= first_end], displacement.col(k).squaredNorm());
-  // The factor covers round-off.
-  const double reach = (motion.dhat + std::sqrt(largest[0]) + std::sqrt(largest[1])) * (1 + 1e-12);
-  if (box_distance(pair.kind, at) > reach) return false;
-  return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
-}
-
-bool contains(const Triangles& triangles, int t, int v) {
-  return triangles(t, 0) == v || triangles(t, 1) == v || triangles(t, 2) == v;
-}
-
-bool share_vertex(const Surface& surface, int e, int f) {
-  const auto a = surface.edges.row(e), b = surface.edges.row(f);
-  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
-}
-
 /// One of the two surfaces of a search.
 struct Side {
   const Surface& surface;
   const SweptBoxes& boxes;
-  int first_vertex;  ///< index of its vertex 0 in pairs
-
-  int vertex(int v) const { return first_vertex + v; }
 };
-
-ContactPair vertex_triangle(const Side& a, int v, const Side& b, int t) {
-  const auto w = b.surface.triangles.row(t);
-  return {{a.vertex(v), b.vertex(w[0]), b.vertex(w[1]), b.vertex(w[2])}, PairKind::point_triangle};
-}
-
-ContactPair edge_edge(const Side& a, int e, const Side& b, int f) {
-  const auto v = a.surface.edges.row(e), w = b.surface.edges.row(f);
-  ContactPair pair{{a.vertex(v[0]), a.vertex(v[1]), b.vertex(w[0]), b.vertex(w[1])}, PairKind::edge_edge};
-  pair.mollifier = mollifier_threshold * a.surface.edge_length_squared[e] * b.surface.edge_length_squared[f];
-  return pair;
-}
 
 /// Calls found(v) for the vertices v that a's triangle s represents and whose boxes overlap b's triangle t.
 template <class Found>
@@ -73,11 +34,11 @@ void represented_edges(const Side& a, int s, const Side& b, int t, const Found& 
   for (int k = 0; k < 3; ++k) {
     if (!a.surface.represents_edge(s, k)) continue;
     const int e = a.surface.triangle_edges(s, k);
-    const Box box = a.boxes.edge(a.surface, e);
+    const Box& box = a.boxes.edges[e];
     if (!box.overlaps(b.boxes.triangles[t])) continue;
     for (int m = 0; m < 3; ++m)
       if (const int f = b.surface.triangle_edges(t, m);
-          b.surface.represents_edge(t, m) && box.overlaps(b.boxes.edge(b.surface, f)))
+          b.surface.represents_edge(t, m) && box.overlaps(b.boxes.edges[f]))
         found(e, f);
   }
 }
@@ -116,27 +77,18 @@ double protrusion_factor(double sagitta, double dhat) { return std::min(1.0, 8 *
 
 }  // namespace
 
-bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows,
-                     const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found) {
-  const Side side{cloth, boxes, 0};
-  return collect(rows, limit, found, [&](int s, int t, BroadPhasePairs& list) {
-    const auto add = [&](ContactPair pair, double weight) {
-      if (!may_come_within_dhat(pair, motion)) return;
-      pair.weight = weight;
-      pair.dhat = motion.dhat;
-      pair.friction = friction;
-      list.pairs.push_back(pair);
-    };
-    for (const auto& [a, b] : {std::pair(s, t), std::pair(t, s)})
-      represented_vertices(side, a, side, b, [&](int v) {
-        if (!contains(cloth.triangles, b, v))
-          add(vertex_triangle(side, v, side, b), 0.5 * cloth.vertex_area[v]);
-      });
-    represented_edges(side, s, side, t, [&](int e, int f) {
-      if (!share_vertex(cloth, e, f))
-        add(edge_edge(side, e, side, f), 0.25 * std::min(cloth.edge_area[e], cloth.edge_area[f]));
-    });
-  });
+bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
+  const PairPositions at = positions_of(pair, motion.x0, motion.obstacles0);
+  PairPositions displacement = positions_of(pair, motion.x1, motion.obstacles1) - at;
+  displacement.colwise() -= Eigen::Vector3d(displacement.rowwise().mean());
+  double largest[2] = {0, 0};
+  const int first_end = first_primitive_size(pair.kind);
+  for (int k = 0; k < 4; ++k)
+    largest[k >= first_end] = std::max(largest[k >= first_end], displacement.col(k).squaredNorm());
+  // The factor covers round-off.
+  const double reach = (motion.dhat + std::sqrt(largest[0]) + std::sqrt(largest[1])) * (1 + 1e-12);
+  if (box_distance(pair.kind, at) > reach) return false;
+  return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
 }
 
 bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
@@ -144,7 +96,8 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
                          const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found) {
   const Surface& other = obstacles.surface;
   const Dihedrals& dihedrals = obstacles.dihedrals;
-  const Side own{cloth, boxes, 0}, obstacle{other, obstacle_boxes, static_cast<int>(motion.x0.rows())};
+  const Side own{cloth, boxes}, obstacle{other, obstacle_boxes};
+  const auto first_other = static_cast<int>(motion.x0.rows());
   return collect(rows, limit, found, [&](int s, int t, BroadPhasePairs& list) {
     const auto add = [&](ContactPair pair, double weight) {
       if (!may_come_within_dhat(pair, motion)) return false;
@@ -156,18 +109,18 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
       return true;
     };
     represented_vertices(own, s, obstacle, t, [&](int v) {
-      if (add(vertex_triangle(own, v, obstacle, t), 0)) list.vertex_triangles.push_back({v, t});
+      if (add(vertex_triangle(0, v, other, first_other, t), 0)) list.vertex_triangles.push_back({v, t});
     });
     represented_vertices(obstacle, t, own, s, [&](int v) {
       // The side of an equilateral triangle of the same area.
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
-      add(vertex_triangle(obstacle, v, own, s),
+      add(vertex_triangle(first_other, v, cloth, 0, s),
           0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
               protrusion_factor(dihedrals.vertex_sagitta(v, length), motion.dhat));
     });
     represented_edges(own, s, obstacle, t, [&](int e, int f) {
       const double length = std::sqrt(cloth.edge_length_squared[e]);
-      ContactPair pair = edge_edge(own, e, obstacle, f);
+      ContactPair pair = edge_edge(cloth, 0, e, other, first_other, f);
       pair.at_rim = dihedrals.edge_is_rim[f] != 0;
       add(pair, 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
                     protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));

@@ -31,14 +31,16 @@ struct BroadPhasePairs {
   }
 };
 
-// Both append to `found` the pairs of primitives that may come within d̂ during the motion, from rows of
-// triangles whose swept boxes overlap. The order depends on the rows alone. They return false once `found`
-// has more than `limit` pairs.
+/// Numbers of pairs: of overlapping boxes, and of primitives that may come within d̂.
+struct PairCounts {
+  long boxes = 0, primitives = 0;
+  bool operator==(const PairCounts&) const = default;
+};
 
-/// Vertex-triangle and edge-edge pairs of the cloth that share no vertex.
-bool find_self_pairs(const Surface& cloth, const SweptBoxes& boxes, const AdjacencyList& rows,
-                     const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found);
-
+/// Appends to `found` the pairs of primitives that may come within d̂ during the motion, from rows of
+/// triangles whose swept boxes overlap. The order depends on the rows alone. Returns false once `found` has
+/// more than `limit` pairs.
+///
 /// Cloth vertices against obstacle triangles, obstacle vertices against cloth triangles, edges against edges.
 /// The first have weight 0 as pairs: their barrier is that of the nearest features. The weight of the others
 /// is reduced where the obstacle protrudes between its vertices by less than d̂ / 8, to 0 where it is flat:

@@ -21,7 +21,8 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
   s.triangles = rest.triangles;
   s.triangle_edges = topology.triangle_edges;
   s.edges = topology.edges;
-  s.representative.assign(rest.triangles.rows(), 0);
+  s.vertex_corner.assign(rest.vertices.rows(), -1);
+  s.edge_corner.assign(s.edges.rows(), -1);
   s.vertex_area.setZero(rest.vertices.rows());
   s.edge_area.setZero(s.edges.rows());
   s.triangle_area.resize(rest.triangles.rows());
@@ -32,8 +33,8 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
       const int v = s.triangles(t, k), e = s.triangle_edges(t, k);
       s.vertex_area[v] += s.triangle_area[t] / 3;
       s.edge_area[e] += s.triangle_area[t] / 3;
-      if (*topology.vertex_triangles.begin(v) == t) s.representative[t] |= static_cast<char>(1 << k);
-      if (topology.edge_triangles(e, 0) == t) s.representative[t] |= static_cast<char>(1 << (3 + k));
+      if (*topology.vertex_triangles.begin(v) == t) s.vertex_corner[v] = 3 * t + k;
+      if (topology.edge_triangles(e, 0) == t) s.edge_corner[e] = 3 * t + k;
     }
   }
   s.edge_length_squared.resize(s.edges.rows());
@@ -44,11 +45,13 @@ Surface Surface::of(const TriangleMesh& rest, const Topology& topology) {
 }
 
 void Surface::append(const Surface& other) {
-  const int n = static_cast<int>(vertex_area.size()), e = static_cast<int>(edges.rows());
+  const int n = static_cast<int>(vertex_area.size()), e = static_cast<int>(edges.rows()),
+            t = triangle_count();
   append_rows(triangles, Triangles(other.triangles.array() + n));
   append_rows(triangle_edges, Triangles(other.triangle_edges.array() + e));
   append_rows(edges, decltype(edges)(other.edges.array() + n));
-  representative.insert(representative.end(), other.representative.begin(), other.representative.end());
+  for (const int corner : other.vertex_corner) vertex_corner.push_back(3 * t + corner);
+  for (const int corner : other.edge_corner) edge_corner.push_back(3 * t + corner);
   append_rows(vertex_area, other.vertex_area);
   append_rows(edge_area, other.edge_area);
   append_rows(triangle_area, other.triangle_area);
@@ -57,9 +60,16 @@ void Surface::append(const Surface& other) {
 
 void SweptBoxes::update(const Surface& surface, const Positions& x0, const Positions& x1, double margin) {
   vertices.resize(x0.rows());
+  edges.resize(surface.edges.rows());
   triangles.resize(surface.triangle_count());
   parallel_for(static_cast<int>(vertices.size()), 4096, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) vertices[v] = Box::around(x0.row(v), x1.row(v), margin);
+  });
+  parallel_for(static_cast<int>(edges.size()), 4096, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      edges[e] = vertices[surface.edges(e, 0)];
+      edges[e].include(vertices[surface.edges(e, 1)]);
+    }
   });
   parallel_for(surface.triangle_count(), 4096, [&](int begin, int end) {
     for (int t = begin; t < end; ++t) {

@@ -13,7 +13,8 @@ struct Surface {
   Triangles triangles;
   Triangles triangle_edges;  ///< column k: the edge opposite vertex k
   Eigen::Matrix<int, Eigen::Dynamic, 2, Eigen::RowMajor> edges;
-  std::vector<char> representative;  ///< bits per triangle: k for vertex k, 3 + k for the edge opposite it
+  /// 3 t + k of the representative triangle t: vertex k, or the edge opposite it.
+  std::vector<int> vertex_corner, edge_corner;
   Eigen::VectorXd vertex_area, edge_area;  ///< a third of the adjacent rest areas [m²]
   Eigen::VectorXd triangle_area;           ///< at rest [m²]
   Eigen::VectorXd edge_length_squared;     ///< at rest [m²]
@@ -24,21 +25,16 @@ struct Surface {
   void append(const Surface& other);
 
   int triangle_count() const { return static_cast<int>(triangles.rows()); }
-  bool represents_vertex(int t, int k) const { return (representative[t] >> k & 1) != 0; }
-  bool represents_edge(int t, int k) const { return (representative[t] >> (3 + k) & 1) != 0; }
+  bool represents_vertex(int t, int k) const { return vertex_corner[triangles(t, k)] == 3 * t + k; }
+  bool represents_edge(int t, int k) const { return edge_corner[triangle_edges(t, k)] == 3 * t + k; }
 };
 
 /// Bounding boxes of a surface's linear motion from x0 to x1, inflated by `margin` [m].
 struct SweptBoxes {
-  std::vector<Box> vertices, triangles;
+  std::vector<Box> vertices, edges, triangles;
 
   /// Bounds the motion of `surface` from x0 to x1 (n×3) [m].
   void update(const Surface& surface, const Positions& x0, const Positions& x1, double margin);
-  Box edge(const Surface& surface, int e) const {
-    Box box = vertices[surface.edges(e, 0)];
-    box.include(vertices[surface.edges(e, 1)]);
-    return box;
-  }
 };
 
 }  // namespace drape

@@ -17,13 +17,18 @@ namespace {
 constexpr long unlimited = std::numeric_limits<long>::max();
 
 // Limits on the pairs of one step (README.md, "Long steps").
-constexpr long triangle_pairs_each = 48, primitive_pairs_each = 16;  // per cloth triangle
-constexpr long min_counted_triangles = 1000;                         // the cloth counts as having so many
-constexpr long dense_factor = 3;                                     // over the pairs at x0
+constexpr long box_pairs_each = 48, primitive_pairs_each = 16;  // per cloth triangle
+constexpr long min_counted_triangles = 1000;                    // the cloth counts as having so many
+constexpr long dense_factor = 3;                                // over the pairs at x0
 /// A step with more pairs is shortened to this fraction, again and again; after so many tries it is not
 /// searched at all.
 constexpr double shortening = 0.25;
 constexpr int max_tries = 20;
+
+std::unique_ptr<SelfPairSearch> make_self_search(bool self_contact, const Surface& cloth,
+                                                 BroadPhaseKind kind) {
+  return self_contact ? std::make_unique<SelfPairSearch>(cloth, kind) : nullptr;
+}
 
 const BoundIpc& as_ipc(const BoundContact& contact) {
   const auto* own = dynamic_cast<const BoundIpc*>(&contact);
@@ -143,6 +148,7 @@ BoundIpc::BoundIpc(const Ipc::Parameters& p, std::shared_ptr<const ObstacleTree>
       rest_(std::move(rest)),
       cloth_(rest_->surface),
       broad_phase_(p.broad_phase),
+      self_search_(make_self_search(self_contact_, cloth_, broad_phase_)),
       cloth_tree_(make_broad_phase(p.broad_phase)) {}
 
 BoundIpc::BoundIpc(const BoundIpc& other, double stiffness)
@@ -155,6 +161,7 @@ BoundIpc::BoundIpc(const BoundIpc& other, double stiffness)
       rest_(other.rest_),
       cloth_(rest_->surface),
       broad_phase_(other.broad_phase_),
+      self_search_(make_self_search(self_contact_, cloth_, broad_phase_)),
       cloth_tree_(make_broad_phase(broad_phase_)) {
   barrier_.stiffness = stiffness;
 }
@@ -163,29 +170,19 @@ std::shared_ptr<const BoundContact> BoundIpc::with_stiffness(double stiffness) c
   return barrier_.stiffness_is_fixed ? nullptr : std::make_shared<const BoundIpc>(*this, stiffness);
 }
 
-bool BoundIpc::search(const Positions& x0, const Positions& x1, const Counts& limits, BroadPhasePairs& found,
-                      Counts& counts) const {
+bool BoundIpc::search(const Positions& x0, const Positions& x1, const PairCounts& limits,
+                      BroadPhasePairs& found, PairCounts& counts) const {
   const LinearMotion motion{x0, x1, barrier_.dhat, obstacles_->vertices, obstacles_->vertices};
   found.clear();
   counts = {};
-  const auto find_triangle_pairs = [&](const Positions& end, const BroadPhase* obstacle_tree) {
-    boxes_.update(cloth_, x0, end, 0.5 * barrier_.dhat);
-    cloth_tree_->update(boxes_.triangles);
-    const long limit = limits.triangles - counts.triangles;
-    if (!(obstacle_tree ? cloth_tree_->overlaps(*obstacle_tree, limit, rows_)
-                        : cloth_tree_->overlaps(limit, rows_)))
-      return false;
-    counts.triangles += static_cast<long>(rows_.items.size());
-    return true;
-  };
-  // A translation of the whole cloth changes no distance within it.
-  if (self_contact_ && !(find_triangle_pairs(x1.rowwise() - (x1 - x0).colwise().mean(), nullptr) &&
-                         find_self_pairs(cloth_, boxes_, rows_, motion, friction_, limits.primitives, found)))
-    return false;
-  if (!obstacles_->bodies.empty() &&
-      !(find_triangle_pairs(x1, obstacle_tree_->tree.get()) &&
-        find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes, rows_, motion, friction_,
-                            limits.primitives, found)))
+  if (self_search_ && !self_search_->find(motion, friction_, limits, counts, found)) return false;
+  if (obstacles_->bodies.empty()) return true;
+  boxes_.update(cloth_, x0, x1, 0.5 * barrier_.dhat);
+  cloth_tree_->update(boxes_.triangles);
+  if (!cloth_tree_->overlaps(*obstacle_tree_->tree, limits.boxes - counts.boxes, rows_)) return false;
+  counts.boxes += static_cast<long>(rows_.items.size());
+  if (!find_obstacle_pairs(cloth_, boxes_, *obstacles_, obstacle_tree_->boxes, rows_, motion, friction_,
+                           limits.primitives, found))
     return false;
   counts.primitives = found.count();
   return true;
@@ -195,15 +192,15 @@ std::unique_ptr<CollisionCandidates> BoundIpc::build_candidates(const Positions&
                                                                 const Positions& x1) const {
   const std::lock_guard lock(busy_);
   const long size = std::max<long>(cloth_.triangle_count(), min_counted_triangles);
-  Counts limits{triangle_pairs_each * size, primitive_pairs_each * size}, counts;
+  PairCounts limits{box_pairs_each * size, primitive_pairs_each * size}, counts;
   BroadPhasePairs found;
   Positions end = x1;
   double fraction = 1;
   for (int tries = 1; !search(x0, end, limits, found, counts); ++tries) {
     if (tries == 1) {  // a dense scene has many pairs at x0 already
       search(x0, x0, {unlimited, unlimited}, found, counts);
-      const Counts default_limits = limits;
-      limits = {std::max(limits.triangles, dense_factor * counts.triangles),
+      const PairCounts default_limits = limits;
+      limits = {std::max(limits.boxes, dense_factor * counts.boxes),
                 std::max(limits.primitives, dense_factor * counts.primitives)};
       if (!(limits == default_limits)) continue;
     }

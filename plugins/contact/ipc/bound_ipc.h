@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "core/kernel/contact/broad_phase.h"
-#include "core/kernel/contact/candidates.h"
+#include "core/kernel/contact/self_pairs.h"
 #include "core/kernel/model/obstacle_gap.h"
 #include "core/kernel/model/smallest_gap.h"
 #include "plugins/contact/ipc/ipc.h"
@@ -73,14 +73,9 @@ class BoundIpc final : public BoundContact,
   Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const override;
 
  private:
-  /// Numbers of pairs: of triangles with overlapping boxes, and of primitives that may come within d̂.
-  struct Counts {
-    long triangles = 0, primitives = 0;
-    bool operator==(const Counts&) const = default;
-  };
   /// Returns false if there are more pairs than `limits`. The caller holds busy_.
-  bool search(const Positions& x0, const Positions& x1, const Counts& limits, BroadPhasePairs& found,
-              Counts& counts) const;
+  bool search(const Positions& x0, const Positions& x1, const PairCounts& limits, BroadPhasePairs& found,
+              PairCounts& counts) const;
 
   double friction_, min_gap_fraction_;
   bool self_contact_;
@@ -93,6 +88,7 @@ class BoundIpc final : public BoundContact,
 
   // Reused between calls for speed; results do not depend on them.
   mutable std::mutex busy_;
+  mutable std::unique_ptr<SelfPairSearch> self_search_;  // null without self-contact
   mutable std::unique_ptr<BroadPhase> cloth_tree_;
   mutable SweptBoxes boxes_;
   mutable AdjacencyList rows_;

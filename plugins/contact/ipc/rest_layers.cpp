@@ -4,16 +4,15 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/kernel/contact/broad_phase.h"
-#include "core/kernel/contact/candidates.h"
 #include "core/kernel/contact/pair_geometry.h"
+#include "core/kernel/contact/self_pairs.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/linear_algebra/parallel.h"
 
 namespace drape::ipc {
 namespace {
 
-/// Some ten times the pairs of triangles of a cloth of 200K vertices with d̂ equal to its edge length.
+/// Some ten times the pairs of boxes of a cloth of 200K vertices with d̂ equal to its edge length.
 constexpr long max_pairs = 50'000'000;
 /// Two primitives are neighbours if a path along the cloth connects them that stays within this distance, in
 /// d̂, of the middle between their nearest points.
@@ -25,18 +24,15 @@ constexpr int pairs_per_task = 4096;
 
 BroadPhasePairs pairs_within_dhat(const Surface& cloth, const Positions& rest, double dhat) {
   const Positions none;
-  SweptBoxes boxes;
-  boxes.update(cloth, rest, rest, 0.5 * dhat);
-  const auto tree = make_broad_phase(BroadPhaseKind::bvh);
-  tree->update(boxes.triangles);
-  AdjacencyList rows;
-  if (!tree->overlaps(max_pairs, rows))
-    throw std::runtime_error(
-        "contact \"ipc\": more than 50 million pairs of the resting cloth's triangles are "
-        "within \"dhat\" of each other; lower it to half the length of an edge");
   BroadPhasePairs found;
-  find_self_pairs(cloth, boxes, rows, {rest, rest, dhat, none, none}, 0, std::numeric_limits<long>::max(),
-                  found);
+  PairCounts counts;
+  const PairCounts limits{max_pairs, std::numeric_limits<long>::max()};
+  if (!SelfPairSearch(cloth, BroadPhaseKind::bvh)
+           .find({rest, rest, dhat, none, none}, 0, limits, counts, found))
+    throw std::runtime_error(
+        "contact \"ipc\": more than 50 million pairs of the resting cloth's vertices, edges and triangles "
+        "are "
+        "within \"dhat\" of each other; lower it to half the length of an edge");
   return found;
 }
 

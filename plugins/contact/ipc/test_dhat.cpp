@@ -14,6 +14,6 @@ TEST_CASE("ipc: a dhat larger than the cloth is refused before its pairs exceed 
   CHECK_NOTHROW(Ipc(p).bind(level, Material()));
   p.dhat = 1000;
   CHECK_THROWS_WITH(Ipc(p).bind(level, Material()),
-                    Catch::Contains("more than 50 million pairs of the resting cloth's triangles are within "
-                                    "\"dhat\" of each other"));
+                    Catch::Contains("more than 50 million pairs of the resting cloth's vertices, edges and "
+                                    "triangles are within \"dhat\" of each other"));
 }

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "core/kernel/contact/pair_contacts.h"
+#include "core/kernel/linear_algebra/pack.h"
+
+namespace drape {
+
+/// The vertices of up to W pairs of the cloth, gathered to be tested together.
+template <int W>
+struct PairLanes {
+  int start[4][W];  ///< offsets of the vertices' coordinates: 3 times the index
+  int size = 0;
+
+  void add(const std::array<int, 4>& vertices) {
+    for (int k = 0; k < 4; ++k) start[k][size] = 3 * vertices[k];
+    ++size;
+  }
+  bool full() const { return size == W; }
+  /// Lets lanes that are not in use repeat the first.
+  void pad() {
+    for (int k = 0; k < 4; ++k) std::fill(start[k] + size, start[k] + W, start[k][0]);
+  }
+};
+
+/// Bounds on the distances of W pairs of the cloth, point_triangle or edge_edge, and on their linear motion,
+/// by SIMD. They decide on most pairs; the others take the exact functions, whose results they imply.
+template <PairKind kind, int W>
+class MovingPairs {
+ public:
+  using T = Pack<W>;
+
+  T separation;  ///< a lower bound of the distance at x0: the width of a slab that separates the pair [m]
+  T distance;    ///< the distance at x0, not below it but for round-off [m]
+  T size;        ///< of the pair [m]
+  T speed;       ///< an upper bound of the rate at which the distance shrinks [m per whole motion]
+
+  /// For n×3 positions x0 and x1.
+  __attribute__((flatten)) MovingPairs(const double* x0, const double* x1, const PairLanes<W>& pairs) {
+    Vector x[4], p[4], mean = Vector::Zero();
+    for (int k = 0; k < 4; ++k) {
+      gather_rows(x0, pairs.start[k], x[k][0], x[k][1], x[k][2]);
+      gather_rows(x1, pairs.start[k], p[k][0], p[k][1], p[k][2]);
+      p[k] -= x[k];
+      mean += p[k];
+    }
+    mean *= T(0.25);
+    T largest[2] = {0.0, 0.0}, square = 0.0;
+    for (int k = 0; k < 4; ++k) {
+      T& of_primitive = largest[k >= first_end];
+      of_primitive = max(of_primitive, (p[k] - mean).squaredNorm());
+      if (k == 0) continue;
+      x[k] -= x[0];
+      square = max(square, x[k].squaredNorm());
+    }
+    speed = sqrt(largest[0]) + sqrt(largest[1]);
+    size = sqrt(square);
+    // Every direction gives a valid slab, that of the shortest connection the widest.
+    const Vector r = kind == PairKind::edge_edge ? between_edges(x) : to_triangle(x);
+    distance = r.norm();
+    T low = 0.0, high = r.dot(x[first_end]);  // of the first primitive and of the second, along r
+    for (int k = 1; k < first_end; ++k) low = min(low, r.dot(x[k]));
+    for (int k = first_end + 1; k < 4; ++k) high = max(high, r.dot(x[k]));
+    separation = select(distance > 0.0, (low - high) / distance, 0.0) - rounding * size;
+  }
+
+  /// Lanes that are certainly farther apart than `reach` [m], and those that certainly are not.
+  PackMask<W> beyond(T reach) const { return separation > reach * (1 + margin); }
+  PackMask<W> within(T reach) const { return distance + rounding * size < reach * (1 - margin); }
+
+ private:
+  using Vector = Eigen::Matrix<T, 3, 1>;
+  static constexpr int first_end = kind == PairKind::edge_edge ? 2 : 1;
+  // Far above the round-off of the exact functions and of these.
+  static constexpr double rounding = 1e-12, margin = 1e-9;
+
+  static T quotient(T a, T b) { return a / select(b > 0.0, b, 1.0); }
+  static T clamped(T a) { return min(max(a, T(0.0)), T(1.0)); }
+  static T nearest_on_segment(const Vector& u, const Vector& p) {
+    return clamped(quotient(p.dot(u), u.squaredNorm()));
+  }
+
+  // x[1], x[2] and x[3] are relative to vertex 0.
+
+  static Vector between_edges(const Vector* x) {
+    const Vector u = x[1], v = x[3] - x[2], w = x[2], n = u.cross(v);
+    T s = clamped(quotient(w.cross(v).dot(n), n.squaredNorm()));
+    const T t = nearest_on_segment(v, s * u - w);
+    s = select((t == 0.0) | (t == 1.0), nearest_on_segment(u, t * v + w), s);
+    return s * u - w - t * v;
+  }
+
+  static Vector to_triangle(const Vector* x) {
+    const Vector e1 = x[2] - x[1], e2 = x[3] - x[1], from = -x[1], n = e1.cross(e2);
+    const T square = n.squaredNorm(), b1 = quotient(from.cross(e2).dot(n), square),
+            b2 = quotient(e1.cross(from).dot(n), square);
+    const auto inside = (b1 > 0.0) & (b2 > 0.0) & (b1 + b2 < 1.0);
+    Vector r = quotient(from.dot(n), square) * n;
+    T smallest = select(inside, 0.0, T(std::numeric_limits<double>::infinity()));
+    for (int k = 1; k < 4; ++k) {
+      const Vector edge = x[k % 3 + 1] - x[k], beside = -x[k] - nearest_on_segment(edge, -x[k]) * edge;
+      const T other = beside.squaredNorm();
+      const auto nearer = other < smallest;
+      smallest = select(nearer, other, smallest);
+      for (int c = 0; c < 3; ++c) r[c] = select(nearer, beside[c], r[c]);
+    }
+    return r;
+  }
+};
+
+}  // namespace drape
