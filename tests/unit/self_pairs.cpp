@@ -106,9 +106,9 @@ void check_bounds(std::mt19937& random) {
           x1(v, c) = x0(v, c) + motion * place(random);
         }
       pairs.push_back({{4 * lane, 4 * lane + 1, 4 * lane + 2, 4 * lane + 3}, kind});
-      lanes.add(pairs.back().vertices);
+      lanes.add(pairs.back().vertices, {x0, x1, 0, x0, x1});
     }
-    const MovingPairs<kind, W> moving(x0.data(), x1.data(), lanes);
+    const MovingPairs<kind, W> moving(lanes);
     const Positions none;
     const double dhat = std::pow(10, exponent(random));
     const auto reach = moving.speed + dhat, still = Pack<W>(dhat);
@@ -139,7 +139,7 @@ TEST_CASE("self pairs: every kind of broad phase finds those of a brute-force se
         x1.col(1).array() += 5 * step;  // which all parts share
         const LinearMotion motion = cloth.motion(x0, x1, dhat);
         const std::vector<ContactPair> expected = brute_force(cloth, motion);
-        if (noise > 0.1) REQUIRE(expected.size() > 1000);
+        if (noise > 0.1 && (step > 0.1 || dhat > 0.01)) REQUIRE(expected.size() > 1000);
         for (const BroadPhaseKind kind : {BroadPhaseKind::bvh, BroadPhaseKind::fcl}) {
           SelfPairSearch search(cloth.surface, kind);
           BroadPhasePairs found;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/kernel/contact/candidate_pairs.h"
+#include "core/kernel/contact/moving_pairs.h"
 #include "core/kernel/contact/pair_geometry.h"
 #include "core/kernel/linear_algebra/parallel.h"
 
@@ -43,24 +44,71 @@ void represented_edges(const Side& a, int s, const Side& b, int t, const Found& 
   }
 }
 
-/// Calls visit(s, t, list) for every entry of the rows and concatenates the lists.
+/// Pairs of overlapping boxes, with the row that each is from.
+struct Untested {
+  std::vector<ContactPair> pairs;
+  std::vector<int> rows;
+  std::vector<int> surface_triangles;  ///< of a cloth vertex and an obstacle triangle this, of others -1
+
+  void add(const ContactPair& pair, int row, int surface_triangle = -1) {
+    pairs.push_back(pair);
+    rows.push_back(row);
+    surface_triangles.push_back(surface_triangle);
+  }
+};
+
+/// Marks the pairs of this kind that may come within d̂.
+template <PairKind kind>
+void mark_near(const std::vector<ContactPair>& pairs, const LinearMotion& motion, std::vector<char>& near) {
+  for_each_pack<kind>(pairs.data(), static_cast<int>(pairs.size()), motion,
+                      [&](const auto& moving, const int* indices, int size) {
+                        const auto reach = moving.speed + motion.dhat;
+                        const auto beyond = moving.beyond(reach), within = moving.within(reach);
+                        for (int lane = 0; lane < size; ++lane)
+                          near[indices[lane]] =
+                              within[lane] ||
+                              (!beyond[lane] && may_come_within_dhat(pairs[indices[lane]], motion));
+                      });
+}
+
+/// Appends those that may come within d̂.
+void append_near(const Untested& untested, const LinearMotion& motion, BroadPhasePairs& list) {
+  std::vector<char> near(untested.pairs.size());
+  mark_near<PairKind::point_triangle>(untested.pairs, motion, near);
+  mark_near<PairKind::edge_edge>(untested.pairs, motion, near);
+  std::ptrdiff_t row_begin = 0;
+  const auto sort_row = [&] {
+    std::stable_sort(list.vertex_triangles.begin() + row_begin, list.vertex_triangles.end(),
+                     [](const VertexTriangleCandidate& a, const VertexTriangleCandidate& b) {
+                       return a.vertex < b.vertex;
+                     });
+    row_begin = static_cast<std::ptrdiff_t>(list.vertex_triangles.size());
+  };
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (i > 0 && untested.rows[i] != untested.rows[i - 1]) sort_row();
+    if (!near[i]) continue;
+    list.pairs.push_back(untested.pairs[i]);
+    if (untested.surface_triangles[i] >= 0)
+      list.vertex_triangles.push_back({untested.pairs[i].vertices[0], untested.surface_triangles[i]});
+  }
+  sort_row();
+}
+
+/// Calls visit(s, t, untested) for every entry of the rows and concatenates the pairs that may come within d̂.
 template <class Visit>
-bool collect(const AdjacencyList& rows, long limit, BroadPhasePairs& found, const Visit& visit) {
+bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit, BroadPhasePairs& found,
+             const Visit& visit) {
   const int count = static_cast<int>(rows.start.size()) - 1;
   std::vector<BroadPhasePairs> lists((count + rows_per_task - 1) / rows_per_task);
   std::atomic<long> number = found.count();
   parallel_for(count, rows_per_task, [&](int begin, int end) {
+    if (number.load(std::memory_order_relaxed) > limit) return;
+    Untested untested;
+    for (int s = begin; s < end; ++s)
+      for (const int* t = rows.begin(s); t != rows.end(s); ++t) visit(s, *t, untested);
     BroadPhasePairs& list = lists[begin / rows_per_task];
-    for (int s = begin; s < end && number.load(std::memory_order_relaxed) <= limit; ++s) {
-      const long before = list.count();
-      const auto first_vertex_triangle = static_cast<std::ptrdiff_t>(list.vertex_triangles.size());
-      for (const int* t = rows.begin(s); t != rows.end(s); ++t) visit(s, *t, list);
-      std::stable_sort(list.vertex_triangles.begin() + first_vertex_triangle, list.vertex_triangles.end(),
-                       [](const VertexTriangleCandidate& a, const VertexTriangleCandidate& b) {
-                         return a.vertex < b.vertex;
-                       });
-      number += list.count() - before;
-    }
+    append_near(untested, motion, list);
+    number += list.count();
   });
   if (number > limit) return false;
   found.pairs.reserve(number);
@@ -98,19 +146,16 @@ bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const Ob
   const Dihedrals& dihedrals = obstacles.dihedrals;
   const Side own{cloth, boxes}, obstacle{other, obstacle_boxes};
   const auto first_other = static_cast<int>(motion.x0.rows());
-  return collect(rows, limit, found, [&](int s, int t, BroadPhasePairs& list) {
-    const auto add = [&](ContactPair pair, double weight) {
-      if (!may_come_within_dhat(pair, motion)) return false;
+  return collect(rows, motion, limit, found, [&](int s, int t, Untested& untested) {
+    const auto add = [&](ContactPair pair, double weight, int surface_triangle = -1) {
       pair.weight = weight;
       pair.dhat = motion.dhat;
       pair.obstacle = obstacles.body_of(other.triangles(t, 0));
       pair.friction = obstacles.friction_of(pair.obstacle, friction);
-      list.pairs.push_back(pair);
-      return true;
+      untested.add(pair, s, surface_triangle);
     };
-    represented_vertices(own, s, obstacle, t, [&](int v) {
-      if (add(vertex_triangle(0, v, other, first_other, t), 0)) list.vertex_triangles.push_back({v, t});
-    });
+    represented_vertices(own, s, obstacle, t,
+                         [&](int v) { add(vertex_triangle(0, v, other, first_other, t), 0, t); });
     represented_vertices(obstacle, t, own, s, [&](int v) {
       // The side of an equilateral triangle of the same area.
       const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);

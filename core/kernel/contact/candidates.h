@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/kernel/contact/linear_motion.h"
 #include "core/kernel/contact/nearest_features.h"
 #include "core/kernel/contact/obstacle_surface.h"
 #include "core/kernel/contact/pair_contacts.h"
@@ -9,14 +10,6 @@
 #include "core/kernel/mesh/topology.h"
 
 namespace drape {
-
-/// The linear motion of the cloth from x0 to x1 and of the obstacles' vertices, searched for pairs within d̂.
-struct LinearMotion {
-  const Positions& x0;
-  const Positions& x1;
-  double dhat;  ///< d̂ [m]
-  const Positions &obstacles0, &obstacles1;
-};
 
 /// Candidate pairs before classification. `vertex_triangles` repeats those of a cloth vertex and an obstacle
 /// triangle: contiguous for each vertex and ascending by triangle.

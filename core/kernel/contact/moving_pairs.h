@@ -3,32 +3,42 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <limits>
 
+#include "core/kernel/contact/linear_motion.h"
 #include "core/kernel/contact/pair_contacts.h"
 #include "core/kernel/linear_algebra/pack.h"
 
 namespace drape {
 
-/// The vertices of up to W pairs of the cloth, gathered to be tested together.
+/// The vertices of up to W pairs, to be gathered and tested together.
 template <int W>
 struct PairLanes {
-  int start[4][W];  ///< offsets of the vertices' coordinates: 3 times the index
+  const double *begin[4][W], *end[4][W];  ///< where each vertex begins and ends its motion [m]
   int size = 0;
 
-  void add(const std::array<int, 4>& vertices) {
-    for (int k = 0; k < 4; ++k) start[k][size] = 3 * vertices[k];
+  void add(const std::array<int, 4>& vertices, const LinearMotion& motion) {
+    const auto n = static_cast<int>(motion.x0.rows());
+    for (int k = 0; k < 4; ++k) {
+      const int v = vertices[k];
+      begin[k][size] = v < n ? motion.x0.data() + 3L * v : motion.obstacles0.data() + 3L * (v - n);
+      end[k][size] = v < n ? motion.x1.data() + 3L * v : motion.obstacles1.data() + 3L * (v - n);
+    }
     ++size;
   }
   bool full() const { return size == W; }
   /// Lets lanes that are not in use repeat the first.
   void pad() {
-    for (int k = 0; k < 4; ++k) std::fill(start[k] + size, start[k] + W, start[k][0]);
+    for (int k = 0; k < 4; ++k) {
+      std::fill(begin[k] + size, begin[k] + W, begin[k][0]);
+      std::fill(end[k] + size, end[k] + W, end[k][0]);
+    }
   }
 };
 
-/// Bounds on the distances of W pairs of the cloth, point_triangle or edge_edge, and on their linear motion,
-/// by SIMD. They decide on most pairs; the others take the exact functions, whose results they imply.
+/// Bounds on the distances of W pairs, point_triangle or edge_edge, and on their linear motion, by SIMD. They
+/// decide on most pairs; the others take the exact functions, whose results they imply.
 template <PairKind kind, int W>
 class MovingPairs {
  public:
@@ -39,12 +49,11 @@ class MovingPairs {
   T size;        ///< of the pair [m]
   T speed;       ///< an upper bound of the rate at which the distance shrinks [m per whole motion]
 
-  /// For n×3 positions x0 and x1.
-  __attribute__((flatten)) MovingPairs(const double* x0, const double* x1, const PairLanes<W>& pairs) {
+  __attribute__((flatten)) explicit MovingPairs(const PairLanes<W>& pairs) {
     Vector x[4], p[4], mean = Vector::Zero();
     for (int k = 0; k < 4; ++k) {
-      gather_rows(x0, pairs.start[k], x[k][0], x[k][1], x[k][2]);
-      gather_rows(x1, pairs.start[k], p[k][0], p[k][1], p[k][2]);
+      gather(pairs.begin[k], x[k]);
+      gather(pairs.end[k], p[k]);
       p[k] -= x[k];
       mean += p[k];
     }
@@ -78,6 +87,12 @@ class MovingPairs {
   // Far above the round-off of the exact functions and of these.
   static constexpr double rounding = 1e-12, margin = 1e-9;
 
+  static void gather(const double* const (&rows)[W], Vector& v) {
+    double lanes[3][W];
+    for (int i = 0; i < W; ++i)
+      for (int c = 0; c < 3; ++c) lanes[c][i] = rows[i][c];
+    for (int c = 0; c < 3; ++c) std::memcpy(&v[c].v, lanes[c], sizeof v[c].v);
+  }
   static T quotient(T a, T b) { return a / select(b > 0.0, b, 1.0); }
   static T clamped(T a) { return min(max(a, T(0.0)), T(1.0)); }
   static T nearest_on_segment(const Vector& u, const Vector& p) {
@@ -111,5 +126,26 @@ class MovingPairs {
     return r;
   }
 };
+
+/// Calls visit(moving, indices, size) for packs of those pairs that are of this kind and have no offset,
+/// whose indices the pack's first `size` lanes have.
+template <PairKind kind, class Visit>
+void for_each_pack(const ContactPair* pairs, int count, const LinearMotion& motion, const Visit& visit) {
+  PairLanes<native_pack_width> lanes;
+  int indices[native_pack_width];
+  const auto test = [&] {
+    if (lanes.size == 0) return;
+    lanes.pad();
+    visit(MovingPairs<kind, native_pack_width>(lanes), indices, lanes.size);
+    lanes.size = 0;
+  };
+  for (int i = 0; i < count; ++i) {
+    if (pairs[i].kind != kind || pairs[i].offset != 0) continue;
+    indices[lanes.size] = i;
+    lanes.add(pairs[i].vertices, motion);
+    if (lanes.full()) test();
+  }
+  test();
+}
 
 }  // namespace drape

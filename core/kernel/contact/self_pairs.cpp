@@ -67,7 +67,7 @@ void SelfPairSearch::collect(const LinearMotion& motion, long limit, std::vector
     const auto test = [&] {
       if (lanes.size == 0) return;
       lanes.pad();
-      const MovingPairs<kind, W> moving(motion.x0.data(), motion.x1.data(), lanes);
+      const MovingPairs<kind, W> moving(lanes);
       const auto reach = moving.speed + motion.dhat;
       const auto beyond = moving.beyond(reach), within = moving.within(reach);
       const std::size_t before = list.size();
@@ -83,7 +83,7 @@ void SelfPairSearch::collect(const LinearMotion& motion, long limit, std::vector
       for (const int* other = rows_.begin(row); other != rows_.end(row); ++other) {
         a[lanes.size] = row;
         b[lanes.size] = *other;
-        lanes.add(vertices_of<kind>(row, *other));
+        lanes.add(vertices_of<kind>(row, *other), motion);
         if (lanes.full()) test();
       }
     test();
