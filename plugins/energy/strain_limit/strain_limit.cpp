@@ -49,8 +49,13 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
     std::vector<Shortest> shortest(count() / grain + 1);
     parallel_for(count(), grain, [&](int begin, int end) {
       Shortest& own = shortest[begin / grain];
-      for (int i = begin; i < end; ++i)
-        if (const double fraction = reach(path(i, x0, x1)); fraction < own.fraction) own = {fraction, i};
+      for (int first = begin; first < end; first += W) {
+        const PackMask<W> inside = stay_inside(first, x0, x1);
+        for (int i = first; i < std::min(first + W, end); ++i) {
+          if (inside[i - first]) continue;
+          if (const double fraction = reach(path(i, x0, x1)); fraction < own.fraction) own = {fraction, i};
+        }
+      }
     });
     Shortest first;
     for (const Shortest& s : shortest)
@@ -88,7 +93,35 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
   }
 
  private:
+  static constexpr int W = native_pack_width;
+
   int count() const { return static_cast<int>(limited_.triangles.size()); }
+
+  /// Of W triangles from `first` on, those whose reach is certainly 1: σ₁, convex along the step, is inside
+  /// the bound at both ends. Lanes beyond the last triangle repeat it.
+  __attribute__((flatten)) PackMask<W> stay_inside(int first, const Positions& x0,
+                                                   const Positions& x1) const {
+    using T = Pack<W>;
+    constexpr double margin = 1e-9;  // far above round-off
+    int start[3][W];
+    T rest[3];
+    for (int lane = 0; lane < W; ++lane) {
+      const int i = std::min(first + lane, count() - 1);
+      for (int k = 0; k < 3; ++k) {
+        start[k][lane] = 3 * limited_.corners(i, k);
+        rest[k].v[lane] = limited_.rest[i][k];
+      }
+    }
+    const auto largest_stretch = [&](const Positions& x) {
+      Eigen::Matrix<T, 3, 1> corner[3];
+      for (int k = 0; k < 3; ++k) gather_rows(x.data(), start[k], corner[k][0], corner[k][1], corner[k][2]);
+      const Eigen::Matrix<T, 3, 1> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+      return PrincipalStretch<T>(rest[0] * e1, rest[1] * e1 + rest[2] * e2).largest;
+    };
+    const T stretch = largest_stretch(x0);
+    const T bound = limit_ - min_margin_fraction * (limit_ - max(stretch, T(1.0))) - margin;
+    return (stretch < bound) & (largest_stretch(x1) < bound);
+  }
 
   StretchPath path(int i, const Positions& x0, const Positions& x1) const {
     const auto v = limited_.corners.row(i);
