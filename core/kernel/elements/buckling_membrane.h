@@ -10,48 +10,82 @@
 
 namespace drape {
 
-/// A membrane Law (core/kernel/elements/membrane_kernel.h) on a level on which the cloth buckles below the
-/// mesh. Wrinkles that the triangle cannot have take up a shortening A, under the stress σ at which they
-/// arise:
+/// A membrane's energy W [J] of a triangle by its principal stretches: W, ∂W/∂σ and ∂²W/∂σ².
+template <class T>
+struct PrincipalDerivatives {
+  T energy, first1, first2, second1, second2, mixed;
+
+  /// Newton's step in ln t2 towards ∂W/∂t2 = -s t2, for the function t2 ∂W/∂t2 + s t2², which is convex and
+  /// rising for the usual laws.
+  T log_step(const T& t2, const T& s) const {
+    return -(first2 + s * t2) / (first2 + t2 * (second2 + 2.0 * s));
+  }
+  /// The same with t1 = t2 = t.
+  T both_log_step(const T& t, const T& s) const {
+    return -(first2 + s * t) / (first2 + t * (second2 + mixed + 2.0 * s));
+  }
+};
+
+/// An isotropic membrane on a level on which the cloth buckles below the mesh. Wrinkles that the triangle
+/// cannot have take up a shortening A, under the stress σ at which they arise:
 ///
 ///     (1 - r) min_A [ W(G + A) + s tr A ] + r W(G),   s = A d σ,   0 ⪯ A,   C + 2 A ⪯ κ² C
 ///
 /// This is the relaxed energy of tension field theory (Pipkin 1986) with a bending resistance left
 /// (docs/theory/locking.md). Wrinkles shorten the cloth by κ at most, beyond which the triangle resists as
-/// the Law does at κ times its stretches: a Law that resists collapse keeps doing so. The remainder r leaves
+/// the law does at κ times its stretches: a law that resists collapse keeps doing so. The remainder r leaves
 /// a stiffness where wrinkles have none.
 ///
-/// The Law is isotropic, so the minimum has the axes of C. Each stretch σ becomes τ, which is σ (taut), κ σ
+/// The law is isotropic, so the minimum has the axes of C. Each stretch σ becomes τ, which is σ (taut), κ σ
 /// (fully wrinkled), or in between (wrinkled), where the second Piola–Kirchhoff stress is -s. First
 /// derivatives follow from the envelope theorem, second ones by elimination of the wrinkled τ.
-template <template <class> class Law>
-struct BucklingLaw {
-  static constexpr int constants = 4;  ///< A d μ, A d λ, s [J], and the stretch τ of both axes wrinkled [1]
-  static constexpr bool convex = false;
+///
+/// Law is callable with two stretches t1 and t2 and returns PrincipalDerivatives of W.
+template <class T>
+class Buckling {
+ public:
   /// κ [1]: of a fold that turns by half a circle, over its chord.
   static constexpr double largest_shortening = std::numbers::pi / 2;
   static constexpr double remainder = 0.01;  ///< r [1]
 
-  /// The constants that follow the rest triangle's, for a bound s [J].
-  static Eigen::Vector4d constants_of(double mu, double lambda, double s) {
-    const double c[] = {mu, lambda, s, 1};
-    double stretch = 1;
-    iterate([&] { return Principal<double>(stretch, stretch, c).both_log_step(stretch, s); }, stretch, true);
-    return {mu, lambda, s, stretch};
+  /// At stretches s1 ≥ s2, with s [J] and both_wrinkled(law, s).
+  template <class Law>
+  Buckling(const Law& law, const T& s1_in, const T& s2_in, const T& s_in, const T& both)
+      : s1(s1_in), s2(s2_in), s(s_in), t1(s1), t2(s2), k1(1.0), k2(1.0), plain(law(s1, s2)), at(plain) {
+    using std::max, std::min;
+    constexpr double kappa = largest_shortening;
+    const T floor = max(s1, both);
+    const auto compressed = (floor > s1) | (plain.first2 + s * s2 < 0.0);
+    if (!any(compressed)) return;
+    const T free2 = wrinkled(law, floor, compressed), most1 = kappa * s1, most2 = kappa * s2;
+    t1 = floor;
+    t2 = select(compressed, min(max(free2, s2), most2), s2);
+    const auto full = compressed & (free2 > most2);
+    if (any(full)) t1 = select(full, min(max(wrinkled(law, t2, full), s1), most1), t1);
+    at = law(t1, t2);
+    const auto slope = [&](const T& t, const T& stretch, const T& most) {
+      const T wrinkles = select(t == most, T(kappa), 0.0);
+      return select(t == stretch, 1.0, wrinkles);
+    };
+    k1 = slope(t1, s1, most1);
+    k2 = slope(t2, s2, most2);
   }
 
-  template <class T>
-  static T value(const T& s1, const T& s2, const T* c) {
-    const State<T> state(s1, s2, c);
-    const T wrinkles = 0.5 * c[2] * (state.t1 * state.t1 - s1 * s1 + state.t2 * state.t2 - s2 * s2);
-    return (1 - remainder) * (state.at.energy + wrinkles) + remainder * state.plain.energy;
+  /// The stretch of both axes if both wrinkle.
+  template <class Law>
+  static T both_wrinkled(const Law& law, const T& s) {
+    T stretch = 1;
+    iterate([&] { return law(stretch, stretch).both_log_step(stretch, s); }, stretch, true);
+    return stretch;
   }
 
-  template <class T>
-  static CoupledSlopes<T> slopes(const T& s1, const T& s2, const T* c) {
-    const State<T> state(s1, s2, c);
-    const Principal<T>&at = state.at, &plain = state.plain;
-    const T s = c[2], k1 = state.k1, k2 = state.k2, m11 = at.second1 + s, m22 = at.second2 + s;
+  T value() const {
+    const T wrinkles = 0.5 * s * (t1 * t1 - s1 * s1 + t2 * t2 - s2 * s2);
+    return (1 - remainder) * (at.energy + wrinkles) + remainder * plain.energy;
+  }
+
+  CoupledSlopes<T> slopes() const {
+    const T m11 = at.second1 + s, m22 = at.second2 + s;
     const T zero = 0.0, square = at.mixed * at.mixed;
     const T eliminated2 = select(k2 == 0.0, square / m22, zero);
     const T eliminated1 = select(k1 == 0.0, square / m11, zero);
@@ -60,51 +94,18 @@ struct BucklingLaw {
     };
     CoupledSlopes<T> slopes;
     // Where an axis is taut the terms of s are exactly 0.
-    slopes.first1 = blend(k1 * at.first1 + s * (k1 * state.t1 - s1), plain.first1);
-    slopes.first2 = blend(k2 * at.first2 + s * (k2 * state.t2 - s2), plain.first2);
+    slopes.first1 = blend(k1 * at.first1 + s * (k1 * t1 - s1), plain.first1);
+    slopes.first2 = blend(k2 * at.first2 + s * (k2 * t2 - s2), plain.first2);
     slopes.second1 = blend(k1 * k1 * (at.second1 - eliminated2) + s * (k1 * k1 - 1.0), plain.second1);
     slopes.second2 = blend(k2 * k2 * (at.second2 - eliminated1) + s * (k2 * k2 - 1.0), plain.second2);
     slopes.mixed = blend(k1 * k2 * at.mixed, plain.mixed);
-    // Below this difference the quotient loses more digits than the derivative at equal stretches.
-    const T difference = s1 - s2;
-    const auto equal = difference < 1e-5;
-    slopes.divided = select(equal, 0.5 * (slopes.second1 + slopes.second2) - slopes.mixed,
-                            (slopes.first1 - slopes.first2) / select(equal, 1.0, difference));
+    slopes.divide(s1, s2);
     return slopes;
   }
 
  private:
-  /// The Law by principal stretches t1 and t2: W, ∂W/∂t and ∂²W/∂t² [J].
-  template <class T>
-  struct Principal {
-    T energy, first1, first2, second1, second2, mixed;
-
-    Principal(const T& t1, const T& t2, const T* c) {
-      const T zero = 0.0;
-      const Law<T> law(Eigen::Matrix<T, 3, 1>(t1, zero, zero), Eigen::Matrix<T, 3, 1>(zero, t2, zero), c[0],
-                       c[1]);
-      Eigen::Matrix<T, 3, 1> p1, p2;
-      Eigen::Matrix<T, 3, 3> h11, h12, h22;
-      energy = law.energy();
-      law.stress(p1, p2);
-      law.stiffness(h11, h12, h22);
-      first1 = p1[0], first2 = p2[1];
-      second1 = h11(0, 0), second2 = h22(1, 1), mixed = h12(0, 1);
-    }
-
-    /// Newton's step in ln t2 towards ∂W/∂t2 = -s t2, for the function t2 ∂W/∂t2 + s t2², which is convex
-    /// and rising for the usual laws.
-    T log_step(const T& t2, const T& s) const {
-      return -(first2 + s * t2) / (first2 + t2 * (second2 + 2.0 * s));
-    }
-    /// The same with t1 = t2 = t.
-    T both_log_step(const T& t, const T& s) const {
-      return -(first2 + s * t) / (first2 + t * (second2 + mixed + 2.0 * s));
-    }
-  };
-
   /// Multiplies `stretch` by about exp(step()), until a step is small in all lanes that count.
-  template <class T, class Step, class Mask>
+  template <class Step, class Mask>
   static void iterate(const Step& step, T& stretch, const Mask& counts) {
     using std::abs, std::max, std::min;
     constexpr int max_iterations = 20;
@@ -116,46 +117,65 @@ struct BucklingLaw {
   }
 
   /// τ of one axis that wrinkles, where the other's is `other`.
-  template <class T, class Mask>
-  static T wrinkled(const T& other, const T* c, const Mask& counts) {
+  template <class Law, class Mask>
+  T wrinkled(const Law& law, const T& other, const Mask& counts) const {
     T stretch = 1.0;
-    iterate([&] { return Principal<T>(other, stretch, c).log_step(stretch, c[2]); }, stretch, counts);
+    iterate([&] { return law(other, stretch).log_step(stretch, s); }, stretch, counts);
     return stretch;
   }
 
-  /// The minimum over A: stretches t, their derivatives k = ∂t/∂σ at fixed wrinkles of the other axis (1
-  /// taut, 0 wrinkled, κ fully wrinkled), and the Law there and at σ.
-  template <class T>
-  struct State {
-    T t1, t2, k1, k2;
-    Principal<T> plain, at;
+  /// Stretches t at the minimum over A, their derivatives k = ∂t/∂σ at fixed wrinkles of the other axis (1
+  /// taut, 0 wrinkled, κ fully wrinkled), and the law at σ and there.
+  T s1, s2, s, t1, t2, k1, k2;
+  PrincipalDerivatives<T> plain, at;
+};
 
-    State(const T& s1, const T& s2, const T* c)
-        : t1(s1), t2(s2), k1(1.0), k2(1.0), plain(s1, s2, c), at(plain) {
-      using std::max, std::min;
-      constexpr double kappa = largest_shortening;
-      const T floor = max(s1, c[3]);
-      const auto compressed = (floor > s1) | (plain.first2 + c[2] * s2 < 0.0);
-      if (!any(compressed)) return;
-      const T free2 = wrinkled(floor, c, compressed), most1 = kappa * s1, most2 = kappa * s2;
-      t1 = floor;
-      t2 = select(compressed, min(max(free2, s2), most2), s2);
-      const auto full = compressed & (free2 > most2);
-      if (any(full)) t1 = select(full, min(max(wrinkled(t2, c, full), s1), most1), t1);
-      at = Principal<T>(t1, t2, c);
-      const auto slope = [&](const T& t, const T& stretch, const T& most) {
-        const T wrinkles = select(t == most, T(kappa), 0.0);
-        return select(t == stretch, 1.0, wrinkles);
-      };
-      k1 = slope(t1, s1, most1);
-      k2 = slope(t2, s2, most2);
+/// A membrane Law (core/kernel/elements/membrane_kernel.h) that buckles below the mesh, as a law of
+/// StretchKernel.
+template <template <class> class Law>
+struct BucklingLaw {
+  static constexpr int constants = 4;  ///< A d μ, A d λ, s [J], and the stretch τ of both axes wrinkled [1]
+  static constexpr bool convex = false;
+  static constexpr double largest_shortening = Buckling<double>::largest_shortening,
+                          remainder = Buckling<double>::remainder;
+
+  /// The constants that follow the rest triangle's, for a bound s [J].
+  static Eigen::Vector4d constants_of(double mu, double lambda, double s) {
+    const double c[] = {mu, lambda};
+    return {mu, lambda, s, Buckling<double>::both_wrinkled(Principal<double>{c}, s)};
+  }
+
+  template <class T>
+  static T value(const T& s1, const T& s2, const T* c) {
+    return Buckling<T>(Principal<T>{c}, s1, s2, c[2], c[3]).value();
+  }
+
+  template <class T>
+  static CoupledSlopes<T> slopes(const T& s1, const T& s2, const T* c) {
+    return Buckling<T>(Principal<T>{c}, s1, s2, c[2], c[3]).slopes();
+  }
+
+ private:
+  /// The Law by principal stretches.
+  template <class T>
+  struct Principal {
+    const T* c;
+
+    PrincipalDerivatives<T> operator()(const T& t1, const T& t2) const {
+      const T zero = 0.0;
+      const Law<T> law(Eigen::Matrix<T, 3, 1>(t1, zero, zero), Eigen::Matrix<T, 3, 1>(zero, t2, zero), c[0],
+                       c[1]);
+      Eigen::Matrix<T, 3, 1> p1, p2;
+      Eigen::Matrix<T, 3, 3> h11, h12, h22;
+      law.stress(p1, p2);
+      law.stiffness(h11, h12, h22);
+      return {law.energy(), p1[0], p2[1], h11(0, 0), h22(1, 1), h12(0, 1)};
     }
   };
 };
 
 /// Binds the Law to all triangles of a level on which the cloth buckles below the mesh; s [J] as in
-/// BucklingLaw, which is the same for all triangles. Throws std::runtime_error naming a triangle without
-/// area.
+/// Buckling, which is the same for all triangles. Throws std::runtime_error naming a triangle without area.
 template <template <class> class Law>
 std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Level& level, const Material& material, double s) {
   using Kernel = StretchKernel<BucklingLaw<Law>>;

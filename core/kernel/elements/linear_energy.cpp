@@ -8,10 +8,11 @@ constexpr int vertices_per_task = 8192;
 }
 
 double LinearEnergy::value(const Positions& x) const {
-  return parallel_sum(static_cast<int>(forces_.rows()), vertices_per_task, [&](int begin, int end) {
-    const int count = end - begin;
-    return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
-  });
+  return constant_ +
+         parallel_sum(static_cast<int>(forces_.rows()), vertices_per_task, [&](int begin, int end) {
+           const int count = end - begin;
+           return -forces_.middleRows(begin, count).cwiseProduct(x.middleRows(begin, count)).sum();
+         });
 }
 
 double LinearEnergy::add_gradient(const Positions& x, Positions& g) const {

@@ -4,10 +4,11 @@
 
 namespace drape {
 
-/// E(x) = -Σ f_i · x_i: constant forces f, n×3 [N].
+/// E(x) = c - Σ f_i · x_i: constant forces f, n×3 [N].
 class LinearEnergy final : public BoundEnergy {
  public:
-  explicit LinearEnergy(Positions forces) : forces_(std::move(forces)) {}
+  explicit LinearEnergy(Positions forces, double constant = 0)
+      : forces_(std::move(forces)), constant_(constant) {}
 
   double value(const Positions& x) const override;
   double add_gradient(const Positions& x, Positions& g) const override;
@@ -16,6 +17,7 @@ class LinearEnergy final : public BoundEnergy {
 
  private:
   Positions forces_;
+  double constant_;  // [J]
 };
 
 }  // namespace drape

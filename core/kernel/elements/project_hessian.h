@@ -34,6 +34,18 @@ void project_eigenvalues(SymmetricMatrix<Size, T>& a, Projection projection) {
 
 }  // namespace projection_detail
 
+/// Projects one of the independent symmetric parts of a Hessian: an Eigen matrix, upper triangle.
+template <class Part>
+void project_part(Part& part, Projection projection) {
+  constexpr int n = Part::RowsAtCompileTime;
+  if (projection.is_exact()) return;
+  SymmetricMatrix<n, typename Part::Scalar> m(part);
+  if (positive_semidefinite(m)) return;
+  projection_detail::project_eigenvalues(m, projection);
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i <= j; ++i) part(i, j) = m(i, j);
+}
+
 /// Projects the Hessian of a translation-invariant element of N + 1 vertices, given as the second derivatives
 /// h by the N differences from vertex 0. The result equals that of projecting the full (3N + 3)² matrix.
 ///

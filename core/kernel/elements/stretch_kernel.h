@@ -15,6 +15,76 @@ struct StretchSlopes {
 template <class T>
 struct CoupledSlopes : StretchSlopes<T> {
   T mixed;
+
+  /// Sets `divided` from the other slopes at these stretches.
+  void divide(const T& s1, const T& s2) {
+    // Below this difference the quotient loses more digits than the derivative at equal stretches.
+    const T difference = s1 - s2;
+    const auto equal = difference < 1e-5;
+    this->divided = select(equal, 0.5 * (this->second1 + this->second2) - mixed,
+                           (this->first1 - this->first2) / select(equal, 1.0, difference));
+  }
+};
+
+/// Derivatives by a triangle's edges of an energy that is given by principal stretches σ. They need only the
+/// frame v₁, v₂, and stay accurate if stretches agree or vanish: with β = φ'/σ, q = (β₁ - β₂)/(σ₁² - σ₂²),
+/// w = F v, the Hessian's blocks for δF v₁ and δF v₂ are
+///     β₁ I + (φ₁'' - β₁)/σ₁² w₁w₁ᵀ + q w₂w₂ᵀ,   q w₂w₁ᵀ,   β₂ I + (φ₂'' - β₂)/σ₂² w₂w₂ᵀ + q w₁w₁ᵀ.
+/// Divisors are bounded below by a stretch of 1e-6. `rest` has RestTriangle's a, b, c.
+template <class T>
+struct StretchDerivatives {
+  using Vector = Eigen::Matrix<T, 3, 1>;
+
+  /// g receives the derivatives by e₁ and e₂.
+  [[gnu::always_inline]] static void gradient(const PrincipalStretch<T>& s, const StretchSlopes<T>& slopes,
+                                              const T* rest, Vector* g) {
+    const Vector p1 = s.w1 * (slopes.first1 / floored(s.largest)),
+                 p2 = s.w2 * (slopes.first2 / floored(s.smallest));
+    const Directions v(s, rest);
+    g[0] = p1 * v.first1 + p2 * v.first2;
+    g[1] = p1 * v.second1 + p2 * v.second2;
+  }
+
+  /// The upper blocks of the 6×6 Hessian by (e₁, e₂).
+  template <class Slopes>
+  [[gnu::always_inline]] static void hessian(const PrincipalStretch<T>& s, const Slopes& slopes,
+                                             const T* rest, Eigen::Matrix<T, 6, 6>& h) {
+    using Block = Eigen::Matrix<T, 3, 3>;
+    const T s1 = floored(s.largest), s2 = floored(s.smallest);
+    const T beta1 = slopes.first1 / s1, beta2 = slopes.first2 / s2;
+    const T q = (slopes.divided - beta2) / (s1 * (s1 + s2));
+    const Block w11 = s.w1 * s.w1.transpose(), w22 = s.w2 * s.w2.transpose();
+    Block m11 = w11 * ((slopes.second1 - beta1) / (s1 * s1)) + w22 * q;
+    Block m22 = w22 * ((slopes.second2 - beta2) / (s2 * s2)) + w11 * q;
+    Block m12 = (s.w2 * q) * s.w1.transpose();
+    if constexpr (requires { slopes.mixed; }) m12 += (s.w1 * (slopes.mixed / (s1 * s2))) * s.w2.transpose();
+    for (int i = 0; i < 3; ++i) m11(i, i) += beta1, m22(i, i) += beta2;
+    const Directions v(s, rest);
+    h.template block<3, 3>(0, 0) = m11 * (v.first1 * v.first1) +
+                                   (m12 + m12.transpose()) * (v.first1 * v.first2) +
+                                   m22 * (v.first2 * v.first2);
+    h.template block<3, 3>(0, 3) = m11 * (v.first1 * v.second1) + m12 * (v.first1 * v.second2) +
+                                   m12.transpose() * (v.first2 * v.second1) + m22 * (v.first2 * v.second2);
+    h.template block<3, 3>(3, 3) = m11 * (v.second1 * v.second1) +
+                                   (m12 + m12.transpose()) * (v.second1 * v.second2) +
+                                   m22 * (v.second2 * v.second2);
+  }
+
+  static T floored(const T& stretch) {
+    using std::max;
+    return max(stretch, T(1e-6));
+  }
+
+ private:
+  /// F v₁ = first1 e₁ + second1 e₂, F v₂ = first2 e₁ + second2 e₂.
+  struct Directions {
+    T first1, second1, first2, second2;
+    Directions(const PrincipalStretch<T>& s, const T* rest)
+        : first1(rest[0] * s.cosine + rest[1] * s.sine),
+          second1(rest[2] * s.sine),
+          first2(rest[1] * s.cosine - rest[0] * s.sine),
+          second2(rest[2] * s.cosine) {}
+  };
 };
 
 /// Energy φ(σ₁) + φ(σ₂) of one triangle with principal stretches σ, for ElementEnergy. A Law has `constants`
@@ -25,11 +95,6 @@ struct CoupledSlopes : StretchSlopes<T> {
 ///     StretchSlopes<T> slopes(const T& s1, const T& s2, const T* constants);
 ///
 /// A symmetric function Φ(σ₁, σ₂) of both stretches has CoupledSlopes instead.
-///
-/// Derivatives by F need only the frame v₁, v₂, and stay accurate if stretches agree or vanish: with β =
-/// φ'/σ, q = (β₁ - β₂)/(σ₁² - σ₂²), w = F v, the Hessian's blocks for δF v₁ and δF v₂ are
-///     β₁ I + (φ₁'' - β₁)/σ₁² w₁w₁ᵀ + q w₂w₂ᵀ,   q w₂w₁ᵀ,   β₂ I + (φ₂'' - β₂)/σ₂² w₂w₂ᵀ + q w₁w₁ᵀ.
-/// Divisors are bounded below by a stretch of 1e-6.
 template <class Law>
 struct StretchKernel {
   static constexpr int vertices = 3;
@@ -47,53 +112,18 @@ struct StretchKernel {
   template <class T>
   static T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) {
     const auto s = stretch(e, rest);
-    const auto slopes = Law::slopes(s.largest, s.smallest, rest + 3);
-    const Vector<T> p1 = s.w1 * (slopes.first1 / floored(s.largest)),
-                    p2 = s.w2 * (slopes.first2 / floored(s.smallest));
-    const Directions<T> v(s, rest);
-    g[0] = p1 * v.first1 + p2 * v.first2;
-    g[1] = p1 * v.second1 + p2 * v.second2;
+    StretchDerivatives<T>::gradient(s, Law::slopes(s.largest, s.smallest, rest + 3), rest, g);
     return energy<T>(e, rest);
   }
 
   /// The upper blocks of the 6×6 Hessian by (e₁, e₂).
   template <class T>
   static void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) {
-    using Block = Eigen::Matrix<T, 3, 3>;
     const auto s = stretch(e, rest);
-    const auto slopes = Law::slopes(s.largest, s.smallest, rest + 3);
-    const T s1 = floored(s.largest), s2 = floored(s.smallest);
-    const T beta1 = slopes.first1 / s1, beta2 = slopes.first2 / s2;
-    const T q = (slopes.divided - beta2) / (s1 * (s1 + s2));
-    const Block w11 = s.w1 * s.w1.transpose(), w22 = s.w2 * s.w2.transpose();
-    Block m11 = w11 * ((slopes.second1 - beta1) / (s1 * s1)) + w22 * q;
-    Block m22 = w22 * ((slopes.second2 - beta2) / (s2 * s2)) + w11 * q;
-    Block m12 = (s.w2 * q) * s.w1.transpose();
-    if constexpr (requires { slopes.mixed; }) m12 += (s.w1 * (slopes.mixed / (s1 * s2))) * s.w2.transpose();
-    for (int i = 0; i < 3; ++i) m11(i, i) += beta1, m22(i, i) += beta2;
-    const Directions<T> v(s, rest);
-    h.template block<3, 3>(0, 0) = m11 * (v.first1 * v.first1) +
-                                   (m12 + m12.transpose()) * (v.first1 * v.first2) +
-                                   m22 * (v.first2 * v.first2);
-    h.template block<3, 3>(0, 3) = m11 * (v.first1 * v.second1) + m12 * (v.first1 * v.second2) +
-                                   m12.transpose() * (v.first2 * v.second1) + m22 * (v.first2 * v.second2);
-    h.template block<3, 3>(3, 3) = m11 * (v.second1 * v.second1) +
-                                   (m12 + m12.transpose()) * (v.second1 * v.second2) +
-                                   m22 * (v.second2 * v.second2);
+    StretchDerivatives<T>::hessian(s, Law::slopes(s.largest, s.smallest, rest + 3), rest, h);
   }
 
  private:
-  /// F v₁ = first1 e₁ + second1 e₂, F v₂ = first2 e₁ + second2 e₂.
-  template <class T>
-  struct Directions {
-    T first1, second1, first2, second2;
-    Directions(const PrincipalStretch<T>& s, const T* rest)
-        : first1(rest[0] * s.cosine + rest[1] * s.sine),
-          second1(rest[2] * s.sine),
-          first2(rest[1] * s.cosine - rest[0] * s.sine),
-          second2(rest[2] * s.cosine) {}
-  };
-
   // Out of line: value and gradient must return the same bits.
   template <class T>
   [[gnu::noinline]] static T energy(const Vector<T>* e, const T* rest) {
@@ -104,12 +134,6 @@ struct StretchKernel {
   template <class T>
   static PrincipalStretch<T> stretch(const Vector<T>* e, const T* rest) {
     return PrincipalStretch<T>(e[0] * rest[0], e[0] * rest[1] + e[1] * rest[2]);
-  }
-
-  template <class T>
-  static T floored(const T& stretch) {
-    using std::max;
-    return max(stretch, T(1e-6));
   }
 };
 
