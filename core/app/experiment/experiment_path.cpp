@@ -46,10 +46,33 @@ std::string missing_list(const ConfigNode& experiment, const std::vector<std::st
   return "";
 }
 
+/// Adds the words that lead to a plugin's named constant, if the last of the words names one.
+void lead_to_constant(const ConfigNode& experiment, std::vector<std::string>& words) {
+  const ConfigNode* node = &experiment;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    if (node->kind == NodeKind::list) {
+      const auto index = node->index_of(words[k]);
+      if (!index) return;
+      node = &node->items[*index];
+      continue;
+    }
+    const ConfigNode *next = node->find(words[k]), *constants = node->find(constants_key);
+    const bool is_constant = !next && constants && constants->find(words[k]);
+    if (is_constant) words.insert(words.begin() + static_cast<std::ptrdiff_t>(k), constants_key);
+    if (is_constant) next = constants;
+    if (!next) return;
+    const bool is_last = k + 2 == words.size() && words[k] == constants_key;
+    const ConfigNode* number = is_last ? next->find(words[k + 1]) : nullptr;
+    if (number && number->kind == NodeKind::map) words.emplace_back("value");
+    node = next;
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path) {
   std::vector<std::string> words = split(path, '.');
+  lead_to_constant(experiment, words);
   if (words.size() < 3 || !chooses_plugin(words[0])) return words;
   const ConfigNode* plugin = experiment.find(words[0]);
   const ConfigNode* type = plugin && plugin->kind == NodeKind::map ? plugin->find("type") : plugin;

@@ -8,7 +8,8 @@
 namespace drape {
 
 /// The words of a parameter's path in an experiment. The type of a plugin that is not in a list is left out:
-/// "contact.shapes.dhat" is "contact.dhat" where the experiment has `contact: shapes`.
+/// "contact.shapes.dhat" is "contact.dhat" where the experiment has `contact: shapes`. A named constant is
+/// found by its name: "energies.cloth.warp" is "energies.cloth.constants.warp.value" where it has a unit.
 std::vector<std::string> words_of_path(const ConfigNode& experiment, const std::string& path);
 
 /// As set_path, for the parameters of an experiment: the type of a plugin may stand in the path whether it is

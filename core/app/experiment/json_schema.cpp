@@ -34,7 +34,18 @@ Json plugin_schema(const std::string& kind, const Registry& registry) {
   return {{"anyOf", alternatives}};
 }
 
+/// A map from names to numbers, alone or with their units.
+Json named_constants_schema(const Parameter& p) {
+  const Json number = scalar_schema("number", p);
+  const Json with_unit = {{"type", "object"},
+                          {"properties", {{"value", number}, {"unit", {{"type", "string"}}}}},
+                          {"required", Json::array({"value"})},
+                          {"additionalProperties", false}};
+  return {{"type", "object"}, {"additionalProperties", {{"anyOf", Json::array({number, with_unit})}}}};
+}
+
 Json item_schema(const std::string& type, const Parameter& p, const Registry* registry) {
+  if (type == "map of numbers") return named_constants_schema(p);
   if (type == "section") return json_schema(*p.section, registry);
   if (type != "node") return scalar_schema(type, p);
   return registry && !p.plugin_kind.empty() ? plugin_schema(p.plugin_kind, *registry) : Json::object();

@@ -42,7 +42,7 @@ class PluginMaker {
     ConfigNode energies, metrics;
     energies.kind = metrics.kind = ConfigNode::Kind::list;
     for (const ConfigNode& node : e_.parameters.energies)
-      if (auto energy = make<Energy>(node, energies)) e_.energies.push_back({name_of(node), energy});
+      if (auto energy = make<Energy>(node, energies)) e_.energies.push_back({label_of(node), energy});
     set("energies", energies);
     const ConfigNode* written = e_.source.find("energies");
     if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
@@ -76,6 +76,12 @@ class PluginMaker {
   static std::string name_of(const ConfigNode& node) {
     const ConfigNode* type = node.kind == ConfigNode::Kind::map ? node.find("type") : &node;
     return type ? type->scalar : "";
+  }
+
+  /// The name that a plugin gives itself, else its type.
+  static std::string label_of(const ConfigNode& node) {
+    const ConfigNode* name = node.kind == ConfigNode::Kind::map ? node.find("name") : nullptr;
+    return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : name_of(node);
   }
 
   /// Whether a solver declares the section that the experiment's own `newton` fills in.

@@ -16,8 +16,8 @@ const Parameter* parameter_named(const Schema& schema, const std::string& name);
 class ParameterPath {
  public:
   /// Follows the words of a path, such as "obstacles", "plate", "translate", "2", in a struct with this
-  /// schema. An item of a list is named by its index from 0, or a section's by its type or name. Empty
-  /// without such a parameter.
+  /// schema. An item of a list is named by its index from 0, or a section's by its type or name; a named
+  /// number by its name, with or without "value" behind it. Empty without such a parameter.
   static std::optional<ParameterPath> find(const Schema& schema, void* object,
                                            const std::vector<std::string>& words);
 
@@ -32,7 +32,7 @@ class ParameterPath {
   };
   std::vector<Section> sections_;  // from the outside in
   const Parameter* parameter_ = nullptr;
-  std::optional<std::size_t> item_;  // of the parameter, if only one number of its list is meant
+  std::optional<std::size_t> item_;  // of the parameter, if only one number of its list or map is meant
 };
 
 }  // namespace drape

@@ -1,5 +1,7 @@
 #include "core/kernel/plugin/parameters.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -105,12 +107,55 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   }
 }
 
+bool is_identifier(const std::string& text) {
+  const auto letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+  return !text.empty() && !std::isdigit(static_cast<unsigned char>(text[0])) &&
+         std::all_of(text.begin(), text.end(), letter);
+}
+
+/// A map of numbers: names to a number, or to a number and its unit.
+void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
+  if (node.kind != NodeKind::map && node.kind != NodeKind::null) {
+    errors.push_back({node.where, "\"" + p.name + "\" must be a map of names and numbers, as in {a: 2, b: " +
+                                      "{value: 3, unit: N/m}}, not " + shown(node)});
+    return;
+  }
+  std::set<std::string> names;
+  for (size_t i = 0; i < node.entries.size(); ++i) {
+    const auto& [name, number] = node.entries[i];
+    const std::string label = "\"" + excerpt(name) + "\" in " + p.name;
+    if (!is_identifier(name))
+      errors.push_back(
+          {node.key_locations[i],
+           label + " must be a name of letters, digits and underscores, not beginning with a digit"});
+    if (!names.insert(name).second)
+      errors.push_back({node.key_locations[i], label + " is given twice; remove one of them"});
+    if (number.kind != NodeKind::map) {
+      check_scalar("number", label, number, p, errors);
+      continue;
+    }
+    for (size_t k = 0; k < number.entries.size(); ++k)
+      if (const std::string& key = number.entries[k].first; key != "value" && key != "unit")
+        errors.push_back({number.key_locations[k],
+                          "unknown key \"" + excerpt(key) + "\" of " + label + "; known are value, unit"});
+    const ConfigNode *value = number.find("value"), *unit = number.find("unit");
+    if (!value)
+      errors.push_back({number.where, label + " has no \"value\""});
+    else
+      check_scalar("number", label, *value, p, errors);
+    if (unit && unit->kind != NodeKind::scalar)
+      errors.push_back({unit->where, "the unit of " + label + " must be text, as in N/m"});
+  }
+}
+
 /// Whether the node is valid for `p.read`; if not, appends an error.
 bool check(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   const size_t before = errors.size();
   if (p.nullable && node.kind == NodeKind::null) return true;
   if (p.type.starts_with("list of "))
     check_list(node, p, errors);
+  else if (p.type == "map of numbers")
+    check_named_constants(node, p, errors);
   else if (p.type != "section" && p.type != "node")
     check_scalar(p.type, "\"" + p.name + "\"", node, p, errors);
   return errors.size() == before;
@@ -166,6 +211,32 @@ void convert(const ConfigNode& node, double& value) { value = parse_number(node.
 void convert(const ConfigNode& node, int& value) { value = parse_integer(node.scalar).value(); }
 void convert(const ConfigNode& node, bool& value) { value = node.scalar == "true"; }
 void convert(const ConfigNode& node, std::string& value) { value = node.scalar; }
+void convert(const ConfigNode& node, NamedConstants& values) {
+  values.all.clear();
+  for (const auto& [name, written] : node.entries) {
+    const bool with_unit = written.kind == NodeKind::map;
+    NamedConstant& own = values.all.emplace_back();
+    own.name = name;
+    convert(with_unit ? *written.find("value") : written, own.value);
+    if (const ConfigNode* unit = with_unit ? written.find("unit") : nullptr) own.unit = unit->scalar;
+  }
+}
+
+ConfigNode to_node(const NamedConstants& values) {
+  ConfigNode map;
+  map.kind = NodeKind::map;
+  for (const NamedConstant& own : values.all) {
+    ConfigNode number = ConfigNode::of(own.value);
+    if (!own.unit.empty()) {
+      ConfigNode with_unit;
+      with_unit.add("value", number);
+      with_unit.add("unit", ConfigNode::of(own.unit));
+      number = std::move(with_unit);
+    }
+    map.add(own.name, std::move(number));
+  }
+  return map;
+}
 
 void check_former_names(const Schema& schema) {
   for (const Parameter& p : schema.parameters)

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/kernel/plugin/config_node.h"
+#include "core/kernel/plugin/named_constants.h"
 
 namespace drape {
 
@@ -18,7 +19,8 @@ namespace drape {
 struct Parameter {
   std::string name;
   std::vector<std::string> former_names;  ///< refused with a message that gives `name`
-  std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s"
+  std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s",
+                            ///< "map of numbers"
   std::string description;  ///< one phrase: what it sets
   std::string unit;         ///< SI; empty or "1" if dimensionless
   std::string source;       ///< paper and equation, or design note
@@ -168,8 +170,8 @@ class ParameterHandle {
 ///
 /// Members may be double, int, bool, std::string, std::optional of those, std::vector of double, int or
 /// std::string, Eigen::Vector2d/3d, enums with words (`add_choice`), another declared struct
-/// (`add_section`), a vector of one (`add_sections`), or a ConfigNode or a vector of them for a plugin that
-/// is made later (`add_node`).
+/// (`add_section`), a vector of one (`add_sections`), numbers that the config names (`add_constants`), or a
+/// ConfigNode or a vector of them for a plugin that is made later (`add_node`).
 template <class Struct>
 class Declaration;
 

@@ -19,6 +19,7 @@ void convert(const ConfigNode& node, double& value);
 void convert(const ConfigNode& node, int& value);
 void convert(const ConfigNode& node, bool& value);
 void convert(const ConfigNode& node, std::string& value);
+void convert(const ConfigNode& node, NamedConstants& values);
 inline void convert(const ConfigNode& node, ConfigNode& value) { value = node; }
 
 template <class T>
@@ -46,6 +47,7 @@ inline ConfigNode to_node(int value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(bool value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(const std::string& value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(const ConfigNode& value) { return value; }
+ConfigNode to_node(const NamedConstants& values);
 
 template <class Range, class Write>
 ConfigNode list_node(const Range& values, Write write) {
@@ -97,6 +99,10 @@ struct Shape<std::string> : ScalarShape<std::string> {
 template <>
 struct Shape<ConfigNode> : ScalarShape<ConfigNode> {
   static std::string type() { return "node"; }
+};
+template <>
+struct Shape<NamedConstants> : ScalarShape<NamedConstants> {
+  static std::string type() { return "map of numbers"; }
 };
 template <class T>
 struct Shape<std::vector<T>> : ScalarShape<T> {
@@ -200,6 +206,9 @@ class Declaration {
   ParameterHandle add_node(const std::string& name, Node Struct::*member) {
     return add(name, member);
   }
+
+  /// Numbers that the config names; the parameter is `constants`.
+  ParameterHandle add_constants(NamedConstants Struct::*member) { return add(constants_key, member); }
 
   /// A parameter that is declared already, as by a function that several structs call. Valid until the next
   /// one is added, as every handle. Throws std::runtime_error if there is none of this name.
