@@ -70,7 +70,8 @@ std::string Location::text() const {
 
 std::string ConfigError::text() const {
   const std::string place = where.text();
-  return printable(place.empty() ? message : place + ": " + message);
+  const std::string sentence = printable(place.empty() ? message : place + ": " + message);
+  return shown.empty() ? sentence : sentence + "\n" + printable_lines(shown);
 }
 
 std::optional<std::size_t> ConfigNode::index_of(const std::string& word) const {

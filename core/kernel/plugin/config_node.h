@@ -53,7 +53,8 @@ struct ConfigNode {
 struct ConfigError {
   Location where;
   std::string message;
-  std::string text() const;  ///< "file:line:column: message"
+  std::string shown = {};    ///< lines that show the place, as with a caret below it; may be empty
+  std::string text() const;  ///< "file:line:column: message", then the lines
 };
 
 using ConfigErrors = std::vector<ConfigError>;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -14,6 +16,8 @@ namespace drape {
 struct ParameterFault {
   std::string path;  ///< in the plugin's section, with indices from 0: "obstacles.2"
   std::string message;
+  std::optional<std::size_t> at = {};  ///< its place in a text: the byte
+  std::string shown = {};              ///< ConfigError::shown
 };
 
 /// Thrown by a plugin's constructor to refuse parameters, each with its own location in the config.
@@ -41,8 +45,8 @@ void for_all_items(const std::string& list, const Items& items, const Make& make
       make(items[k], k);
     } catch (const RefusedParameters& refused) {
       for (const ParameterFault& fault : refused.faults)
-        faults.push_back(
-            {list + "." + std::to_string(k) + (fault.path.empty() ? "" : "." + fault.path), fault.message});
+        faults.push_back({list + "." + std::to_string(k) + (fault.path.empty() ? "" : "." + fault.path),
+                          fault.message, fault.at, fault.shown});
     } catch (const std::exception& error) {
       faults.push_back({list + "." + std::to_string(k), reason_of(error)});
     }

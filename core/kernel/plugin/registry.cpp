@@ -7,6 +7,7 @@
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/refused_parameters.h"
 #include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/plugin/text_location.h"
 
 namespace drape {
 
@@ -48,8 +49,10 @@ std::string fault_of(const Schema& schema) {
   return "";
 }
 
-/// The location of what a path leads to from a node; of the last node on the way that is written.
-Location location_of(const ConfigNode& written, const std::string& path) {
+/// The location of what a path leads to from a node, at a byte of its text; of the last node on the way that
+/// is written.
+Location location_of(const ConfigNode& written, const std::string& path,
+                     const std::optional<std::size_t>& at) {
   const ConfigNode* node = &written;
   for (const std::string& word : split(path, '.')) {
     const auto index = node->kind == ConfigNode::Kind::list ? node->index_of(word) : std::nullopt;
@@ -57,7 +60,8 @@ Location location_of(const ConfigNode& written, const std::string& path) {
     if (!next) break;
     node = next;
   }
-  return node->where.text().empty() ? written.where : node->where;
+  if (node->where.text().empty()) return written.where;
+  return at ? location_in_text(*node, *at) : node->where;
 }
 
 }  // namespace
@@ -149,7 +153,7 @@ std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Conf
     return parameters.entry->make(parameters.values.get(), before);
   } catch (const RefusedParameters& refused) {
     for (const ParameterFault& fault : refused.faults)
-      errors.push_back({location_of(written, fault.path), plugin + fault.message});
+      errors.push_back({location_of(written, fault.path, fault.at), plugin + fault.message, fault.shown});
   } catch (const std::exception& error) {
     errors.push_back({written.where, plugin + reason_of(error)});
   }
