@@ -57,6 +57,9 @@ int check(const ConfigArguments& arguments, const Registry& registry) {
             << "\n";
   for (const std::string& line : loaded.experiment->remarks(*loaded.scene))
     std::cout << printable(line) << "\n";
+  for (const NamedEnergy& e : loaded.experiment->energies)
+    for (const std::string& line : e.energy->remarks(loaded.experiment->parameters.material))
+      std::cout << printable(e.name + ": " + line) << "\n";
   return exit_done;
 }
 

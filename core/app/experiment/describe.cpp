@@ -104,7 +104,7 @@ std::string describe(const Schema& schema) {
 
 std::string describe(const RegistryEntry& entry) {
   return entry.kind + " " + entry.name + ": " + entry.summary + "\nfrom " + entry.library + "\n\n" +
-         describe(entry.schema);
+         describe(entry.schema) + (entry.details.empty() ? "" : "\n" + entry.details);
 }
 
 std::string describe_markdown(const Schema& schema, const SharedSection* shared) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/kernel/linear_algebra/block_matrix.h"
 #include "core/kernel/model/level.h"
@@ -119,6 +120,11 @@ class Energy {
                                                      double s) const {
     (void)s;
     return bind(level, material);
+  }
+  /// Lines about the energy that `drape check` prints, such as a check of its derivatives. By default none.
+  virtual std::vector<std::string> remarks(const Material& material) const {
+    (void)material;
+    return {};
   }
 };
 

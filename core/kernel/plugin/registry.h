@@ -16,6 +16,7 @@ struct RegistryEntry {
   std::string name;     ///< as written in YAML, snake_case
   std::string summary;  ///< one sentence
   std::string library;  ///< path of its shared library
+  std::string details;  ///< lines that `drape describe` prints below the parameters; may be empty
   Schema schema;        ///< its parameters
   /// A default-constructed parameter struct, for `schema` to read into.
   std::function<std::shared_ptr<void>()> make_parameters;
@@ -33,7 +34,7 @@ class Registry {
   /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name. An
   /// implementation that is costly to make can have a second constructor, from the parameters and a `const
   /// Implementation&`: when a schedule changes its parameters, that one is given the object before, to share
-  /// what stays the same.
+  /// what stays the same. A static function `details()` of it, if there is one, gives the entry's details.
   /// Interface is one of the five of core/kernel/model. Throws std::runtime_error on a repeated name, with
   /// the paths of both libraries.
   template <class Interface, class Implementation>

@@ -44,6 +44,7 @@ void Registry::add(const std::string& name, const std::string& summary) {
   entry->name = name;
   entry->summary = summary;
   entry->library = current_library;
+  if constexpr (requires { Implementation::details(); }) entry->details = Implementation::details();
   entry->schema = schema_of<Parameters>(name);
   entry->make_parameters = entry->schema.fresh;
   entry->make = [](const void* parameters, [[maybe_unused]] const void* before) -> std::shared_ptr<void> {
