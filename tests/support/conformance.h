@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/kernel/mesh/triangle_mesh.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"
 
@@ -23,6 +24,23 @@ inline std::string conformance_parameters(const drape::RegistryEntry& entry) {
   std::ifstream file(std::filesystem::path(folders::source()) / "plugins" / entry.kind / entry.name /
                      "conformance.yaml");
   return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// The parameters in conformance_*.yaml beside it, by file name: more settings that a plugin asks to be
+/// tested with.
+inline std::vector<std::pair<std::string, std::string>> more_conformance_parameters(
+    const drape::RegistryEntry& entry) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto folder = std::filesystem::path(folders::source()) / "plugins" / entry.kind / entry.name;
+  if (!std::filesystem::exists(folder)) return all;
+  for (const auto& found : std::filesystem::directory_iterator(folder)) {
+    const std::string name = found.path().stem().string();
+    if (!name.starts_with("conformance_") || found.path().extension() != ".yaml") continue;
+    std::ifstream file(found.path());
+    all.emplace_back(name, std::string(std::istreambuf_iterator<char>(file), {}));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
 }
 
 /// The config of a plugin with its own parameters, and those of `common` that it declares.

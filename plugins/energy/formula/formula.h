@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/model/energy.h"
+#include "core/kernel/plugin/parameters.h"
+#include "plugins/energy/formula/law.h"
+
+namespace drape {
+
+/// An energy whose density is an expression in the experiment. It is parsed and checked once, compiled to a
+/// program with exact derivatives on every level, and evaluated on packs of elements.
+class Formula final : public Energy {
+ public:
+  struct Parameters {
+    std::string name = "formula";
+    formula::ElementKind per = formula::ElementKind::triangle;
+    NamedConstants constants;
+    ConfigNode where;
+    std::string density, energy;
+    std::optional<std::string> role;
+    Eigen::Vector3d axis{1, 0, 0};
+
+    static void declare(Declaration<Parameters>& d);
+  };
+
+  /// Throws RefusedParameters with the place in the formula.
+  explicit Formula(const Parameters& parameters);
+
+  /// What formulas may use, for `drape describe formula`.
+  static std::string details() { return formula::vocabulary(); }
+
+  EnergyRole role() const override { return role_; }
+  std::optional<double> midpoint_factor() const override { return midpoint_factor_; }
+  double plate_stiffness(const Material& material) const override;
+  /// Throws std::runtime_error if the energy or its forces at rest are not finite.
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
+  std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                             double s) const override;
+  /// A check of the derivatives, and the stress, moment or force at rest.
+  std::vector<std::string> remarks(const Material& material) const override;
+
+ private:
+  std::unique_ptr<BoundEnergy> bind_unchecked(const Level& level, const Material& material) const;
+
+  formula::Law law_;
+  Eigen::Vector3d axis_;
+  EnergyRole role_;
+  std::optional<double> midpoint_factor_;
+};
+
+}  // namespace drape

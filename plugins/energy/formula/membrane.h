@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "core/kernel/model/energy.h"
+#include "plugins/energy/formula/law.h"
+
+namespace drape::formula {
+
+/// Binds a formula to all triangles of the level. The material's first axis is `axis`, projected into each
+/// triangle at rest. Throws std::runtime_error naming a triangle without area.
+std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
+                                           const Material& material);
+
+/// Whether the energy of a triangle is its rest area times a function of its strains.
+bool is_proportional_to_area(const Law& law);
+
+/// Whether the energy of a triangle depends on its principal stretches alone, not on their directions.
+bool is_isotropic(const Law& law, const Material& material);
+
+/// Binds an isotropic formula to a level on which the cloth buckles below the mesh, as
+/// bind_buckling_membrane does.
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
+                                           double s);
+
+}  // namespace drape::formula

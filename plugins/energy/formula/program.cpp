@@ -1,0 +1,205 @@
+#include "plugins/energy/formula/program.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "plugins/energy/formula/arithmetic.h"
+
+namespace drape::formula {
+
+/// Gives every term that is needed a register, which is free again after its last use.
+class Program::Allocator {
+ public:
+  Allocator(Program& program, const std::vector<Term>& outputs) : program_(program) {
+    for (const Term& t : outputs)
+      if (t.graph) graph_ = t.graph;
+    mark(outputs);
+    for (std::size_t n = 0; n < needed_.size(); ++n)
+      if (needed_[n] && (*graph_)[static_cast<int>(n)].op == Op::input) add_input(static_cast<int>(n));
+    for (std::size_t n = 0; n < needed_.size(); ++n)
+      if (needed_[n] && (*graph_)[static_cast<int>(n)].op != Op::input) emit(static_cast<int>(n));
+    for (const Term& t : outputs)
+      program_.outputs_.push_back(t.graph ? registers_[static_cast<std::size_t>(t.node)] : load(t.literal));
+  }
+
+ private:
+  /// Finds the nodes that outputs need, and each one's last reader.
+  void mark(const std::vector<Term>& outputs) {
+    int highest = -1;
+    for (const Term& t : outputs) highest = std::max(highest, t.node);
+    needed_.assign(static_cast<std::size_t>(highest) + 1, false);
+    last_use_.assign(needed_.size(), -1);
+    registers_.assign(needed_.size(), -1);
+    for (const Term& t : outputs)
+      if (t.graph) need(t, static_cast<int>(needed_.size()));
+    for (int n = highest; n >= 0; --n)
+      if (needed_[static_cast<std::size_t>(n)])
+        for (int i = 0; i < arguments_of((*graph_)[n].op); ++i)
+          if (const Term& t = (*graph_)[n].arguments[static_cast<std::size_t>(i)]; t.graph) need(t, n);
+  }
+  void need(const Term& t, int reader) {
+    const auto n = static_cast<std::size_t>(t.node);
+    needed_[n] = true;
+    last_use_[n] = std::max(last_use_[n], reader);
+  }
+
+  int take_register() {
+    if (!free_.empty()) {
+      const int r = free_.back();
+      free_.pop_back();
+      return r;
+    }
+    if (used_ == most_registers)
+      throw std::length_error("the formula needs more than " + std::to_string(most_registers) +
+                              " numbers at a time; simplify it");
+    return used_++;
+  }
+
+  void add_input(int n) {
+    const auto number = static_cast<std::size_t>((*graph_)[n].input);
+    if (program_.inputs_.size() <= number) program_.inputs_.resize(number + 1, most_registers);
+    program_.inputs_[number] = registers_[static_cast<std::size_t>(n)] = take_register();
+  }
+
+  int load(double literal) {
+    const int r = take_register();
+    program_.code_.push_back({Op::load, static_cast<std::uint16_t>(r), 0, 0, 0, literal});
+    return r;
+  }
+
+  void emit(int n) {
+    const TermGraph::Node& node = (*graph_)[n];
+    const Term &a = node.arguments[0], &b = node.arguments[1];
+    Instruction made;
+    made.op = node.op;
+    if (node.op == Op::multiply && !a.graph) made.op = Op::scale, made.literal = a.literal;
+    if (node.op == Op::multiply_add && !a.graph) made.op = Op::scale_add, made.literal = a.literal;
+    if (node.op == Op::add && !a.graph) made.op = Op::offset, made.literal = a.literal;
+    if (node.op == Op::add && !b.graph) made.op = Op::offset, made.literal = b.literal;
+    if (node.op == Op::subtract && !b.graph) made.op = Op::offset, made.literal = -b.literal;
+    if (node.op == Op::subtract && !a.graph) made.op = Op::subtract_from, made.literal = a.literal;
+    if (node.op == Op::divide && !a.graph) made.op = Op::divide_into, made.literal = a.literal;
+    std::vector<int> loaded;  // registers of literals, free after this
+    int read[3] = {0, 0, 0}, reads = 0;
+    const int count = arguments_of(node.op);
+    for (int i = 0; i < count; ++i) {
+      const Term& t = node.arguments[static_cast<std::size_t>(i)];
+      if (t.graph) {
+        read[reads++] = registers_[static_cast<std::size_t>(t.node)];
+      } else if (made.op == node.op || i == 2) {
+        loaded.push_back(load(t.literal));
+        read[reads++] = loaded.back();
+      }
+    }
+    for (int i = 0; i < count; ++i) release(node.arguments[static_cast<std::size_t>(i)], n);
+    free_.insert(free_.end(), loaded.begin(), loaded.end());
+    // An instruction reads a pack of all its arguments before it writes that pack: it may write over them.
+    const int to = take_register();
+    registers_[static_cast<std::size_t>(n)] = to;
+    made.to = static_cast<std::uint16_t>(to);
+    made.a = static_cast<std::uint16_t>(read[0]);
+    made.b = static_cast<std::uint16_t>(read[1]);
+    made.c = static_cast<std::uint16_t>(read[2]);
+    program_.code_.push_back(made);
+  }
+
+  void release(const Term& t, int reader) {
+    if (!t.graph || last_use_[static_cast<std::size_t>(t.node)] != reader) return;
+    last_use_[static_cast<std::size_t>(t.node)] = -1;  // twice an argument: released once
+    free_.push_back(registers_[static_cast<std::size_t>(t.node)]);
+  }
+
+  Program& program_;
+  const TermGraph* graph_ = nullptr;
+  std::vector<bool> needed_;
+  std::vector<int> last_use_, registers_;
+  std::vector<int> free_;
+  int used_ = 0;
+};
+
+Program::Program(const std::vector<Term>& outputs) { Allocator(*this, outputs); }
+
+namespace {
+
+template <Op op, class T, int batch>
+[[gnu::always_inline]] inline void run_op(T* to, const T* a, const T* b, const T* c) {
+  for (int k = 0; k < batch; ++k) to[k] = evaluate<T>(op, a[k], b[k], c[k]);
+}
+
+}  // namespace
+
+template <class T, int batch>
+void Program::run(T* registers) const {
+  for (const Instruction& i : code_) {
+    T* to = registers + i.to * batch;
+    const T *a = registers + i.a * batch, *b = registers + i.b * batch, *c = registers + i.c * batch;
+    const T literal = i.literal;
+    switch (i.op) {
+      case Op::load:
+        for (int k = 0; k < batch; ++k) to[k] = literal;
+        break;
+      case Op::scale:
+        for (int k = 0; k < batch; ++k) to[k] = literal * a[k];
+        break;
+      case Op::scale_add:
+        for (int k = 0; k < batch; ++k) to[k] = literal * a[k] + b[k];
+        break;
+      case Op::offset:
+        for (int k = 0; k < batch; ++k) to[k] = literal + a[k];
+        break;
+      case Op::subtract_from:
+        for (int k = 0; k < batch; ++k) to[k] = literal - a[k];
+        break;
+      case Op::divide_into:
+        for (int k = 0; k < batch; ++k) to[k] = literal / a[k];
+        break;
+#define DRAPE_RUN(op)                      \
+  case Op::op:                             \
+    run_op<Op::op, T, batch>(to, a, b, c); \
+    break
+        DRAPE_RUN(add);
+        DRAPE_RUN(subtract);
+        DRAPE_RUN(multiply);
+        DRAPE_RUN(divide);
+        DRAPE_RUN(negate);
+        DRAPE_RUN(square_root);
+        DRAPE_RUN(exp);
+        DRAPE_RUN(expm1);
+        DRAPE_RUN(log);
+        DRAPE_RUN(log1p);
+        DRAPE_RUN(sin);
+        DRAPE_RUN(cos);
+        DRAPE_RUN(tan);
+        DRAPE_RUN(asin);
+        DRAPE_RUN(acos);
+        DRAPE_RUN(atan);
+        DRAPE_RUN(atan2);
+        DRAPE_RUN(sinh);
+        DRAPE_RUN(cosh);
+        DRAPE_RUN(tanh);
+        DRAPE_RUN(pow);
+        DRAPE_RUN(abs);
+        DRAPE_RUN(sign);
+        DRAPE_RUN(min);
+        DRAPE_RUN(max);
+        DRAPE_RUN(less);
+        DRAPE_RUN(less_equal);
+        DRAPE_RUN(equal);
+        DRAPE_RUN(both);
+        DRAPE_RUN(either);
+        DRAPE_RUN(negated);
+        DRAPE_RUN(choose);
+        DRAPE_RUN(multiply_add);
+#undef DRAPE_RUN
+      case Op::input:
+        break;
+    }
+  }
+}
+
+template void Program::run<double, 1>(double*) const;
+template void Program::run<Pack<native_pack_width>, 1>(Pack<native_pack_width>*) const;
+template void Program::run<Pack<native_pack_width>, 8>(Pack<native_pack_width>*) const;
+
+}  // namespace drape::formula

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "plugins/energy/formula/term.h"
+
+namespace drape::formula {
+
+/// Straight-line code that computes terms from inputs, in registers of a few packs each.
+class Program {
+ public:
+  static constexpr int most_registers = 160;
+  static constexpr int slots = most_registers + 1;  ///< registers, and one for inputs that are not read
+
+  Program() = default;
+  /// Code for these terms; throws std::length_error if it needs more than most_registers.
+  explicit Program(const std::vector<Term>& outputs);
+
+  /// Whether the program reads an input.
+  template <class Input>
+  bool reads(Input input) const {
+    return register_of(input) < most_registers;
+  }
+  /// The register of an input, to be filled before run; the last slot for one that is not read.
+  template <class Input>
+  int register_of(Input input) const {
+    const auto number = static_cast<std::size_t>(input);
+    return number < inputs_.size() ? inputs_[number] : most_registers;
+  }
+  /// The register of an output after run.
+  int output(int i) const { return outputs_[static_cast<std::size_t>(i)]; }
+  std::size_t size() const { return code_.size(); }
+
+  /// Runs the code on registers[slots * batch]; T is double or a Pack. Register r is the `batch` numbers from
+  /// registers[r * batch] on.
+  template <class T, int batch>
+  [[gnu::noinline]] void run(T* registers) const;
+
+ private:
+  struct Instruction {
+    Op op = Op::load;
+    std::uint16_t to = 0, a = 0, b = 0, c = 0;
+    double literal = 0;
+  };
+  class Allocator;
+
+  std::vector<Instruction> code_;
+  std::vector<int> inputs_;   // registers
+  std::vector<int> outputs_;  // registers
+};
+
+}  // namespace drape::formula

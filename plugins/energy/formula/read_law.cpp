@@ -1,0 +1,132 @@
+#include "plugins/energy/formula/read_law.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/plugin/refused_parameters.h"
+#include "plugins/energy/formula/functions.h"
+
+namespace drape::formula {
+namespace {
+
+constexpr std::size_t most_parts = 64;  // in "where"
+constexpr std::size_t most_constants = 64;
+
+class LawReader {
+ public:
+  explicit LawReader(const Formula::Parameters& p) : p_(p) {
+    law_.kind = p.per;
+    law_.per_area = !p.density.empty();
+  }
+
+  Law read() {
+    if (!is_name(p_.name))
+      refuse("name", "\"" + excerpt(p_.name) + "\" must be a letter, then letters, digits and underscores");
+    read_constants();
+    read_where();
+    read_energy();
+    if (p_.axis.norm() == 0) refuse("axis", "\"axis\" is a direction, not [0, 0, 0]");
+    if (!faults_.empty()) throw RefusedParameters(faults_);
+    return std::move(law_);
+  }
+
+ private:
+  static bool is_name(const std::string& text) {
+    const auto letter = [](unsigned char c) { return std::isalnum(c) || c == '_'; };
+    return !text.empty() && std::isalpha(static_cast<unsigned char>(text[0])) &&
+           std::all_of(text.begin(), text.end(), letter) && text != "contact";
+  }
+
+  void refuse(const std::string& path, const std::string& message) { faults_.push_back({path, message}); }
+
+  /// Refuses a name of the config's that means something else already.
+  bool is_free(const std::string& path, const std::string& name) {
+    const auto taken = [&](const std::string& by) {
+      refuse(path, "\"" + excerpt(name) + "\" is " + by + "; choose another name");
+      return false;
+    };
+    for (const Symbol& s : symbols_of(law_.kind))
+      if (s.name == name) return taken("a symbol already (" + s.description + ")");
+    for (const Constant& c : law_.constants)
+      if (c.name == name) return taken("a constant already");
+    for (const Part& part : law_.parts)
+      if (part.name == name) return taken("a sub-expression already");
+    if (find_function(name, 0)) return taken("a function");
+    return true;
+  }
+
+  void read_constants() {
+    if (p_.constants.all.size() > most_constants)
+      return refuse("constants", "at most " + std::to_string(most_constants) + " constants");
+    for (const NamedConstant& c : p_.constants.all) {
+      const std::string path = "constants." + c.name;
+      if (!is_free(path, c.name)) continue;
+      if (!c.unit.empty() && !dimension_of(c.unit))
+        refuse(path + ".unit",
+               "\"" + excerpt(c.unit) +
+                   "\" is not a unit that formulas know; write one of m, kg, s, N, J, Pa, W, Hz, "
+                   "rad, 1, without prefixes, as in N/m or kg m^2/s^2");
+      law_.constants.push_back({c.name, c.value, c.unit});
+    }
+  }
+
+  void read_where() {
+    if (p_.where.kind == ConfigNode::Kind::null) return;
+    if (p_.where.kind != ConfigNode::Kind::map)
+      return refuse("where", "\"where\" must be a map of names and formulas, as in {I1: \"s1^2 + s2^2\"}");
+    if (p_.where.entries.size() > most_parts)
+      return refuse("where", "at most " + std::to_string(most_parts) + " sub-expressions");
+    for (const auto& [name, node] : p_.where.entries) {
+      const std::string path = "where." + name;
+      if (!is_name(name))
+        refuse(path, "\"" + excerpt(name) + "\" must be a letter, then letters, digits and underscores");
+      else if (node.kind != ConfigNode::Kind::scalar)
+        refuse(path, "\"" + excerpt(name) + "\" must be a formula in quotes");
+      else if (is_free(path, name))
+        read_part(path, name, node.scalar, false);
+    }
+  }
+
+  void read_energy() {
+    const bool density = !p_.density.empty(), energy = !p_.energy.empty();
+    const bool triangle = law_.kind == ElementKind::triangle;
+    const std::string key = density ? "density" : "energy";
+    if (density && !triangle)
+      return refuse(
+          key, "a density is for \"per: triangle\"; write \"energy\", in J for each " + name_of(law_.kind));
+    if (density == energy)
+      return refuse(key, density ? "write either \"density\" or \"energy\", not both"
+                                 : std::string("\"") + (triangle ? "density" : "energy") +
+                                       "\" is missing: the formula of the energy");
+    if (faults_.empty()) read_part(key, key, density ? p_.density : p_.energy, true);
+  }
+
+  void read_part(const std::string& path, const std::string& name, const std::string& text, bool is_energy) {
+    try {
+      append_part(law_, name, text, is_energy);
+    } catch (const Fault& fault) {
+      faults_.push_back(
+          {path, std::string(fault.what()) + later(fault, text), fault.at, with_caret(text, fault)});
+    }
+  }
+
+  /// A remark if the fault is a name that "where" defines further down.
+  std::string later(const Fault& fault, const std::string& text) const {
+    for (const auto& [name, node] : p_.where.entries)
+      if (text.compare(fault.at, name.size(), name) == 0 &&
+          std::string(fault.what()).starts_with("unknown name \"" + name + "\""))
+        return "; \"where\" defines it further down: move it up";
+    return "";
+  }
+
+  const Formula::Parameters& p_;
+  Law law_;
+  std::vector<ParameterFault> faults_;
+};
+
+}  // namespace
+
+Law read_law(const Formula::Parameters& p) { return LawReader(p).read(); }
+
+}  // namespace drape::formula

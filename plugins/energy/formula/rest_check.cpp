@@ -1,0 +1,107 @@
+#include "plugins/energy/formula/rest_check.h"
+
+#include <cmath>
+#include <exception>
+
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/derivative_check.h"
+#include "core/kernel/plugin/refused_parameters.h"
+
+namespace drape::formula {
+namespace {
+
+constexpr double cell = 0.01;  // [m]
+
+/// Two cells by two.
+Level patch() { return Level::of(0, grid({2 * cell, 2 * cell}, 3, 3, Diagonals::one_way)); }
+
+/// The patch stretched, sheared and folded.
+Positions deformed(const Positions& rest) {
+  Eigen::Matrix3d f;
+  f << 1.05, 0.03, 0, 0.01, 0.97, 0, 0.1, 0.2, 1;
+  Positions x = rest * f.transpose();
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (int c = 0; c < 3; ++c) x(i, c) += 0.02 * cell * std::sin(static_cast<double>(7 * i + 3 * c + 1));
+  return x;
+}
+
+bool has_finite_hessian(const BoundEnergy& energy, const Positions& x) {
+  const Stencils stencils = energy.stencils();
+  if (stencils.rows() == 0) return true;
+  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
+  matrix.set_zero();
+  const BlockSlots slots(*matrix.pattern, stencils);
+  BlockSink sink(slots, matrix);
+  energy.add_hessian(x, Projection::none, sink);
+  for (const double entry : matrix.values)
+    if (!std::isfinite(entry)) return false;
+  return true;
+}
+
+}  // namespace
+
+void require_computable(const Law& law, const std::string& key, const Energy& energy) {
+  const auto refuse = [&](const std::string& message) {
+    const std::string& text = law.parts.back().text;
+    throw RefusedParameters({{key, message, 0, with_caret(text, Fault(0, ""))}});
+  };
+  std::unique_ptr<BoundEnergy> bound;
+  const Level level = patch();
+  try {
+    bound = energy.bind(level, Material());
+  } catch (const std::exception& error) {
+    refuse(error.what());
+  }
+  if (law.kind != ElementKind::vertex && !has_finite_hessian(*bound, level.rest.vertices))
+    refuse(
+        "the stiffness of the rest shape is not finite: a second derivative is infinite there, as that of "
+        "sqrt(x) at 0");
+}
+
+std::string derivatives_remark(const Energy& energy, const Material& material) {
+  try {
+    const Level level = patch();
+    const DerivativeCheck check =
+        check_derivatives(*energy.bind(level, material), deformed(level.rest.vertices), 1e-3 * cell);
+    const double worst = std::max(check.gradient.error, check.hessian.error);
+    return "derivatives " + std::string(worst <= 1e-5 ? "agree with" : "DIFFER from") +
+           " finite differences, forces to " + three_digits(check.gradient.error) + ", stiffness to " +
+           three_digits(check.hessian.error);
+  } catch (const std::exception& error) {
+    return std::string("derivatives could not be checked: ") + error.what();
+  }
+}
+
+std::string rest_remark(const Energy& energy, ElementKind kind, const Material& material) {
+  // One triangle with legs along x and y, or two about the diagonal edge of a cell.
+  TriangleMesh mesh;
+  mesh.vertices.resize(kind == ElementKind::hinge ? 4 : 3, 3);
+  mesh.vertices.topRows(3) << 0, 0, 0, cell, 0, 0, 0, cell, 0;
+  mesh.triangles.resize(kind == ElementKind::hinge ? 2 : 1, 3);
+  mesh.triangles.row(0) << 0, 1, 2;
+  if (kind == ElementKind::hinge) {
+    mesh.vertices.row(3) << cell, cell, 0;
+    mesh.triangles.row(1) << 1, 3, 2;
+  }
+  const Level level = Level::of(0, mesh);
+  Positions g = Positions::Zero(mesh.vertices.rows(), 3);
+  try {
+    energy.bind(level, material)->add_gradient(level.rest.vertices, g);
+  } catch (const std::exception& error) {
+    return std::string("has no finite state of rest: ") + error.what();
+  }
+  const auto rounded = [](double value) { return three_digits(std::abs(value) < 1e-300 ? 0 : value); };
+  if (kind == ElementKind::hinge) {
+    const double height = cell * std::sqrt(0.5), edge = cell * std::sqrt(2.0);
+    return "moment per length of a flat edge: " + rounded(g(0, 2) * height / edge) + " N";
+  }
+  if (kind == ElementKind::triangle)
+    return "stress at rest: " + rounded(2 * g(1, 0) / cell) + ", " + rounded(2 * g(2, 1) / cell) +
+           ", shear " + rounded((g(1, 1) + g(2, 0)) / cell) + " N/m";
+  const Eigen::RowVector3d a = -g.colwise().sum() / (material.area_density() * cell * cell / 2);
+  return "acceleration at the origin: " + rounded(a[0]) + ", " + rounded(a[1]) + ", " + rounded(a[2]) +
+         " m/s²";
+}
+
+}  // namespace drape::formula

@@ -1,0 +1,225 @@
+#include "plugins/energy/formula/strain_kernel.h"
+
+#include <algorithm>
+
+namespace drape::formula {
+namespace {
+
+using T = StrainKernel::T;
+using Vector = StrainKernel::Vector;
+
+CoupledSlopes<T> slopes_of(const PrincipalStretch<T>& s, const T& first1, const T& first2, const T& second1,
+                           const T& mixed, const T& second2) {
+  CoupledSlopes<T> slopes;
+  slopes.first1 = first1, slopes.first2 = first2;
+  slopes.second1 = second1, slopes.second2 = second2, slopes.mixed = mixed;
+  slopes.divide(s.largest, s.smallest);
+  return slopes;
+}
+
+/// Compiled once for both kernels.
+[[gnu::noinline]] void project(StrainKernel::Batch::Hessian& h, Projection projection) {
+  project_hessian(h, projection);
+}
+
+}  // namespace
+
+// Out of line: value and gradient must return the same bits. Flat, so that a pack stays in registers.
+[[gnu::noinline, gnu::flatten]] void StrainKernel::read(const Batch& packs, const Program& program,
+                                                        T* registers, Deformation* kept) const {
+  using I = TriangleInput;
+  const auto of = [&](I input) { return registers + program.register_of(input) * batch; };
+  T *const g11 = of(I::g11), *const g22 = of(I::g22), *const g12 = of(I::g12), *const det = of(I::det),
+           *const s1 = of(I::s1), *const s2 = of(I::s2), *const area = of(I::area);
+  const bool reads_det = program.reads(I::det),
+             reads_stretches = with_stretches_ && (program.reads(I::s1) || program.reads(I::s2));
+  for (int i = 0; i < batch; ++i) {
+    const T* m = packs.rest[i];
+    Vector e[2];
+    packs.gather(i, e);
+    const Deformation f = {e[0] * m[0] + e[1] * m[1], e[0] * m[2] + e[1] * m[3]};
+    if (kept) kept[i] = f;
+    g11[i] = 0.5 * (f.f1.squaredNorm() - 1.0);
+    g22[i] = 0.5 * (f.f2.squaredNorm() - 1.0);
+    g12[i] = 0.5 * f.f1.dot(f.f2);
+    if (reads_det) det[i] = f.f1.cross(f.f2).squaredNorm();
+    if (reads_stretches) {
+      const PrincipalStretch<T> s(f.f1, f.f2);
+      s1[i] = s.largest;
+      s2[i] = s.smallest;
+    }
+    area[i] = m[4];
+    places_.fill(program, registers, i, *packs.elements[i], I::u);
+  }
+}
+
+void StrainKernel::value(const Batch& packs, T* energies) const {
+  T registers[Program::slots * batch];
+  read(packs, programs_.value, registers, nullptr);
+  programs_.value.run<T, batch>(registers);
+  const T* energy = registers + programs_.value.output(0) * batch;
+  for (int i = 0; i < batch; ++i) energies[i] = infinite_if_not_finite(energy[i]);
+}
+
+StrainKernel::ByStrains StrainKernel::first_by_strains(const Deformation& f, const T* registers,
+                                                       const Program& program, int i, int first) const {
+  const auto output = [&](int k) { return registers[program.output(first + k) * batch + i]; };
+  ByStrains w;
+  for (int k = 0; k < 3; ++k) w.first[k] = output(k);
+  if (!with_stretches_) return w;
+  const PrincipalStretch<T> s(f.f1, f.f2);
+  const T b1 = output(3) / StretchDerivatives<T>::floored(s.largest),
+          b2 = output(4) / StretchDerivatives<T>::floored(s.smallest);
+  const T cc = s.cosine * s.cosine, ss = s.sine * s.sine, cs = s.cosine * s.sine;
+  w.first[0] += b1 * cc + b2 * ss;
+  w.first[1] += b1 * ss + b2 * cc;
+  w.first[2] += 2.0 * cs * (b1 - b2);
+  return w;
+}
+
+StrainKernel::ByStrains StrainKernel::by_strains(const Deformation& f, const T* registers, int i) const {
+  const Program& program = programs_.hessian;
+  ByStrains w = first_by_strains(f, registers, program, i, 0);
+  const int variables = with_stretches_ ? 5 : 3;
+  const auto second = [&](int j, int k) {
+    return registers[program.output(variables + Jet<5, T>::index(j, k)) * batch + i];
+  };
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j <= k; ++j) w.second[Jet<3, T>::index(j, k)] = second(j, k);
+  if (!with_stretches_) return w;
+
+  // Strains along v₁ and v₂ and the shear between them are linear in g; so are changes of the stretches.
+  const PrincipalStretch<T> s(f.f1, f.f2);
+  const T s1 = StretchDerivatives<T>::floored(s.largest), s2 = StretchDerivatives<T>::floored(s.smallest);
+  const T cc = s.cosine * s.cosine, ss = s.sine * s.sine, cs = s.cosine * s.sine;
+  const T a1[] = {cc, ss, 2.0 * cs}, a2[] = {ss, cc, -2.0 * cs}, shear[] = {-cs, cs, cc - ss};
+  const T first1 = registers[program.output(3) * batch + i],
+          first2 = registers[program.output(4) * batch + i];
+  const CoupledSlopes<T> slopes = slopes_of(s, first1, first2, second(3, 3), second(3, 4), second(4, 4));
+  const T b1 = first1 / s1, b2 = first2 / s2;
+  const T k11 = (slopes.second1 - b1) / (s1 * s1), k22 = (slopes.second2 - b2) / (s2 * s2),
+          k12 = slopes.mixed / (s1 * s2), q = 4.0 * ((slopes.divided - b2) / (s1 * (s1 + s2)));
+  for (int k = 0; k < 3; ++k)
+    for (int j = 0; j <= k; ++j) {
+      const T across1 = (second(j, 3) * a1[k] + a1[j] * second(k, 3)) / s1,
+              across2 = (second(j, 4) * a2[k] + a2[j] * second(k, 4)) / s2;
+      w.second[Jet<3, T>::index(j, k)] += k11 * (a1[j] * a1[k]) + k22 * (a2[j] * a2[k]) +
+                                          k12 * (a1[j] * a2[k] + a2[j] * a1[k]) + q * (shear[j] * shear[k]) +
+                                          across1 + across2;
+    }
+  return w;
+}
+
+[[gnu::flatten]] void StrainKernel::gradient(const Batch& packs, T* energies, Vector (*g)[2]) const {
+  T registers[Program::slots * batch];
+  const Program& program = programs_.gradient;
+  Deformation kept[batch];
+  read(packs, program, registers, kept);
+  program.run<T, batch>(registers);
+  for (int i = 0; i < batch; ++i) {
+    energies[i] = infinite_if_not_finite(registers[program.output(0) * batch + i]);
+    const Deformation& f = kept[i];
+    const ByStrains w = first_by_strains(f, registers, program, i, 1);
+    const T shear = 0.5 * w.first[2];
+    const Vector p1 = f.f1 * w.first[0] + f.f2 * shear, p2 = f.f1 * shear + f.f2 * w.first[1];
+    const T* m = packs.rest[i];
+    g[i][0] = p1 * m[0] + p2 * m[2];
+    g[i][1] = p1 * m[1] + p2 * m[3];
+  }
+}
+
+[[gnu::flatten]] void StrainKernel::exact_hessian(const Deformation& f, const T* m, const T* registers, int i,
+                                                  Batch::Hessian& h) const {
+  using Block = Eigen::Matrix<T, 3, 3>;
+  const ByStrains w = by_strains(f, registers, i);
+  const auto second = [&](int j, int k) { return w.second[Jet<3, T>::index(j, k)]; };
+  const T shear = 0.5 * w.first[2], c1 = 0.5 * second(0, 2), c2 = 0.5 * second(1, 2),
+          cc = 0.25 * second(2, 2);
+  // The matrix by (f₁, f₂): rows are f₁ or f₂ times what each column takes of f₁ and f₂.
+  const Vector u1 = f.f1 * second(0, 0) + f.f2 * c1, u2 = f.f1 * c1 + f.f2 * cc;
+  const Vector v1 = f.f2 * second(0, 1) + f.f1 * c1, v2 = f.f2 * c2 + f.f1 * cc;
+  const Vector w1 = f.f2 * second(1, 1) + f.f1 * c2;
+  Block h11 = f.f1 * u1.transpose() + f.f2 * u2.transpose();
+  Block h12 = f.f1 * v1.transpose() + f.f2 * v2.transpose();
+  Block h22 = f.f2 * w1.transpose() + f.f1 * v2.transpose();
+  for (int c = 0; c < 3; ++c) h11(c, c) += w.first[0], h22(c, c) += w.first[1], h12(c, c) += shear;
+  Eigen::Matrix<T, 6, 6> full;
+  const Block symmetric = h12 + h12.transpose();
+  full.block<3, 3>(0, 0) = h11 * (m[0] * m[0]) + symmetric * (m[0] * m[2]) + h22 * (m[2] * m[2]);
+  full.block<3, 3>(0, 3) =
+      h11 * (m[0] * m[1]) + h12 * (m[0] * m[3]) + h12.transpose() * (m[2] * m[1]) + h22 * (m[2] * m[3]);
+  full.block<3, 3>(3, 3) = h11 * (m[1] * m[1]) + symmetric * (m[1] * m[3]) + h22 * (m[3] * m[3]);
+  h = Batch::Hessian(full);
+}
+
+void StrainKernel::hessian(const Batch& packs, Projection projection, Batch::Hessian* h) const {
+  T registers[Program::slots * batch];
+  Deformation kept[batch];
+  read(packs, programs_.hessian, registers, kept);
+  programs_.hessian.run<T, batch>(registers);
+  for (int i = 0; i < batch; ++i) {
+    exact_hessian(kept[i], packs.rest[i], registers, i, h[i]);
+    project(h[i], projection);
+  }
+}
+
+[[gnu::noinline, gnu::flatten]] void StretchFormulaKernel::read(const Batch& packs, const Program& program,
+                                                                T* registers, Deformation* kept) const {
+  T* const s1 = registers + program.register_of(TriangleInput::s1) * batch;
+  T* const s2 = registers + program.register_of(TriangleInput::s2) * batch;
+  T* const area = registers + program.register_of(TriangleInput::area) * batch;
+  for (int i = 0; i < batch; ++i) {
+    const T* rest = packs.rest[i];
+    Vector e[2];
+    packs.gather(i, e);
+    const Deformation f = {e[0] * rest[0], e[0] * rest[1] + e[1] * rest[2]};
+    if (kept) kept[i] = f;
+    const PrincipalStretch<T> s(f.f1, f.f2);
+    s1[i] = s.largest;
+    s2[i] = s.smallest;
+    area[i] = rest[3];
+    places_.fill(program, registers, i, *packs.elements[i], TriangleInput::u);
+  }
+}
+
+void StretchFormulaKernel::value(const Batch& packs, T* energies) const {
+  T registers[Program::slots * batch];
+  read(packs, programs_.value, registers, nullptr);
+  programs_.value.run<T, batch>(registers);
+  const T* energy = registers + programs_.value.output(0) * batch;
+  for (int i = 0; i < batch; ++i) energies[i] = infinite_if_not_finite(energy[i]);
+}
+
+[[gnu::flatten]] void StretchFormulaKernel::gradient(const Batch& packs, T* energies, Vector (*g)[2]) const {
+  T registers[Program::slots * batch];
+  const Program& program = programs_.gradient;
+  Deformation kept[batch];
+  read(packs, program, registers, kept);
+  program.run<T, batch>(registers);
+  for (int i = 0; i < batch; ++i) {
+    const auto output = [&](int k) { return registers[program.output(k) * batch + i]; };
+    energies[i] = infinite_if_not_finite(output(0));
+    StretchSlopes<T> slopes;
+    slopes.first1 = output(1), slopes.first2 = output(2);
+    StretchDerivatives<T>::gradient(PrincipalStretch<T>(kept[i].f1, kept[i].f2), slopes, packs.rest[i], g[i]);
+  }
+}
+
+void StretchFormulaKernel::hessian(const Batch& packs, Projection projection, Batch::Hessian* h) const {
+  T registers[Program::slots * batch];
+  const Program& program = programs_.hessian;
+  Deformation kept[batch];
+  read(packs, program, registers, kept);
+  program.run<T, batch>(registers);
+  for (int i = 0; i < batch; ++i) {
+    const auto output = [&](int k) { return registers[program.output(k) * batch + i]; };
+    const PrincipalStretch<T> s(kept[i].f1, kept[i].f2);
+    Eigen::Matrix<T, 6, 6> full;
+    StretchDerivatives<T>::hessian(s, slopes_of(s, output(0), output(1), output(2), output(3), output(4)),
+                                   packs.rest[i], full);
+    h[i] = Batch::Hessian(full);
+    project(h[i], projection);
+  }
+}
+
+}  // namespace drape::formula

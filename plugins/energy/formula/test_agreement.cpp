@@ -1,0 +1,169 @@
+// Formulas of the compiled plugins have their values and derivatives, and formulas run under every method.
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/kernel/mesh/generate.h"
+#include "tests/support/conformance.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+const char* const stvk =
+    "{type: formula, density: \"thickness*(mu*(g11^2 + g22^2 + 2*g12^2) + lambda/2*(g11 + g22)^2)\"}";
+const char* const neo_hookean =
+    "{type: formula, where: {l: log(J)}, density: \"thickness*(mu*(g11 + g22 - l) + lambda/2*l^2)\"}";
+const char* const hinge = "{type: formula, per: hinge, energy: \"3*k*length^2/area*(theta - rest)^2\"}";
+
+Level curved_level() {
+  TriangleMesh mesh = random_triangulation({0.6, 0.5}, 200, 8);
+  for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
+    mesh.vertices(i, 2) = 0.1 * std::sin(5 * mesh.vertices(i, 0)) * std::cos(4 * mesh.vertices(i, 1));
+  return Level::of(0, mesh);
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values) most = std::max(most, std::abs(v));
+  return most;
+}
+
+void check_agreement(const std::string& formula, const std::string& plugin, double tolerance) {
+  INFO(plugin);
+  const Level level = curved_level();
+  Material material;
+  material.thickness = 3e-4;
+  const auto own = make_plugin_from<Energy>(formula), other = make_plugin_from<Energy>(plugin);
+  CHECK(own->role() == other->role());
+  CHECK(own->midpoint_factor() == other->midpoint_factor());
+  CHECK(own->plate_stiffness(material) ==
+        Approx(other->plate_stiffness(material)).epsilon(1e-3).margin(0));  // rolled, not bent in the limit
+  const auto a = own->bind(level, material), b = other->bind(level, material);
+  CHECK(a->stencils() == b->stencils());
+  for (const double size : {1e-4, 2e-3, 0.01}) {
+    INFO("noise of " << size << " m");
+    const Positions x = level.rest.vertices + noise(level.vertex_count(), size, 3);
+    CHECK(a->value(x) == Approx(b->value(x)).epsilon(tolerance).margin(0));
+    const Positions ga = gradient_of(*a, x), gb = gradient_of(*b, x);
+    CHECK((ga - gb).cwiseAbs().maxCoeff() <= tolerance * gb.cwiseAbs().maxCoeff());
+    for (const Projection projection : {Projection(Projection::none), Projection(Projection::clamp)}) {
+      std::vector<double> ha = hessian_of(*a, x, projection).values;
+      const std::vector<double> hb = hessian_of(*b, x, projection).values;
+      REQUIRE(ha.size() == hb.size());
+      for (std::size_t i = 0; i < ha.size(); ++i) ha[i] -= hb[i];
+      CHECK(largest(ha) <= tolerance * largest(hb));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("formulas agree with the compiled energies") {
+  check_agreement(stvk, "stvk", 1e-12);
+  check_agreement(neo_hookean, "neo_hookean", 1e-12);
+  check_agreement(hinge, "hinge", 1e-12);
+}
+
+TEST_CASE("a formula by strains, stretches and both is one law") {
+  const Level level = curved_level();
+  const Material material;
+  const auto bind = [&](const std::string& density) {
+    return make_plugin_from<Energy>("{type: formula, constants: {m: {value: 30, unit: N/m}}, density: \"" +
+                                    density + "\"}")
+        ->bind(level, material);
+  };
+  const auto strains = bind("m*(g11 + g22)^2 + m*(J - 1)^2"),
+             stretches = bind("m*(s1^2 + s2^2 - 2)^2/4 + m*(s1*s2 - 1)^2"),
+             both = bind("m*(g11 + g22)^2 + m*(s1*s2 - 1)^2 + 0*s1");
+  for (const double size : {0.002, 0.01}) {
+    const Positions x = level.rest.vertices + noise(level.vertex_count(), size, 3);
+    const Positions g = gradient_of(*strains, x);
+    const std::vector<double> h = hessian_of(*strains, x, Projection::none).values;
+    for (const BoundEnergy* other : {stretches.get(), both.get()}) {
+      CHECK(other->value(x) == Approx(strains->value(x)).epsilon(1e-12));
+      CHECK((gradient_of(*other, x) - g).cwiseAbs().maxCoeff() <= 1e-11 * g.cwiseAbs().maxCoeff());
+      std::vector<double> own = hessian_of(*other, x, Projection::none).values;
+      for (std::size_t i = 0; i < h.size(); ++i) own[i] -= h[i];
+      CHECK(largest(own) <= 1e-9 * largest(h));
+    }
+  }
+}
+
+TEST_CASE("principal stretches have derivatives where they are equal") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
+  const auto energy = make_plugin_from<Energy>(
+      "{type: formula, constants: {m: {value: 30, unit: N/m}}, density: \"m*(s1^3 + s2^3 + (s1*s2)^-3 - "
+      "3)\"}");
+  const auto bound = energy->bind(level, Material());
+  for (const double stretch : {1.0, 1.1}) {
+    const Positions x = stretch * level.rest.vertices;
+    const Eigen::MatrixXd h = dense(hessian_of(*bound, x, Projection::none));
+    const auto gradient = [&](const Positions& y) { return gradient_of(*bound, y); };
+    CHECK((h - differences(gradient, x, 1e-5)).norm() <= 1e-7 * h.norm());
+  }
+}
+
+TEST_CASE("an isotropic formula buckles below the mesh as the compiled law does") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 4, 4, Diagonals::one_way));
+  const Material material;
+  const auto own = make_plugin_from<Energy>(stvk)->bind_buckling(level, material, 1e-5),
+             other = make_plugin_from<Energy>("stvk")->bind_buckling(level, material, 1e-5);
+  for (const double size : {1e-4, 0.004}) {
+    const Positions x = 0.98 * level.rest.vertices + noise(level.vertex_count(), size, 3);
+    CHECK(own->value(x) == Approx(other->value(x)).epsilon(1e-9));
+    const Positions g = gradient_of(*other, x);
+    CHECK((gradient_of(*own, x) - g).cwiseAbs().maxCoeff() <= 1e-7 * g.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_CASE("warp is along the axis, wherever corners begin") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 5, 5, Diagonals::criss_cross));
+  const auto energy = [&](const std::string& axis, const Eigen::Vector3d& stretch) {
+    const auto bound =
+        make_plugin_from<Energy>(
+            "{type: formula, constants: {m: {value: 30, unit: N/m}}, density: \"m*g11^2\"" + axis + "}")
+            ->bind(level, Material());
+    return bound->value(level.rest.vertices * stretch.asDiagonal());
+  };
+  CHECK(energy("", {1.1, 1, 1}) == Approx(0.01 * 30 * std::pow(0.105, 2)));
+  CHECK(energy("", {1, 1.1, 1}) == Approx(0).margin(1e-18));
+  CHECK(energy(", axis: [0, 2, 0]", {1, 1.1, 1}) == Approx(0.01 * 30 * std::pow(0.105, 2)));
+  CHECK(energy(", axis: [0, 0, 1]", {1.1, 1, 1}) == Approx(0.01 * 30 * std::pow(0.105, 2)));  // the next one
+}
+
+TEST_CASE("a formula that is not finite at rest is refused") {
+  const auto refused = [](const std::string& yaml, const std::string& message) {
+    CHECK_THROWS_WITH(make_plugin_from<Energy>("{type: formula, " + yaml + "}"), Catch::Contains(message));
+  };
+  refused("density: \"thickness*E*log(g11)\"", "the energy is not finite on the rest shape");
+  refused("density: \"thickness*E*sqrt(g11)\"", "has forces that are not finite on the rest shape");
+  refused("density: \"thickness*E*max(g11, 0)^1.5\"", "the stiffness of the rest shape is not finite");
+}
+
+TEST_CASE("gravity by a formula is linear, as the plugin is") {
+  const Level level = curved_level();
+  const Material material;
+  const auto energy = make_plugin_from<Energy>(
+      "{type: formula, per: vertex, constants: {g: {value: 9.81, unit: m/s^2}}, energy: \"mass*g*(z - w)\"}");
+  CHECK(energy->role() == EnergyRole::external);
+  const auto bound = energy->bind(level, material),
+             gravity = make_plugin_from<Energy>("gravity")->bind(level, material);
+  CHECK(bound->stencils().rows() == 0);
+  const Positions x = level.rest.vertices + noise(level.vertex_count(), 0.1, 3);
+  CHECK(bound->value(x) == Approx(gravity->value(x) - gravity->value(level.rest.vertices)));
+  CHECK((gradient_of(*bound, x) - gradient_of(*gravity, x)).norm() <= 1e-15);
+  CHECK(bound->value(level.rest.vertices) == Approx(0).margin(1e-15));
+}
+
+TEST_CASE("an energy of -infinity counts as outside the domain") {
+  const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
+  const auto bound = make_plugin_from<Energy>("{type: formula, density: \"thickness*E*log(2*g11 + 1)\"}")
+                         ->bind(level, Material());
+  Positions x = level.rest.vertices;
+  x.col(0).setZero();
+  CHECK(bound->value(x) == std::numeric_limits<double>::infinity());
+}

@@ -1,0 +1,164 @@
+// A formula in an experiment: its keys, its errors, its runs.
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "core/app/experiment/describe.h"
+#include "core/app/experiment/experiment.h"
+#include "core/app/files/yaml_file.h"
+#include "tests/support/registry.h"
+
+using namespace drape;
+
+namespace {
+
+const std::string experiment_text = R"yaml(name: cloth
+cloth: {side: 0.2, vertices: 25}
+levels: 2
+pins:
+  - {region: box, lower: [0, 0, 0], upper: [0, 0.2, 0]}
+energies:
+  - {type: formula, name: orthotropic, constants: {warp: {value: 200, unit: N/m}, nu12: 0.2},
+     where: {sum: "g11 + g22"},
+     density: "warp*(g11^2 + nu12*sum^2
+               + g22^2 + g12^2)"}
+  - hinge
+  - gravity
+methods: {newton: {}}
+)yaml";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  REQUIRE(text.find(from) != std::string::npos);
+  return text.replace(text.find(from), from.size(), to);
+}
+
+ConfigErrors errors_of(const std::string& text) {
+  const auto file = std::filesystem::temp_directory_path() / "drape_formula_keys.yaml";
+  std::ofstream(file) << text;
+  ConfigErrors errors;
+  read_experiment(file, {}, test_registry(), errors);
+  std::filesystem::remove(file);
+  return errors;
+}
+
+Experiment experiment_of(const std::string& text, const Overrides& overrides = {}) {
+  const auto file = std::filesystem::temp_directory_path() / "drape_formula_keys.yaml";
+  std::ofstream(file) << text;
+  ConfigErrors errors;
+  auto experiment = read_experiment(file, overrides, test_registry(), errors);
+  std::filesystem::remove(file);
+  throw_errors(errors);
+  return std::move(*experiment);
+}
+
+double stretched_energy(const Experiment& e, int energy = 0) {
+  ConfigErrors errors;
+  const auto scene = build_scene(e, errors);
+  throw_errors(errors);
+  const Positions x = 1.1 * scene->hierarchy.levels[0].rest.vertices;
+  return scene->models[0]->energy_parts(x)[static_cast<std::size_t>(energy)].second;
+}
+
+}  // namespace
+
+TEST_CASE("a constant is a key of its energy, with and without a unit") {
+  const double own = stretched_energy(experiment_of(experiment_text));
+  const auto with = [](const std::string& key, const std::string& value) {
+    return stretched_energy(experiment_of(experiment_text, {{key, value}}));
+  };
+  CHECK(with("energies.orthotropic.warp", "400") == Approx(2 * own));
+  CHECK(with("energies.0.warp", "400") == Approx(2 * own));
+  CHECK(with("energies.orthotropic.constants.warp", "400") == Approx(2 * own));
+  CHECK(with("energies.orthotropic.constants.warp.value", "400") == Approx(2 * own));
+  CHECK(with("energies.orthotropic.nu12", "0.7") > own);
+  CHECK(with("energies.orthotropic.density", "warp*g11^2") < own);
+  CHECK_THROWS_WITH(with("energies.orthotropic.wrap", "1"),
+                    Catch::Contains("unknown key \"wrap\" in formula"));
+  CHECK_THROWS_WITH(with("energies.orthotropic.warp", "many"),
+                    Catch::Contains("\"warp\" in constants must be a number, not \"many\""));
+}
+
+TEST_CASE("results name a formula by its name") {
+  const Experiment e = experiment_of(experiment_text);
+  CHECK(e.energies[0].name == "orthotropic");
+  CHECK(e.energies[1].name == "hinge");
+}
+
+TEST_CASE("a schedule changes a constant") {
+  const Experiment e = experiment_of(experiment_text + R"(schedule:
+  steps: 2
+  keys: [{parameter: energies.orthotropic.warp, times: [0, 1], values: [100, 300]}]
+)");
+  ConfigErrors errors;
+  const auto scene = build_scene(e, errors);
+  throw_errors(errors);
+  const Positions x = 1.1 * scene->hierarchy.levels[0].rest.vertices;
+  const double first = scene->model(0).energy_parts(x)[0].second;
+  CHECK(first == Approx(0.5 * stretched_energy(experiment_of(experiment_text))));
+}
+
+TEST_CASE("the saved config reads back as the same energy") {
+  const Experiment e = experiment_of(experiment_text);
+  const Experiment again = experiment_of(to_yaml(e.resolved));
+  CHECK(stretched_energy(again) == stretched_energy(e));
+  CHECK(again.resolved.one_line() == e.resolved.one_line());
+}
+
+TEST_CASE("an error has the line and column inside the formula, also of a broken one") {
+  const auto first = [](const std::string& from, const std::string& to) {
+    const ConfigErrors errors = errors_of(replaced(experiment_text, from, to));
+    REQUIRE(errors.size() == 1);
+    return errors[0];
+  };
+  ConfigError error = first("g22^2 +", "g23^2 +");
+  CHECK(error.where.line == 10);
+  CHECK(error.where.column == 18);
+  CHECK(error.message == "formula: unknown name \"g23\"; did you mean \"g22\"?");
+  CHECK(error.shown == "    warp*(g11^2 + nu12*sum^2 + g23^2 + g12^2)\n    " + std::string(27, ' ') + "^");
+  error = first("warp*(g11", "wrap*(g11");
+  CHECK(error.where.line == 9);
+  CHECK(error.where.column == 16);
+  error = first("g11 + g22\"", "g11 + density\"");
+  CHECK(error.where.line == 8);
+  CHECK(error.where.column == 26);
+  error = first("sum: \"g11 + g22\"", "sum: \"tail + g22\", tail: g11");
+  CHECK_THAT(error.message, Catch::Contains("\"where\" defines it further down: move it up"));
+  error = first("unit: N/m", "unit: kN/m");
+  CHECK_THAT(error.message, Catch::Contains("\"kN/m\" is not a unit that formulas know"));
+  error = first("name: orthotropic", "name: 2x");
+  CHECK_THAT(error.message, Catch::Contains("must be a letter"));
+  error = first("nu12: 0.2", "g11: 0.2, nu12: 0.2");
+  CHECK_THAT(error.message, Catch::Contains("\"g11\" is a symbol already"));
+  error = first("nu12: 0.2", "nu12: [0.2]");
+  CHECK_THAT(error.message, Catch::Contains("\"nu12\" in constants must be a number, not a list"));
+  error = first("nu12: 0.2", "nu12: {unit: 1}");
+  CHECK_THAT(error.message, Catch::Contains("\"nu12\" in constants has no \"value\""));
+  error = first("density:", "energy: \"area*warp*g11^2\", density:");
+  CHECK_THAT(error.message, Catch::Contains("write either \"density\" or \"energy\", not both"));
+}
+
+TEST_CASE("check has a line on derivatives and one on the state of rest") {
+  const Material material;
+  const auto lines = [&](const std::string& yaml) {
+    return make_plugin_from<Energy>("{type: formula, " + yaml + "}")->remarks(material);
+  };
+  const auto triangle = lines("density: \"thickness*E*(g11 - 0.01)^2\"");
+  REQUIRE(triangle.size() == 2);
+  CHECK_THAT(triangle[0], Catch::StartsWith("derivatives agree with finite differences"));
+  CHECK(triangle[1] == "stress at rest: -0.509, 0, shear 0 N/m");
+  const auto hinge = lines("per: hinge, energy: \"k*bend^2\"");
+  CHECK_THAT(hinge[0], Catch::StartsWith("derivatives agree with finite differences"));
+  CHECK(hinge[1] == "moment per length of a flat edge: 0 N");
+  const auto vertex = lines("per: vertex, constants: {g: {value: 2, unit: m/s^2}}, energy: \"mass*g*z\"");
+  CHECK(vertex[1] == "acceleration at the origin: 0, 0, -2 m/s²");
+}
+
+TEST_CASE("describe lists what formulas may use") {
+  const RegistryEntry* entry = test_registry().find("energy", "formula");
+  REQUIRE(entry);
+  const std::string page = describe(*entry);
+  for (const char* word : {"per: triangle", "g12", "per: hinge", "bend", "per: vertex", "mass", "E_bend",
+                           "expm1", "if(condition, a, b)"})
+    CHECK_THAT(page, Catch::Contains(word));
+}
