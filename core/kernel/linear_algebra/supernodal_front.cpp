@@ -123,9 +123,10 @@ void solve_forward(const Front<Scalar>& f, Scalar* x) {
   const int pivot_panels = f.pivot_row_panels();
   for (int i = 0; i < pivot_panels; ++i) {
     const RowPanel<Scalar> a = f.panel_rows(i);
-    Scalar* rows = x + f.first_row(i);
-    subtract_times(a, i * row_panel_height<Scalar>, x, rows);
-    solve_lower(a, i * row_panel_height<Scalar>, rows);
+    const int first = i * row_panel_height<Scalar>;
+    Scalar* rows = x + first;
+    subtract_times(a, first, x, rows);
+    solve_lower(a, first, std::min(a.height, 3 * f.pivots - first), rows);
   }
   parallel_kernels<Scalar>(f.row_panels() - pivot_panels, 4, [&](int begin, int end) {
     for (int i = pivot_panels + begin; i < pivot_panels + end; ++i)
@@ -135,22 +136,20 @@ void solve_forward(const Front<Scalar>& f, Scalar* x) {
 
 template <class Scalar>
 void solve_backward(const Front<Scalar>& f, Scalar* x) {
-  const int pivot_panels = f.pivot_row_panels(), panels = f.row_panels();
-  // Columns [column, column + lanes): subtracts what row panels [begin, end) contribute.
-  const auto subtract = [&](int column, int begin, int end) {
-    TransposedProduct<Scalar> product;
-    for (int i = begin; i < end; ++i) product.add(f.panel_rows(i), column, x + f.first_row(i));
-    product.subtract_from(x + column);
-  };
-  parallel_kernels<Scalar>(f.columns() / lanes<Scalar>, 3, [&](int begin, int end) {
-    for (int group = begin; group < end; ++group) subtract(group * lanes<Scalar>, pivot_panels, panels);
+  const int pivot_panels = f.pivot_row_panels(), columns = f.columns(),
+            updates = padded<Scalar>(3 * f.updates);
+  parallel_kernels<Scalar>(columns / lanes<Scalar>, 3, [&](int begin, int end) {
+    for (int column = begin * lanes<Scalar>; column < end * lanes<Scalar>; column += lanes<Scalar>)
+      subtract_transposed_times(f.panel_rows(pivot_panels).data, updates, columns, column, x + columns,
+                                x + column);
   });
   for (int i = pivot_panels - 1; i >= 0; --i) {
     const RowPanel<Scalar> a = f.panel_rows(i);
-    const int first = i * row_panel_height<Scalar>;
-    for (int column = first; column < first + a.height; column += lanes<Scalar>)
-      subtract(column, i + 1, pivot_panels);
-    solve_lower_transposed(a, first, x + first);
+    const int first = i * row_panel_height<Scalar>, end = first + a.height;
+    for (int column = first; column < end; column += lanes<Scalar>)
+      subtract_transposed_times(a.data + static_cast<std::ptrdiff_t>(a.height) * columns, columns - end,
+                                columns, column, x + end, x + column);
+    solve_lower_transposed(a, first, std::min(a.height, 3 * f.pivots - first), x + first);
   }
 }
 

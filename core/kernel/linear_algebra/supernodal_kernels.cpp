@@ -1,5 +1,6 @@
 #include "core/kernel/linear_algebra/supernodal_kernels.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -145,12 +146,16 @@ template <class Scalar>
   return sum_of<lanes<Scalar>>(reinterpret_cast<const Scalar*>(&v));
 }
 
+/// products[c] += entries of column c of a row panel of V vectors times x.
 template <int V, class Scalar>
-void add_transposed_product(const Scalar* a, const Scalar* x, SimdVector<Scalar>* products) {
+[[gnu::always_inline]] inline void add_products(const Scalar* a, const Scalar* x,
+                                                SimdVector<Scalar> (&products)[lanes<Scalar>]) {
   const auto* column = reinterpret_cast<const SimdVector<Scalar>*>(a);
   const auto* rows = reinterpret_cast<const SimdVector<Scalar>*>(x);
-  for (int c = 0; c < lanes<Scalar>; ++c, column += V)
-    for (int v = 0; v < V; ++v) products[c] += column[v] * rows[v];
+#pragma GCC unroll 16
+  for (int c = 0; c < lanes<Scalar>; ++c)
+#pragma GCC unroll 3
+    for (int v = 0; v < V; ++v) products[c] += column[c * V + v] * rows[v];
 }
 
 }  // namespace
@@ -194,30 +199,29 @@ void subtract_times(const RowPanel<Scalar>& a, int columns, const Scalar* x, Sca
 }
 
 template <class Scalar>
-void TransposedProduct<Scalar>::add(const RowPanel<Scalar>& a, int column, const Scalar* x) {
-  if (a.height == 3 * lanes<Scalar>)
-    add_transposed_product<3>(a.column(column), x, products_);
-  else if (a.height == 2 * lanes<Scalar>)
-    add_transposed_product<2>(a.column(column), x, products_);
-  else
-    add_transposed_product<1>(a.column(column), x, products_);
+void subtract_transposed_times(const Scalar* a, int rows, int columns, int column, const Scalar* x,
+                               Scalar* y) {
+  if (rows == 0) return;
+  constexpr int height = row_panel_height<Scalar>;
+  SimdVector<Scalar> products[lanes<Scalar>] = {};
+  int row = 0;
+  for (; row + height <= rows; row += height, a += height * static_cast<std::ptrdiff_t>(columns))
+    add_products<3>(a + column * height, x + row, products);
+  if (rows - row == 2 * lanes<Scalar>) add_products<2>(a + column * (rows - row), x + row, products);
+  if (rows - row == lanes<Scalar>) add_products<1>(a + column * (rows - row), x + row, products);
+  for (int c = 0; c < lanes<Scalar>; ++c) y[c] -= sum_of<Scalar>(products[c]);
 }
 
 template <class Scalar>
-void TransposedProduct<Scalar>::subtract_from(Scalar* y) const {
-  for (int c = 0; c < lanes<Scalar>; ++c) y[c] -= sum_of<Scalar>(products_[c]);
-}
-
-template <class Scalar>
-void solve_lower(const RowPanel<Scalar>& a, int column, Scalar* x) {
-  for (int begin = 0; begin < a.height; begin += lanes<Scalar>) {
-    const int end = begin + lanes<Scalar>;
+void solve_lower(const RowPanel<Scalar>& a, int column, int size, Scalar* x) {
+  for (int begin = 0; begin < size; begin += lanes<Scalar>) {
+    const int below = begin + lanes<Scalar>, end = std::min(below, size);
     for (int c = begin; c < end; ++c) {
       const Scalar* l = a.column(column + c);
       x[c] *= l[c];
       for (int r = c + 1; r < end; ++r) x[r] -= l[r] * x[c];
     }
-    for (int row = end; row < a.height; row += lanes<Scalar>) {
+    for (int row = below; row < a.height; row += lanes<Scalar>) {
       auto& rows = *reinterpret_cast<SimdVector<Scalar>*>(x + row);
       for (int c = begin; c < end; ++c)
         rows -= *reinterpret_cast<const SimdVector<Scalar>*>(a.column(column + c) + row) * x[c];
@@ -226,16 +230,17 @@ void solve_lower(const RowPanel<Scalar>& a, int column, Scalar* x) {
 }
 
 template <class Scalar>
-void solve_lower_transposed(const RowPanel<Scalar>& a, int column, Scalar* x) {
-  for (int begin = a.height - lanes<Scalar>; begin >= 0; begin -= lanes<Scalar>) {
-    const int end = begin + lanes<Scalar>;
-    for (int c = begin; c < end; ++c) {
-      const auto* l = reinterpret_cast<const SimdVector<Scalar>*>(a.column(column + c));
-      const auto* rows = reinterpret_cast<const SimdVector<Scalar>*>(x);
-      SimdVector<Scalar> products = {};
-      for (int v = end / lanes<Scalar>; v < a.height / lanes<Scalar>; ++v) products += l[v] * rows[v];
-      x[c] -= sum_of<Scalar>(products);
-    }
+void solve_lower_transposed(const RowPanel<Scalar>& a, int column, int size, Scalar* x) {
+  for (int begin = (size - 1) / lanes<Scalar> * lanes<Scalar>; begin >= 0; begin -= lanes<Scalar>) {
+    const int below = begin + lanes<Scalar>, end = std::min(below, size);
+    if (below < size)
+      for (int c = begin; c < end; ++c) {
+        SimdVector<Scalar> products = {};
+        for (int row = below; row < a.height; row += lanes<Scalar>)
+          products += *reinterpret_cast<const SimdVector<Scalar>*>(a.column(column + c) + row) *
+                      *reinterpret_cast<const SimdVector<Scalar>*>(x + row);
+        x[c] -= sum_of<Scalar>(products);
+      }
     for (int c = end - 1; c >= begin; --c) {
       x[c] *= a.column(column + c)[c];
       for (int r = begin; r < c; ++r) x[r] -= a.column(column + r)[c] * x[c];
@@ -249,9 +254,9 @@ void solve_lower_transposed(const RowPanel<Scalar>& a, int column, Scalar* x) {
   template void factorise_columns_below(const RowPanel<Scalar>&, const RowPanel<Scalar>&, int, int, int); \
   template bool factorise_columns_diagonal(const RowPanel<Scalar>&, int, int, int);                       \
   template void subtract_times(const RowPanel<Scalar>&, int, const Scalar*, Scalar*);                     \
-  template class TransposedProduct<Scalar>;                                                               \
-  template void solve_lower(const RowPanel<Scalar>&, int, Scalar*);                                       \
-  template void solve_lower_transposed(const RowPanel<Scalar>&, int, Scalar*);
+  template void subtract_transposed_times(const Scalar*, int, int, int, const Scalar*, Scalar*);          \
+  template void solve_lower(const RowPanel<Scalar>&, int, int, Scalar*);                                  \
+  template void solve_lower_transposed(const RowPanel<Scalar>&, int, int, Scalar*);
 DRAPE_KERNELS(double)
 DRAPE_KERNELS(float)
 #undef DRAPE_KERNELS

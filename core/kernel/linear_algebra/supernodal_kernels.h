@@ -79,24 +79,17 @@ bool factorise_columns_diagonal(const RowPanel<Scalar>& diagonal, int row, int b
 template <class Scalar>
 void subtract_times(const RowPanel<Scalar>& a, int columns, const Scalar* x, Scalar* y);
 
-/// Of a vector y, the `lanes` entries that belong to as many columns of row panels: y −= aᵀ x over row panels
-/// a, one after another.
+/// y −= aᵀ x for the `lanes` columns from `column` on of a, a matrix of `rows` × `columns` in row panels that
+/// follow each other.
 template <class Scalar>
-class TransposedProduct {
- public:
-  /// Adds aᵀ x for the columns of a from `column` on.
-  void add(const RowPanel<Scalar>& a, int column, const Scalar* x);
-  void subtract_from(Scalar* y) const;
-
- private:
-  SimdVector<Scalar> products_[lanes<Scalar>] = {};  // of each column, still to be summed
-};
+void subtract_transposed_times(const Scalar* a, int rows, int columns, int column, const Scalar* x,
+                               Scalar* y);
 
 /// Solves in place with the lower triangle of a from `column` on, which has reciprocals on its diagonal, or
-/// with its transpose.
+/// with its transpose. The columns from the `size`-th on are those of the unit matrix.
 template <class Scalar>
-void solve_lower(const RowPanel<Scalar>& a, int column, Scalar* x);
+void solve_lower(const RowPanel<Scalar>& a, int column, int size, Scalar* x);
 template <class Scalar>
-void solve_lower_transposed(const RowPanel<Scalar>& a, int column, Scalar* x);
+void solve_lower_transposed(const RowPanel<Scalar>& a, int column, int size, Scalar* x);
 
 }  // namespace drape
