@@ -84,9 +84,9 @@ TriangleMesh placed(TriangleMesh mesh, const Eigen::Matrix3d& turn) {
   return mesh;
 }
 
-const TriangleMesh sheet = grid({2, 0.5}, 5, 3, Diagonals::criss_cross);
+const TriangleMesh banner = grid({2, 0.5}, 5, 3, Diagonals::criss_cross);
 
-/// The largest difference of a mesh's planar uv and these of the sheet's vertices.
+/// The largest difference of a mesh's planar uv and these of the banner's vertices.
 double difference(const TriangleMesh& mesh, const std::function<Eigen::RowVector2d(double, double)>& uv) {
   const std::optional<PlanarUv> planar = PlanarUv::of(mesh);
   REQUIRE(planar);
@@ -94,7 +94,7 @@ double difference(const TriangleMesh& mesh, const std::function<Eigen::RowVector
   double most = 0;
   for (Eigen::Index t = 0; t < found.rows(); ++t)
     for (int k = 0; k < 3; ++k) {
-      const auto p = sheet.vertices.row(mesh.triangles(t, k));
+      const auto p = banner.vertices.row(mesh.triangles(t, k));
       most = std::max(most, (found.block<1, 2>(t, 2 * k) - uv(p.x(), p.y())).norm());
     }
   return most;
@@ -151,7 +151,7 @@ TEST_CASE("uv are refined linearly in each triangle, and a seam keeps both of it
       CHECK(read.uv == finest.uv);
     }
   }
-  CHECK(Hierarchy::of(sheet, midpoint, 2).levels[1].rest.uv.rows() == 0);
+  CHECK(Hierarchy::of(banner, midpoint, 2).levels[1].rest.uv.rows() == 0);
 }
 
 TEST_CASE("OBJ and PLY keep the bits of uv") {
@@ -194,34 +194,34 @@ TEST_CASE("a flat mesh has uv in its own plane, from 0 to 1 along the longer sid
     return AngleAxisd(degrees * M_PI / 180, axis.normalized()).toRotationMatrix();
   };
   const auto as_is = [](double x, double y) { return Eigen::RowVector2d(x / 2, y / 2); };
-  CHECK(difference(sheet, as_is) == 0);
+  CHECK(difference(banner, as_is) == 0);
   // Upright, facing -y: x to the right, z up.
   const Eigen::Matrix3d upright = turn(90, Vector3d::UnitX());
-  CHECK(difference(placed(sheet, upright), as_is) < 1e-14);
-  CHECK(difference(placed(sheet, turn(37, Vector3d::UnitZ()) * upright), as_is) < 1e-14);
+  CHECK(difference(placed(banner, upright), as_is) < 1e-14);
+  CHECK(difference(placed(banner, turn(37, Vector3d::UnitZ()) * upright), as_is) < 1e-14);
   // Leaning, and nearly horizontal.
   for (const double degrees : {60., 20.})
-    CHECK(difference(placed(sheet, turn(degrees, Vector3d::UnitX())), as_is) < 1e-14);
-  // On its side: z is up, along the sheet.
-  CHECK(difference(placed(sheet, upright * turn(90, Vector3d::UnitZ())),
+    CHECK(difference(placed(banner, turn(degrees, Vector3d::UnitX())), as_is) < 1e-14);
+  // On its side: z is up, along the banner.
+  CHECK(difference(placed(banner, upright * turn(90, Vector3d::UnitZ())),
                    [](double x, double y) { return Eigen::RowVector2d(0.25 - y / 2, x / 2); }) < 1e-14);
   // Its front below: no mirrored letters on the front.
-  CHECK(difference(placed(sheet, turn(180, Vector3d::UnitY())),
+  CHECK(difference(placed(banner, turn(180, Vector3d::UnitY())),
                    [](double x, double y) { return Eigen::RowVector2d(x / 2, y / 2); }) < 1e-14);
 
-  TriangleMesh bag = sheet;  // two layers that face away from each other
+  TriangleMesh bag = banner;  // two layers that face away from each other
   bag.vertices.conservativeResize(30, 3);
-  bag.vertices.bottomRows(15) = sheet.vertices;
+  bag.vertices.bottomRows(15) = banner.vertices;
   bag.triangles.conservativeResize(32, 3);
   for (int t = 0; t < 16; ++t)
-    bag.triangles.row(16 + t) << 15 + sheet.triangles(t, 0), 15 + sheet.triangles(t, 2),
-        15 + sheet.triangles(t, 1);
+    bag.triangles.row(16 + t) << 15 + banner.triangles(t, 0), 15 + banner.triangles(t, 2),
+        15 + banner.triangles(t, 1);
   REQUIRE(PlanarUv::of(bag));
   const CornerUv of_bag = PlanarUv::of(bag)->at(bag);
   CHECK(of_bag.minCoeff() == 0);
   CHECK(of_bag.maxCoeff() == 1);
 
-  TriangleMesh bent = sheet;
+  TriangleMesh bent = banner;
   for (Eigen::Index i = 0; i < bent.vertices.rows(); ++i)
     bent.vertices(i, 2) = 0.01 * bent.vertices(i, 0) * i;
   CHECK_FALSE(PlanarUv::of(bent));
