@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/model/objective.h"
 #include "core/kernel/model/solver.h"
