@@ -234,10 +234,11 @@ TEST_CASE("values out of range or of the wrong type") {
 }
 
 TEST_CASE("unknown plugins of every kind") {
-  const std::string own = "; a plugin of your own is found by DRAPE_PLUGIN_PATH\n",
-                    energies =
-                        "known: constant_load, gravity, hinge, midedge_bending, neo_hookean, pressure, "
-                        "quadratic_bending, strain_limit, stvk";
+  const std::string
+      own = "; a plugin of your own is found by DRAPE_PLUGIN_PATH\n",
+      energies =
+          "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
+          "quadratic_bending, strain_limit, stvk";
   CHECK(said_of_edit("hinge,", "springs,") ==
         "error: e.yaml:8:25: unknown energy \"springs\"; " + energies + own);
   CHECK(said_of_edit("hinge,", "hinje,") ==

@@ -40,14 +40,16 @@ class LawReader {
 
   void refuse(const std::string& path, const std::string& message) { faults_.push_back({path, message}); }
 
-  /// Refuses a name of the config's that means something else already.
-  bool is_free(const std::string& path, const std::string& name) {
+  /// Refuses a name of the config's that means something else already. A constant may stand for a symbol of
+  /// the material: a law has its own Poisson's ratio, say.
+  bool is_free(const std::string& path, const std::string& name, bool is_constant) {
     const auto taken = [&](const std::string& by) {
       refuse(path, "\"" + excerpt(name) + "\" is " + by + "; choose another name");
       return false;
     };
     for (const Symbol& s : symbols_of(law_.kind))
-      if (s.name == name) return taken("a symbol already (" + s.description + ")");
+      if (s.name == name && !(is_constant && is_of_material(name)))
+        return taken("a symbol already (" + s.description + ")");
     for (const Constant& c : law_.constants)
       if (c.name == name) return taken("a constant already");
     for (const Part& part : law_.parts)
@@ -61,7 +63,7 @@ class LawReader {
       return refuse("constants", "at most " + std::to_string(most_constants) + " constants");
     for (const NamedConstant& c : p_.constants.all) {
       const std::string path = "constants." + c.name;
-      if (!is_free(path, c.name)) continue;
+      if (!is_free(path, c.name, true)) continue;
       if (!c.unit.empty() && !dimension_of(c.unit))
         refuse(path + ".unit",
                "\"" + excerpt(c.unit) +
@@ -83,7 +85,7 @@ class LawReader {
         refuse(path, "\"" + excerpt(name) + "\" must be a letter, then letters, digits and underscores");
       else if (node.kind != ConfigNode::Kind::scalar)
         refuse(path, "\"" + excerpt(name) + "\" must be a formula in quotes");
-      else if (is_free(path, name))
+      else if (is_free(path, name, false))
         read_part(path, name, node.scalar, false);
     }
   }

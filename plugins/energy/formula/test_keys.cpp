@@ -105,6 +105,14 @@ TEST_CASE("the saved config reads back as the same energy") {
   CHECK(again.resolved.one_line() == e.resolved.one_line());
 }
 
+TEST_CASE("a constant comes before the material's symbol of its name") {
+  std::string own = replaced(experiment_text, "nu12: 0.2", "nu: 0.2");
+  own = replaced(own, "nu12*sum", "nu*sum");
+  CHECK(stretched_energy(experiment_of(own)) == stretched_energy(experiment_of(experiment_text)));
+  const std::string material = replaced(replaced(experiment_text, ", nu12: 0.2", ""), "nu12*sum", "nu*sum");
+  CHECK(stretched_energy(experiment_of(material)) != stretched_energy(experiment_of(own)));
+}
+
 TEST_CASE("an error has the line and column inside the formula, also of a broken one") {
   const auto first = [](const std::string& from, const std::string& to) {
     const ConfigErrors errors = errors_of(replaced(experiment_text, from, to));
