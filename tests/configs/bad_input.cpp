@@ -339,7 +339,7 @@ TEST_CASE("all errors of a config are listed in file order, those of --set last"
         "not "
         "\"nearst\"; did you mean \"nearest\"?\n"
         "error: e.yaml:8:25: unknown energy \"hinje\"; did you mean \"hinge\"? known: constant_load, "
-        "gravity, hinge, midedge_bending, "
+        "formula, gravity, hinge, midedge_bending, "
         "neo_hookean, pressure, quadratic_bending, strain_limit, stvk\n"
         "error: e.yaml:12:28: \"prolongation\" must be \"midpoint\" or \"refiner\", not \"linear\"\n"
         "error: --set newton.max_steps: \"max_steps\" must be an integer, not \"few\"\n");
