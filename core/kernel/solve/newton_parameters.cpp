@@ -79,11 +79,10 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                 {"cholmod", LinearSolver::cholmod}})
       .description(
           "mixed: drape's Cholesky factorisation in single precision, as preconditioner of conjugate "
-          "gradients "
-          "in double precision; the static form, ill-conditioned matrices and moved pins take the next. "
-          "supernodal: the same in double precision. Both are parallel and give the same bits with any "
-          "number "
-          "of threads. cholmod: CHOLMOD's, whose speed, threads and bits depend on the installed BLAS")
+          "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
+          "in double precision. supernodal: that in double precision throughout. Both are parallel and give "
+          "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "
+          "depend on the installed BLAS")
       .source("docs/results/speed.md; Chen et al. 2008 for cholmod");
 }
 

@@ -60,8 +60,7 @@ std::optional<double> midpoint_factor_of(const formula::Law& law) {
   if (law.kind == ElementKind::hinge) return formula::hinge_midpoint_factor(law, Material());
   if (law.kind == ElementKind::vertex) return formula::vertex_midpoint_factor(law, Material());
   // The four triangles have the strains of the whole, and a quarter of its area each.
-  const bool by_place = law.uses("u") || law.uses("v") || law.uses("w");
-  return by_place || !formula::is_proportional_to_area(law) ? std::nullopt : std::optional(1.0);
+  return law.depends_on_place() || !formula::is_proportional_to_area(law) ? std::nullopt : std::optional(1.0);
 }
 
 }  // namespace

@@ -39,8 +39,7 @@ class HingeFormulaKernel {
   void value(const Batch& packs, T* energies) const {
     T registers[Program::slots * batch];
     run(packs, programs_.value, registers, nullptr);
-    for (int i = 0; i < batch; ++i)
-      energies[i] = infinite_if_not_finite(registers[programs_.value.output(0) * batch + i]);
+    read_energies(programs_.value, registers, energies);
   }
 
   [[gnu::flatten]] void gradient(const Batch& packs, T* energies, Vector (*g)[3]) const {
@@ -48,8 +47,8 @@ class HingeFormulaKernel {
     const Program& p = programs_.gradient;
     Vector d[batch][3];
     run(packs, p, registers, d);
+    read_energies(p, registers, energies);
     for (int i = 0; i < batch; ++i) {
-      energies[i] = infinite_if_not_finite(registers[p.output(0) * batch + i]);
       DihedralAngle<T>(d[i]).gradient(registers[p.output(1) * batch + i], g[i]);
     }
   }
@@ -92,8 +91,6 @@ class HingeFormulaKernel {
   Places<4, 2> places_;
 };
 
-bool depends_on_place(const Law& law) { return law.uses("u") || law.uses("v") || law.uses("w"); }
-
 /// The energy of a hinge at rest but for its bend.
 double energy_at(const Program& p, double bend, double length, double h1, double h2) {
   double registers[Program::slots] = {};
@@ -109,20 +106,17 @@ double energy_at(const Program& p, double bend, double length, double h1, double
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
-  const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<HingeFormulaKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
-    Eigen::Vector3d d[3];
-    for (int i = 0; i < 3; ++i) d[i] = x.row(hinges(h, i + 1)) - x.row(hinges(h, 0));
-    rest.push_back(HingeFormulaKernel::rest(d));
+    rest.push_back(HingeFormulaKernel::rest(rest_vectors(level, h).data()));
     if (!rest.back().allFinite() || !(rest.back()[2] > 0) || !(rest.back()[3] > 0))
       throw std::runtime_error("a triangle at the edge of vertices " + std::to_string(hinges(h, 0)) +
                                " and " + std::to_string(hinges(h, 1)) + " of level " +
                                std::to_string(level.index) + " has no area at rest");
   }
   HingeFormulaKernel kernel(compile_hinge(law, material),
-                            depends_on_place(law) ? Places<4, 2>(level) : Places<4, 2>());
+                            law.depends_on_place() ? Places<4, 2>(level) : Places<4, 2>());
   return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), hinges, rest,
                                                              level.hinge_order);
 }
@@ -130,7 +124,7 @@ std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, con
 // Of a hinge that is split at midpoints, both halves keep its angles, with half its lengths. The new hinges
 // inside a triangle are flat.
 std::optional<double> hinge_midpoint_factor(const Law& law, const Material& material) {
-  if (depends_on_place(law)) return std::nullopt;
+  if (law.depends_on_place()) return std::nullopt;
   const Program p = compile_hinge(law, material).value;
   constexpr double lengths[][3] = {{0.01, 0.013, 0.007}, {0.2, 0.11, 0.14}};
   std::optional<double> factor;

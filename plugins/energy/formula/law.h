@@ -35,6 +35,8 @@ struct Law {
 
   /// Whether the energy or what it uses has the symbol in it.
   bool uses(const std::string& symbol) const;
+  /// Whether it depends on where elements are at rest.
+  bool depends_on_place() const { return uses("u") || uses("v") || uses("w"); }
 };
 
 /// Parses the text and appends it as a part whose names, number of arguments and dimensions are checked.

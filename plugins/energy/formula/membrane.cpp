@@ -12,8 +12,7 @@ namespace {
 bool uses_stretches(const Law& law) { return law.uses("s1") || law.uses("s2"); }
 /// The places of the level's triangles, for a law that depends on them.
 Places<3, 3> places_of(const Law& law, const Level& level) {
-  const bool needed = law.uses("u") || law.uses("v") || law.uses("w");
-  return needed ? Places<3, 3>(level) : Places<3, 3>();
+  return law.depends_on_place() ? Places<3, 3>(level) : Places<3, 3>();
 }
 
 bool uses_strains(const Law& law) { return law.uses("g11") || law.uses("g22") || law.uses("g12"); }

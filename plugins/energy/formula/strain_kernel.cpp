@@ -57,8 +57,7 @@ void StrainKernel::value(const Batch& packs, T* energies) const {
   T registers[Program::slots * batch];
   read(packs, programs_.value, registers, nullptr);
   programs_.value.run<T, batch>(registers);
-  const T* energy = registers + programs_.value.output(0) * batch;
-  for (int i = 0; i < batch; ++i) energies[i] = infinite_if_not_finite(energy[i]);
+  read_energies(programs_.value, registers, energies);
 }
 
 StrainKernel::ByStrains StrainKernel::first_by_strains(const Deformation& f, const T* registers,
@@ -116,8 +115,8 @@ StrainKernel::ByStrains StrainKernel::by_strains(const Deformation& f, const T* 
   Deformation kept[batch];
   read(packs, program, registers, kept);
   program.run<T, batch>(registers);
+  read_energies(program, registers, energies);
   for (int i = 0; i < batch; ++i) {
-    energies[i] = infinite_if_not_finite(registers[program.output(0) * batch + i]);
     const Deformation& f = kept[i];
     const ByStrains w = first_by_strains(f, registers, program, i, 1);
     const T shear = 0.5 * w.first[2];
@@ -186,8 +185,7 @@ void StretchFormulaKernel::value(const Batch& packs, T* energies) const {
   T registers[Program::slots * batch];
   read(packs, programs_.value, registers, nullptr);
   programs_.value.run<T, batch>(registers);
-  const T* energy = registers + programs_.value.output(0) * batch;
-  for (int i = 0; i < batch; ++i) energies[i] = infinite_if_not_finite(energy[i]);
+  read_energies(programs_.value, registers, energies);
 }
 
 [[gnu::flatten]] void StretchFormulaKernel::gradient(const Batch& packs, T* energies, Vector (*g)[2]) const {
@@ -196,9 +194,9 @@ void StretchFormulaKernel::value(const Batch& packs, T* energies) const {
   Deformation kept[batch];
   read(packs, program, registers, kept);
   program.run<T, batch>(registers);
+  read_energies(program, registers, energies);
   for (int i = 0; i < batch; ++i) {
     const auto output = [&](int k) { return registers[program.output(k) * batch + i]; };
-    energies[i] = infinite_if_not_finite(output(0));
     StretchSlopes<T> slopes;
     slopes.first1 = output(1), slopes.first2 = output(2);
     StretchDerivatives<T>::gradient(PrincipalStretch<T>(kept[i].f1, kept[i].f2), slopes, packs.rest[i], g[i]);

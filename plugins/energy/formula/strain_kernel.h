@@ -13,6 +13,20 @@ namespace drape::formula {
 /// Packs that programs compute with at once.
 inline constexpr int batch_packs = 8;
 
+/// +∞ for an energy of -∞ too: outside the domain of a formula there is no lower one.
+template <class T>
+T infinite_if_not_finite(const T& energy) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  return select(energy == -infinity, infinity, energy);
+}
+
+/// The energies of a batch: output 0 of a program that has run.
+template <class T>
+void read_energies(const Program& program, const T* registers, T* energies) {
+  const T* own = registers + program.output(0) * batch_packs;
+  for (int i = 0; i < batch_packs; ++i) energies[i] = infinite_if_not_finite(own[i]);
+}
+
 /// Rest positions of elements, the mean of their first `corners` vertices, for formulas that depend on them.
 template <int k, int corners>
 class Places {
@@ -108,12 +122,5 @@ class StretchFormulaKernel {
   Programs programs_;
   Places<3, 3> places_;
 };
-
-/// +∞ for an energy of -∞ too: outside the domain of a formula there is no lower one.
-template <class T>
-T infinite_if_not_finite(const T& energy) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return select(energy == -infinity, infinity, energy);
-}
 
 }  // namespace drape::formula

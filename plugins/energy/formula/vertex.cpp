@@ -119,8 +119,7 @@ std::unique_ptr<BoundEnergy> bind_vertices(const Law& law, const Level& level, c
 }
 
 std::optional<double> vertex_midpoint_factor(const Law& law, const Material& material) {
-  for (const char* place : {"u", "v", "w"})
-    if (law.uses(place)) return std::nullopt;
+  if (law.depends_on_place()) return std::nullopt;
   const Programs programs = compile_vertex(law, material);
   if (!programs.is_linear) return std::nullopt;
   const auto force = [&](double area) {

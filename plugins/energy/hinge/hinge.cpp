@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/kernel/elements/bending_stiffness.h"
+#include "core/kernel/elements/dihedral_angle.h"
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/hinge/hinge_kernel.h"
@@ -15,13 +16,10 @@ double Hinge::plate_stiffness(const Material& material) const { return 6 * bendi
 
 std::unique_ptr<BoundEnergy> Hinge::bind(const Level& level, const Material& material) const {
   const double k = bending_stiffness(material);
-  const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<HingeKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
-    Eigen::Vector3d d[3];
-    for (int i = 0; i < 3; ++i) d[i] = x.row(hinges(h, i + 1)) - x.row(hinges(h, 0));
-    rest.push_back(HingeKernel::rest(d, k));
+    rest.push_back(HingeKernel::rest(rest_vectors(level, h).data(), k));
     if (!rest.back().allFinite())
       throw std::runtime_error("hinge: a triangle at the edge of vertices " + std::to_string(hinges(h, 0)) +
                                " and " + std::to_string(hinges(h, 1)) + " of level " +

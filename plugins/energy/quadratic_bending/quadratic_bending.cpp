@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/kernel/elements/bending_stiffness.h"
+#include "core/kernel/elements/dihedral_angle.h"
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/plugin/plugin.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
@@ -30,14 +31,12 @@ double QuadraticBending::plate_stiffness(const Material& material) const {
 
 std::unique_ptr<BoundEnergy> QuadraticBending::bind(const Level& level, const Material& material) const {
   const double k = bending_stiffness(material);
-  const Positions& x = level.rest.vertices;
   const Stencils& hinges = level.hinges;
   std::vector<QuadraticBendingKernel::Rest> rest;
   for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
-    Eigen::Vector3d d[3];
-    for (int i = 0; i < 3; ++i) d[i] = x.row(hinges(h, i + 1)) - x.row(hinges(h, 0));
-    require_flat(d, level, hinges(h, 0), hinges(h, 1));
-    rest.push_back(QuadraticBendingKernel::rest(d, k));
+    const std::array<Eigen::Vector3d, 3> d = rest_vectors(level, h);
+    require_flat(d.data(), level, hinges(h, 0), hinges(h, 1));
+    rest.push_back(QuadraticBendingKernel::rest(d.data(), k));
   }
   return std::make_unique<ElementEnergy<QuadraticBendingKernel>>(hinges, rest, level.hinge_order);
 }

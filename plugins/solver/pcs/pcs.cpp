@@ -66,10 +66,9 @@ class PcsSolver : public ResumableSolver {
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
     const auto objective = [&](int level) -> std::unique_ptr<Objective> {
-      const int to_finest = problem.finest() - level;
-      if (to_finest == 0) return std::make_unique<PlainObjective>(problem.model(level));
+      if (level == problem.finest()) return std::make_unique<PlainObjective>(problem.model(level));
       return std::make_unique<ProxyObjective>(
-          problem, level, proxy_parts(problem, level, to_finest, p_.depth, p_.interpolation),
+          problem, level, proxy_parts(problem, level, p_.depth, p_.interpolation),
           ProxyOptions{p_.hessian, p_.relaxation == Relaxation::plain, buckles()});
     };
     return solve_progressively(problem, problem.hierarchy.weights(p_.interpolation.state), objective,

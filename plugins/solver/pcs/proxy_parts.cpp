@@ -26,8 +26,9 @@ void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
       .source("PCS section 4.3 for refiner; midpoint is a departure (docs/theory/locking.md)");
 }
 
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int depth,
                                    const ProxyInterpolation& interpolation) {
+  const int above = problem.finest() - level;
   std::vector<ProxyPart> parts;
   const auto add = [&](const ProxyPart& wanted, EnergyRole role) {
     for (ProxyPart& part : parts)

@@ -16,11 +16,11 @@ struct ProxyInterpolation {
   static void declare(Declaration<ProxyInterpolation>& d);
 };
 
-/// Parts of the proxy of `level` for the model `above` levels up. An energy that midpoint refinement
-/// multiplies by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the
-/// finer model. The matrix of the latter is that of the model `depth` levels up, at most `above`. The parts
-/// refer to the problem's hierarchy.
-std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int above, int depth,
+/// Parts of the proxy of a coarse level for the finest model. An energy that midpoint refinement multiplies
+/// by a known factor (Energy::midpoint_factor) is evaluated on the level itself, any other on the finest one.
+/// The matrix of the latter is that of the model `depth` levels up, at most the finest. The parts refer to
+/// the problem's hierarchy.
+std::vector<ProxyPart> proxy_parts(const Problem& problem, int level, int depth,
                                    const ProxyInterpolation& interpolation);
 
 }  // namespace drape

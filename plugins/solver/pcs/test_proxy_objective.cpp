@@ -49,8 +49,7 @@ constexpr ProxyInterpolation mixed{Interpolation::midpoint, Interpolation::refin
 ProxyObjective proxy_of(const Problem& problem, int level, int depth,
                         const ProxyInterpolation& interpolation = by_refiner,
                         ProxyMatrix matrix = ProxyMatrix::galerkin) {
-  return ProxyObjective(
-      problem, level, proxy_parts(problem, level, problem.finest() - level, depth, interpolation), {matrix});
+  return ProxyObjective(problem, level, proxy_parts(problem, level, depth, interpolation), {matrix});
 }
 
 }  // namespace
@@ -89,7 +88,7 @@ methods: {pcs: {}}
     const double expected = s.model().value(fine);
     REQUIRE(std::abs(expected - problem.models[level]->value(x)) > 1e-3 * std::abs(expected));
     CHECK(value_of(proxy, x) == Approx(expected).epsilon(1e-11));
-    const auto parts = proxy_parts(problem, level, 2 - level, 1, by_midpoints);
+    const auto parts = proxy_parts(problem, level, 1, by_midpoints);
     CHECK(std::all_of(parts.begin(), parts.end(), [](const ProxyPart& part) { return part.above == 0; }));
     CHECK(proxy.matrix(x, Projection::clamp).pattern == problem.models[level]->pattern());
   }
@@ -105,7 +104,7 @@ energies: [neo_hookean, midedge_bending, gravity]
 methods: {pcs: {}}
 )");
   const Problem problem = s.scene->problem();
-  const auto parts = proxy_parts(problem, 0, 2, 1, by_midpoints);
+  const auto parts = proxy_parts(problem, 0, 1, by_midpoints);
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
   CHECK(parts[1].above == 2);
@@ -161,7 +160,7 @@ TEST_CASE("The coarse matrix is the plain model's", "[proxy_objective]") {
 TEST_CASE("A proxy that relaxes switches to the plain energy of its level, once", "[proxy_objective]") {
   const Fixture f;
   const ProxyInterpolation interpolation = GENERATE(by_refiner, by_midpoints);
-  const auto parts = proxy_parts(f.problem, 0, 2, 1, interpolation);
+  const auto parts = proxy_parts(f.problem, 0, 1, interpolation);
   const Positions x = f.state(0);
   ProxyObjective never(f.problem, 0, parts, {ProxyMatrix::galerkin});
   CHECK_FALSE(never.switch_to_plain());
@@ -236,7 +235,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   Positions x = f.state(0);
   x.col(0) *= 0.6;
   REQUIRE(buckling.value(x, {EnergyRole::membrane}) < 0.5 * plain.value(x, {EnergyRole::membrane}));
-  ProxyObjective proxy(f.problem, 0, proxy_parts(f.problem, 0, 2, 1, by_midpoints),
+  ProxyObjective proxy(f.problem, 0, proxy_parts(f.problem, 0, 1, by_midpoints),
                        {ProxyMatrix::galerkin, true, true});
   const double bending = plain.value(x, {EnergyRole::bending});
   REQUIRE(bending > 1e-4 * std::abs(buckling.value(x)));
@@ -250,7 +249,7 @@ TEST_CASE("Membranes of coarse levels buckle below the mesh, before the proxy re
   buckling.hessian(x, Projection::clamp, h);
   CHECK(proxy.matrix(x, Projection::clamp).values == h.values);
   // Seen by the refiner, membranes are the finest level's.
-  ProxyObjective by_loop(f.problem, 0, proxy_parts(f.problem, 0, 2, 1, by_refiner),
+  ProxyObjective by_loop(f.problem, 0, proxy_parts(f.problem, 0, 1, by_refiner),
                          {ProxyMatrix::galerkin, false, true});
   ProxyObjective expected_by_loop = proxy_of(f.problem, 0, 1);
   CHECK(value_of(by_loop, x) == value_of(expected_by_loop, x));
