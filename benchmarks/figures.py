@@ -285,7 +285,7 @@ STUDIES = [
     ("[Python](../extend/from-python.md#what-it-costs)", "python.json"),
     ("[beside Codim-IPC](speed.md#beside-codim-ipc)", "codim_ipc.json"),
     ("[scale](speed.md#scale)", "scale.json"),
-    ("[six scenes to 5.9K](previews.md#six-scenes-five-starts)", "previews.md"),
+    ("[six scenes to 5.9K](previews.md#six-scenes)", "previews.md"),
     ("[interpolation](previews.md#the-choice-of-interpolation)", "interpolation.md"),
     ("[four levels](previews.md#four-levels)", "four_levels.md"),
     ("[ablations](ablations.md)", "ablations.md"),
@@ -313,7 +313,7 @@ def solves(*names):
 
 def flops_with_four_levels(scene):
     """PCS's median flops over the cascadic method's."""
-    return of(runs("four_levels", "pcs", scene), "tflop") / of(runs("four_levels", "cascadic", scene), "tflop")
+    return of(runs("four_levels", "pcs", scene, "default"), "tflop") / of(runs("four_levels", "cascadic", scene), "tflop")
 
 
 def flops_of_five_scenes():

@@ -54,7 +54,7 @@ STUDIES = {
         "what": "an iteration by the number of vertices, 6K to 371K, and with a million", "timed": True, "starts": 3,
         "run": [sweep("scale")], "attempt": [sweep("scale_million", "{out}/million") + ["--allow-memory"]],
         "gather": [["benchmarks/scale", "{out}", "{results}/scale.json"]], "records": ["scale.json"]},
-    "previews": previews("previews", "six scenes to 5.9K vertices", 5, meshes=MESHES),
+    "previews": previews("previews", "six scenes to 5.9K vertices", 3, meshes=MESHES),
     "interpolation": previews("interpolation", "the choice of interpolation", 3),
     "four_levels": previews("four_levels", "six scenes with a fourth level", 3, meshes=MESHES),
     "ablations": previews("ablations", "one choice changed at a time", 3),
