@@ -82,7 +82,8 @@ def chosen_scenes():
     """Some of the scenes of the supplement's Table 2, small to large."""
     lines = [line for line in (RESULTS / "scenes.md").read_text().splitlines() if line.startswith("|")]
     head, *rows = [[c.strip() for c in line.strip("|").split("|")] for line in (lines[0], *lines[2:])]
-    columns = ["run", "vertices", "steps", "seconds", "energy", "smallest_gap", "largest_stretch", "intersections"]
+    energy = next(name for name in head if name.startswith("energy"))
+    columns = ["run", "vertices", "steps", "seconds", energy, "smallest_gap", "largest_stretch", "intersections"]
     by_name = {row[0]: [row[head.index(c)] for c in columns] for row in rows}
     names = ["ribbon", "sphere", "cube", "tablecloth", "armadillo", "bunny", "sphere_fine", "dragon"]
     return table(columns, [by_name[n] for n in names if n in by_name], ["scenes.md"], "lrrrrrrr")
@@ -208,7 +209,7 @@ def changes():
     for r in read("changes.json")["rows"]:
         cells = [r["change"].replace(" x ", " × ")]
         for method in ("pcs", "newton"):
-            cells += [str(r[method]["newton_iterations"]), figure(r[method]["seconds"], 2)]
+            cells += [str(r[method]["iterations"]), figure(r[method]["seconds"], 2)]
         rows.append(cells)
     return table(["change", "PCS: Newton iterations", "s", "direct coarse: Newton iterations", "s"], rows, ["changes.json"], "lrrrr")
 

@@ -13,7 +13,7 @@ is a table of `scenes`.
 MESHES = ["bunny.ply", "armadillo.ply"]
 ALL_MESHES = [*MESHES, "bear.ply", "dragon.ply"]
 MODULE = {"python/drape": "the Python module: run `make python`"}
-RUN_COLUMNS = "run,outcome,vertices,steps,seconds,energy,smallest_gap,largest_stretch,intersections,d_H_fit,message"
+RUN_COLUMNS = "run,status,vertices,steps,seconds,energy_released,smallest_gap,largest_stretch,intersections,d_H_fit,message"
 
 
 def sweep(name, out="{out}", most_levels=None):

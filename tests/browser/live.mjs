@@ -125,7 +125,7 @@ test('others can neither look nor stop the run', async () => {
   await page.goto('data:text/html,<title>elsewhere</title>');
   await page.evaluate(url => fetch(url + 'stop', {method: 'POST', mode: 'no-cors'}).catch(() => {}), running.url);
   await page.context().close();
-  const lines = () => fs.readFileSync(path.join(folder, 'guarded/steps.csv'), 'utf8').split('\n').length;
+  const lines = () => fs.readFileSync(path.join(folder, 'guarded/iterations.csv'), 'utf8').split('\n').length;
   const before = lines();
   await until('the run goes on', () => lines() > before + 5);
   assert.equal((await request(running.url + 'stop', 'POST', {Origin: origin})).status, 204);
@@ -149,6 +149,6 @@ test('a run has the same bits with a view, looked at, and without', async () => 
   for (const method of ['pcs', 'newton'])
     for (const level of [0, 1])
       assert.ok(read('viewed', `levels/${method}_l${level}.ply`).equals(read('plain', `levels/${method}_l${level}.ply`)));
-  const untimed = out => read(out, 'steps.csv').toString().split('\n').map(line => line.split(',').filter((_, column) => column !== 4).join());
+  const untimed = out => read(out, 'iterations.csv').toString().split('\n').map(line => line.split(',').filter((_, column) => column !== 4).join());
   assert.deepEqual(untimed('viewed'), untimed('plain'));
 });

@@ -73,7 +73,7 @@ TEST_CASE("A method that throws has failed, with level and cause, and the others
       CHECK_THAT(page, Contains("3 of 4 methods converged"));
       CHECK_THAT(page, Contains("<li><b>odd</b>, level 1: failed: "));
     }
-    const Ended table = drape_with("table out --columns method,outcome,message", folder.path);
+    const Ended table = drape_with("table out --columns method,status,message", folder.path);
     CHECK(table.exit_code == drape::exit_not_converged);
     CHECK_THAT(table.out, Contains("converged, failed") && Contains("level 1: " + cause));
     CHECK(drape_with("run --resume out", folder.path, with_failing).exit_code == drape::exit_not_converged);
@@ -174,14 +174,14 @@ TEST_CASE("A full disk aborts the run with its own code; once there is room it c
   for (const char* mesh : {"levels/pcs_l1.ply", "levels/newton_l1.ply"})
     CHECK((text_of(folder / "out" / mesh) == text_of(folder / "whole" / mesh)));
 
-  // Before the first method, and where the rows of steps.csv no longer fit.
+  // Before the first method, and where the rows of iterations.csv no longer fit.
   CHECK(limited(largest / 2, arguments + "early").exit_code == drape::exit_aborted);
   const Ended rows =
       limited(16 * 512,
               " run e.yaml --quiet --no-report --method newton --levels 1 --set snapshots=0 "
               "--set newton.step_size=1e-4 --set newton.step_growth=1 --checkpoint 1e6 --out rows");
   CHECK(rows.exit_code == drape::exit_aborted);
-  CHECK_THAT(rows.err, StartsWith("error: cannot write rows/steps.csv: "));
+  CHECK_THAT(rows.err, StartsWith("error: cannot write rows/iterations.csv: "));
 }
 
 TEST_CASE("A failed write to standard output is an error") {

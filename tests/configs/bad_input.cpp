@@ -651,7 +651,7 @@ TEST_CASE("--overwrite removes no file that the new run reads") {
 }
 
 TEST_CASE("a file where a run has a folder, or a folder where it has a file, is refused and not removed") {
-  for (const std::string name : {"pictures", "steps.csv/mine"}) {
+  for (const std::string name : {"pictures", "iterations.csv/mine"}) {
     const Scratch folder;
     folder.write("e.yaml", small_experiment());
     fs::create_directories(folder / "out/checkpoint");

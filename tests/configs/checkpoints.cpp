@@ -79,7 +79,7 @@ std::map<std::string, std::string> outcome_of(const fs::path& folder) {
       for (const auto& entry : fs::directory_iterator(folder / part))
         all[part + ("/" + entry.path().filename().string())] = text_of(entry.path());
   all["results.json"] = timeless(Json::parse(text_of(folder / "results.json"))).dump(1);
-  all["steps.csv"] = without_column(text_of(folder / "steps.csv"), "seconds");
+  all["iterations.csv"] = without_column(text_of(folder / "iterations.csv"), "seconds");
   all["errors.csv"] = without_column(text_of(folder / "errors.csv"), "seconds");
   return all;
 }
@@ -379,7 +379,7 @@ long rows_in(const fs::path& file) {
 /// Waits until the run has made some steps.
 void wait_for_steps(Command& command, const fs::path& out, int steps) {
   command.wait_until(out.string() + " has " + std::to_string(steps) + " steps",
-                     [&] { return rows_in(out / "steps.csv") > steps; });
+                     [&] { return rows_in(out / "iterations.csv") > steps; });
 }
 
 /// What a run of the sheets leaves that was interrupted in the middle.
@@ -401,7 +401,7 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
   REQUIRE(check.wait().exit_code == 0);
   const double to_begin = check.processor_time();
   REQUIRE(drape_with(replaced(sheets_run, "--out out", "--out whole"), folder.path).exit_code == 1);
-  const long all_steps = rows_in(folder / "whole/steps.csv");
+  const long all_steps = rows_in(folder / "whole/iterations.csv");
 
   std::mt19937 random(5);
   int cut = 0, resumed = 0;
@@ -417,7 +417,7 @@ TEST_CASE("A run that is killed at twenty random moments resumes every time, wit
                          [&] { return command.processor_time() > part * to_begin; });
     else
       wait_for_steps(command, folder / "out",
-                     static_cast<int>(rows_in(folder / "out/steps.csv") + part * all_steps / 20));
+                     static_cast<int>(rows_in(folder / "out/iterations.csv") + part * all_steps / 20));
     command.send(SIGKILL);
     cut += command.wait().exit_code == 128 + SIGKILL;
   }
@@ -461,7 +461,8 @@ TEST_CASE("Checkpoints that cannot be resumed are refused with the reason") {
   damaged("out/config.yaml", text_of(folder / "out/config.yaml") + "# \n",
           "out/config.yaml: is not the one that the checkpoint was made with");
   damaged("out/rest/l0.ply", "ply\n", "out/rest/l0.ply: is not what it was when the run began");
-  damaged("out/steps.csv", "method\n", "out/steps.csv: is shorter than when the checkpoint was made");
+  damaged("out/iterations.csv", "method\n",
+          "out/iterations.csv: is shorter than when the checkpoint was made");
   CHECK(text_of(folder / "out/results.json") == before);
 
   FileLock other(folder / "out/checkpoint/lock");
@@ -697,7 +698,7 @@ TEST_CASE("A run warm-starts from a saved state under changed parameters, in ano
   interrupt_sheets(folder);
   const std::string flow = "run --resume out --quiet --no-report --threads 1 --set newton.max_steps=4 ";
   const auto rows = [&](const std::string& out) {
-    const std::string text = text_of(folder / (out + "/steps.csv"));
+    const std::string text = text_of(folder / (out + "/iterations.csv"));
     return text.substr(text.find('\n') + 1);
   };
 

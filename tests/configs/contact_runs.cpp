@@ -117,8 +117,8 @@ TEST_CASE("a run with contact has contacts, gaps and intersections in its result
     CHECK((method["levels"][1]["seconds_by_phase"].contains("refinement")) == (name != "newton"));
   }
   int near = 0, far = 0;
-  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) {
-    REQUIRE(row.size() == 15);
+  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) {
+    REQUIRE(row.size() == 16);
     CHECK(row[13] == "0");
     REQUIRE(!row[11].empty());
     const bool any = std::stoi(row[11]) > 0;
@@ -135,7 +135,7 @@ TEST_CASE("intersections are counted at the end of each level, or after every st
   folder.write("e.yaml", contact_experiment());
   const std::string run = "run e.yaml --out out --method newton --levels 1" + quiet;
   REQUIRE(drape_with(run, folder.path).exit_code == 0);
-  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) CHECK(row[13] == "");
+  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) CHECK(row[13] == "");
   CHECK(Json::parse(
             text_of(folder / "out/results.json"))["methods"]["newton"]["levels"][0]["intersections"] == 0);
 }
@@ -220,7 +220,7 @@ TEST_CASE("a result with intersections is infeasible, and the run did not succee
     }
   }
   std::string counts;
-  for (const auto& row : csv_rows_of(folder / "out/steps.csv")) counts += row[13];
+  for (const auto& row : csv_rows_of(folder / "out/iterations.csv")) counts += row[13];
   CHECK_THAT(counts, Catch::StartsWith("0") && Contains("01"));
   CHECK_THAT(text_of(folder / "out/log.jsonl"),
              Contains("\"event\":\"intersection\"") && Contains(" and floor: plane at ("));

@@ -158,10 +158,10 @@ TEST_CASE("a run writes snapshots and errors, against its own end and a tighter 
       CHECK(count <= 8);
       const TriangleMesh last = read_mesh(folder / ("out/" + level["mesh"].get<std::string>()));
       CHECK((states.positions(count - 1) - last.vertices).norm() < 1e-5);
-      CHECK(snapshots["iterations"].back() == level["newton_iterations"]);
+      CHECK(snapshots["iterations"].back() == level["iterations"]);
       if (method == "newton") flops = 0, iterations = 0;  // every level begins afresh
       flops += level["flops"].get<double>();
-      iterations += level["newton_iterations"].get<int>();
+      iterations += level["iterations"].get<int>();
       double seconds = 0;
       for (std::size_t k = 0; k < count; ++k, ++row) {
         REQUIRE(row < rows.size());

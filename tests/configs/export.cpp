@@ -140,7 +140,7 @@ TEST_CASE("an animation of a level of one step is refused with the levels that h
   fs::copy(finished_run(), folder / "run", fs::copy_options::recursive);
   Json results = Json::parse(text_of(folder / "run/results.json"));
   Json& level = results["methods"]["pcs"]["levels"][1];
-  level["newton_iterations"] = 1;
+  level["iterations"] = 1;
   const Json all = level["snapshots"];
   const auto refusal = [&] {
     folder.write("run/results.json", results.dump());
@@ -155,7 +155,7 @@ TEST_CASE("an animation of a level of one step is refused with the levels that h
       refusal() ==
       "error: --frames: level 1 of pcs took no more than one iteration, so it has no state before its last; "
       "choose --level 0\n");
-  level["newton_iterations"] = 7;  // of an experiment with snapshots: 1
+  level["iterations"] = 7;  // of an experiment with snapshots: 1
   CHECK(
       refusal() ==
       "error: --frames: the run has only the last state of level 1; run the experiment with snapshots: 8\n");

@@ -33,7 +33,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
-  wait_for_lines(command, folder / "out/steps.csv", 6);
+  wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGINT);
   const Ended ended = command.wait();
   CHECK(ended.exit_code == 130);
@@ -46,7 +46,7 @@ TEST_CASE("SIGINT ends a run after the step, with all results so far and the rep
   CHECK(pcs["status"] == "cancelled");
   REQUIRE(pcs["levels"].size() == 1);
   CHECK(pcs["levels"][0]["status"] == "cancelled");
-  CHECK(pcs["levels"][0]["newton_iterations"].get<int>() >= 5);
+  CHECK(pcs["levels"][0]["iterations"].get<int>() >= 5);
   CHECK(drape::read_mesh(folder / "out/levels/pcs_l0.ply").vertices.allFinite());
   CHECK(text_of(folder / "out/report.html").ends_with("</html>\n"));
 }
@@ -56,7 +56,7 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
   folder.write("e.yaml", small_experiment());
   {
     Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
-    wait_for_lines(command, folder / "out/steps.csv", 6);
+    wait_for_lines(command, folder / "out/iterations.csv", 6);
     command.send(SIGHUP);
     CHECK(command.wait().exit_code == 129);
   }
@@ -65,11 +65,11 @@ TEST_CASE("SIGHUP, as of a terminal that is closed, ends a run as SIGTERM does; 
   Command command("trap '' HUP; exec " + drape_command + " " + endless + " -q --no-report " +
                       "--set newton.max_steps=100000",
                   folder.path);
-  wait_for_lines(command, folder / "out/steps.csv", 6);
+  wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGHUP);
-  const std::string steps = contents(folder / "out/steps.csv");
+  const std::string steps = contents(folder / "out/iterations.csv");
   const auto rows = std::count(steps.begin(), steps.end(), '\n');
-  wait_for_lines(command, folder / "out/steps.csv", static_cast<int>(rows) + 20);
+  wait_for_lines(command, folder / "out/iterations.csv", static_cast<int>(rows) + 20);
   command.send(SIGINT);
   CHECK(command.wait().exit_code == 130);
 }
@@ -106,15 +106,15 @@ TEST_CASE("An interrupted run is resumed although its results.json is damaged an
   Command command("exec " + drape_command + " " + run + "--set newton.max_steps=100000 " +
                       "--set newton.force_tolerance=1e-300",
                   folder.path);
-  wait_for_lines(command, folder / "out/steps.csv", 6);
+  wait_for_lines(command, folder / "out/iterations.csv", 6);
   command.send(SIGKILL);
   command.wait();
   std::ofstream(folder / "out/results.json") << "";
   fs::remove(folder / "out/config.yaml");
   Command resumed("exec " + drape_command + " run --resume out --quiet --no-report", folder.path);
-  const std::string before = text_of(folder / "out/steps.csv");
+  const std::string before = text_of(folder / "out/iterations.csv");
   resumed.wait_until("it has gone on",
-                     [&] { return contents(folder / "out/steps.csv").size() > before.size() + 500; });
+                     [&] { return contents(folder / "out/iterations.csv").size() > before.size() + 500; });
   resumed.send(SIGINT);
   CHECK(resumed.wait().exit_code == 130);
   CHECK(Json::parse(text_of(folder / "out/results.json"))["methods"]["pcs"]["status"] == "cancelled");
@@ -175,7 +175,7 @@ TEST_CASE("a second signal ends a run at once") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   Command command("exec " + drape_command + " " + endless + " --set newton.max_steps=100000", folder.path);
-  wait_for_lines(command, folder / "out/steps.csv", 6);
+  wait_for_lines(command, folder / "out/iterations.csv", 6);
   const Ended ended = ended_by_two_signals(command);
   CHECK(ended.exit_code == 128 + SIGTERM);
   CHECK(ended.out == "");

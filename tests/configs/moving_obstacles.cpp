@@ -124,7 +124,7 @@ obstacles: [{name: ball, meshed_shape: sphere, radius: 0.1, subdivisions: 3}]
   const auto iterations = [&](const std::string& more) {
     end_of(draped + more, folder, 0);
     const auto all = nlohmann::json::parse(text_of(folder / "out/results.json"));
-    return all["methods"]["pcs"]["levels"][0]["newton_iterations"].get<int>();
+    return all["methods"]["pcs"]["levels"][0]["iterations"].get<int>();
   };
   const int still = iterations(shapes);  // one part at a time, 3000 to 6000 more
   CHECK(iterations(shapes + schedule("obstacles.0.translate", "[[0, 0, 0], [0, 0, 0.1]]")) < still + 150);

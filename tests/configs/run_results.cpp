@@ -81,9 +81,9 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
     for (int l = 0; l < levels; ++l) {
       INFO("level " << l);
       const Json& level = method["levels"][l];
-      REQUIRE(has(level, {"level", "vertices", "triangles", "status", "steps", "newton_iterations", "seconds",
-                          "seconds_by_phase", "energy", "energy_on_finest", "decrement", "force_residual",
-                          "largest_stretch", "intersections", "smallest_gap", "mesh"}));
+      REQUIRE(has(level, {"level", "vertices", "triangles", "status", "steps", "iterations", "seconds",
+                          "seconds_by_phase", "energy", "energy_on_finest", "energy_released", "decrement",
+                          "force_residual", "largest_stretch", "intersections", "smallest_gap", "mesh"}));
       std::set<std::string> declared;
       for (const auto& [metric, declaration] : all["metrics"].items())
         for (const Json& column : declaration["columns"]) declared.insert(column["name"].get<std::string>());
@@ -97,7 +97,7 @@ TEST_CASE("results.json has every key, finite figures and every pair of levels")
       CHECK(level["triangles"] == 2 * side * side);
       CHECK(level["status"] == "converged");
       CHECK(level["steps"].get<int>() > 0);
-      CHECK(level["newton_iterations"].get<int>() >= level["steps"].get<int>());
+      CHECK(level["iterations"].get<int>() >= level["steps"].get<int>());
       CHECK(level["force_residual"].get<double>() <= 1e-2);
       CHECK(level["decrement"].get<double>() >= 0);
       CHECK(level["energy"].is_number());
@@ -164,19 +164,19 @@ TEST_CASE("every mesh and field that is named reads back, on the level's triangl
   }
 }
 
-TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where it is minimised") {
-  std::istringstream lines(text_of(whole_run() / "steps.csv"));
+TEST_CASE("iterations.csv has a row for every Newton iteration, and the proxy where it is minimised") {
+  std::istringstream lines(text_of(whole_run() / "iterations.csv"));
   std::string line;
   std::getline(lines, line);
   CHECK(line ==
         "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-        "step_size,contacts,smallest_gap,intersections,flops");
+        "step_size,contacts,smallest_gap,intersections,flops,time");
   CHECK(undocumented(drape::split(line, ',')).empty());
   std::map<std::pair<std::string, int>, int> rows;
   while (std::getline(lines, line)) {
     INFO(line);
     const std::vector<std::string> cells = drape::split(line, ',');
-    REQUIRE(cells.size() == 15);
+    REQUIRE(cells.size() == 16);
     CHECK(std::stod(cells[14]) > 0);
     const int level = std::stoi(cells[1]);
     ++rows[{cells[0], level}];
@@ -184,12 +184,12 @@ TEST_CASE("steps.csv has a row for every Newton iteration, and the proxy where i
     for (std::size_t k = 1; k < 11; ++k)
       if (k != 9 || proxy) CHECK(std::isfinite(std::stod(cells[k])));
     CHECK(cells[9].empty() == !proxy);
-    CHECK((cells[11] + cells[12] + cells[13]).empty());  // without contact
+    CHECK((cells[11] + cells[12] + cells[13] + cells[15]).empty());  // without contact and schedule
   }
   const Json all = results();
   for (const std::string& method : methods)
     for (int l = 0; l < levels; ++l)
-      CHECK(rows[{method, l}] == all["methods"][method]["levels"][l]["newton_iterations"].get<int>());
+      CHECK(rows[{method, l}] == all["methods"][method]["levels"][l]["iterations"].get<int>());
   CHECK(rows.size() == methods.size() * levels);
 }
 

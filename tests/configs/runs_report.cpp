@@ -87,8 +87,7 @@ TEST_CASE("a sweep's rows hold the medians over its seeds") {
     const OrderedJson all = OrderedJson::parse(
         text_of(sweep() / ("runs/matrix=galerkin/seed_" + std::to_string(seed) + "/results.json")));
     double sum = 0;
-    for (const OrderedJson& level : all["methods"]["pcs"]["levels"])
-      sum += level["newton_iterations"].get<double>();
+    for (const OrderedJson& level : all["methods"]["pcs"]["levels"]) sum += level["iterations"].get<double>();
     iterations.push_back(sum);
   }
   std::sort(iterations.begin(), iterations.end());
@@ -139,21 +138,23 @@ TEST_CASE("the table and the page of runs have the same costs by the same names"
   int compared = 0;
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (const RowQuantity& quantity : row_quantities(collection.error_measures())) {
-      if (!table.rows[k].contains(quantity.name)) continue;
       const Repeat& repeat = rows[k].repeats.at(0);
       INFO(rows[k].method << " " << quantity.name);
       CHECK(table.rows[k]["method"] == rows[k].method);
-      CHECK(table.rows[k][quantity.name] == quantity.of(*repeat.run->data, *repeat.method).value());
-      ++compared;
+      const OptionalNumber value = quantity.of(*repeat.run->data, *repeat.method);
+      const auto& cell = table.rows[k][quantity.name];
+      CHECK(cell.is_null() == !value);
+      if (value) CHECK(cell == *value);
+      compared += value.has_value();
     }
-  CHECK(compared == 3 * 3);  // seconds, iterations and energy of each method
+  CHECK(compared > 3 * 9);
 }
 
 TEST_CASE("the table counts steps of the levels that the last state builds on") {
   RunCollection collection = read_runs({sweep() / "runs/matrix=galerkin/seed_1"});
   RunData& run = *collection.runs[0].data;
   for (IterationSeries& series : run.iterations)
-    for (StepRow& row : series.rows) row.step_length = 0.5;
+    for (RecordedIteration& row : series.rows) row.step_length = 0.5;
   const RunTable table = table_of(collection);
   for (std::size_t k = 0; k < run.methods.size(); ++k) {
     const MethodRecord& method = run.methods[k];
@@ -245,7 +246,8 @@ TEST_CASE("variations of one name are kept apart if they are of different sweeps
         Names{(folder / "b").string() + ": base", "stiff", (folder / "c").string() + ": base"});
   const RunTable table = table_of(read_runs({folder / "a", folder / "b"}));  // has the sweeps in a column
   REQUIRE(table.rows.size() == 8);
-  CHECK(table.rows[0]["run"] == "base, seed 1");
+  CHECK(table.rows[0]["run"] == "base");
+  CHECK(table.rows[0]["seed"] == 1);
 }
 
 TEST_CASE("an experiment and the folder of another one may have the same name") {
@@ -305,7 +307,7 @@ TEST_CASE("a sweep without a name is read, with runs that have no results") {
 }
 
 TEST_CASE("compare finds nothing between a run and itself") {
-  for (const char* bounds : {"", " --bound seconds=1 --bound d_H_fit=1 --bound energy=1"}) {
+  for (const char* bounds : {"", " --bound seconds=1 --bound d_H_fit=1 --bound energy_released=1"}) {
     const Ended ended = drape_with("compare . ." + std::string(bounds), sweep());
     CHECK(ended.exit_code == 0);
     CHECK_THAT(ended.out, Contains(" the same. Times within 10 % or 0.05 s of each other"));
@@ -318,7 +320,7 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
     OrderedJson& pcs = all["methods"]["pcs"];
     pcs["levels"][1]["seconds"] = pcs["levels"][1]["seconds"].get<double>() + 10;
     for (OrderedJson& pair : pcs["consistency"]) pair["d_H_fit"] = pair["d_H_fit"].get<double>() / 2;
-    all["methods"]["cascadic"]["levels"][1]["newton_iterations"] = 1000;
+    all["methods"]["cascadic"]["levels"][1]["iterations"] = 1000;
   });
   const Ended plain = run.compare();
   CHECK(plain.exit_code == 0);
@@ -326,7 +328,7 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
        {"pcs, level 1 +seconds .* slower\n", "pcs, levels 0 → 1 +d_H_fit .* ×0.500 +better\n",
         "cascadic, level 1 +iterations .* more work\n"})
     CHECK_THAT(plain.out, Catch::Matchers::Matches("[\\s\\S]*" + std::string(line) + "[\\s\\S]*"));
-  CHECK(run.compare(" --bound d_H_fit=1 --bound energy=1").exit_code == 0);
+  CHECK(run.compare(" --bound d_H_fit=1 --bound energy_released=1").exit_code == 0);
   const Ended broken = run.compare(" --bound seconds=1.5");
   CHECK(broken.exit_code == 1);
   CHECK_THAT(broken.out,
@@ -336,14 +338,14 @@ TEST_CASE("compare lists changes, and exits with 1 if a bound is broken") {
 TEST_CASE("compare gives energies no verdict where the models differ, and names the keys") {
   const Edited run([](OrderedJson& all) {
     OrderedJson& level = all["methods"]["pcs"]["levels"][1];
-    level["energy_on_finest"] = level["energy_on_finest"].get<double>() - 0.1;
+    level["energy_released"] = level["energy_released"].get<double>() + 0.1;
   });
   const auto matches = [](const std::string& line) {
     return Catch::Matchers::Matches("[\\s\\S]*" + line + "[\\s\\S]*");
   };
   const std::string config = text_of(run.folder / "b/config.yaml");
   const Ended same = run.compare();
-  CHECK_THAT(same.out, matches("pcs, level 1 +energy .* better\n") && !Contains("models differ"));
+  CHECK_THAT(same.out, matches("pcs, level 1 +energy_released .* better\n") && !Contains("models differ"));
   const auto with_other = [&](const std::string& key) {
     std::string changed = config;
     changed.insert(changed.find(key + ": ") + key.size() + 2, "1");
@@ -354,7 +356,7 @@ TEST_CASE("compare gives energies no verdict where the models differ, and names 
   const Ended other = with_other("bending_modulus");
   CHECK_THAT(
       other.out,
-      matches("pcs, level 1 +energy .* other\n") &&
+      matches("pcs, level 1 +energy_released .* other\n") &&
           Contains("Energies have no verdict, as their models differ: in material.bending_modulus.\n"));
 }
 
@@ -372,10 +374,10 @@ TEST_CASE("a bound is broken if a method no longer converges or exists") {
 TEST_CASE("bounds on negative energies and on counts that were zero") {
   const Edited run([](OrderedJson& all) {
     OrderedJson& level = all["methods"]["pcs"]["levels"][1];
-    level["energy_on_finest"] = level["energy_on_finest"].get<double>() + 0.1;
+    level["energy_released"] = level["energy_released"].get<double>() - 0.1;
   });
-  CHECK(run.compare(" --bound energy=1.05").exit_code == 1);
-  CHECK(run.compare(" --bound energy=2").exit_code == 0);
+  CHECK(run.compare(" --bound energy_released=1.05").exit_code == 1);
+  CHECK(run.compare(" --bound energy_released=2").exit_code == 0);
 }
 
 TEST_CASE("compare refuses meaningless bounds") {

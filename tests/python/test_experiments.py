@@ -1,6 +1,7 @@
 """Experiments and their results: the same as the command's."""
 
 import gc
+import json
 import locale
 import os
 import pathlib
@@ -155,13 +156,41 @@ def test_tables(experiment):
     assert list(result.levels["method"]) == [m for m in ("pcs", "cascadic", "newton") for _ in range(2)]
     assert list(result.levels["level"]) == [0, 1] * 3
     assert numpy.all(numpy.isfinite(result.levels["energy"]))
-    parts = sum(result.levels[c] for c in result.levels if c.startswith("energy."))
+    parts = sum(result.levels[c] for c in result.levels if c.startswith("energy_parts."))
     assert numpy.allclose(parts, result.levels["energy"], rtol=1e-12)
     assert result.iterations.row_count == sum(result.levels["iterations"])
     assert result.consistency.row_count == 3 and "d_H_fit" in result.consistency
-    assert any(c.startswith("reference.") for c in result.errors)
+    assert result.levels["level"].dtype == result.iterations["contacts" if "contacts" in result.levels else "level"].dtype == int
     assert "<table>" in result.levels._repr_html_()
     assert isinstance(result.levels.to_pandas(), pandas.DataFrame)
+
+
+def test_names_are_those_of_the_files(experiment):
+    result = experiment.run(methods=["all"], progress=False)
+    folder = pathlib.Path(result.folder)
+    for table, name in ((result.iterations, "iterations.csv"), (result.errors, "errors.csv")):
+        assert list(table) == (folder / name).read_text().splitlines()[0].split(",")
+    recorded = json.loads((folder / "results.json").read_text())["methods"]["pcs"]["levels"][0]
+    assert {"iterations", "energy_released", "energy_parts.hinge", "seconds_by_phase.factorise"} <= set(result.levels)
+    for name, value in recorded.items():
+        if isinstance(value, (int, float)):
+            assert result.levels[name][0] == value
+    iteration = set(dir(drape.Iteration))
+    assert {name for name in result.iterations if name not in ("method", "intersections")} <= iteration
+
+
+def test_a_sweep_is_one_table(command, tmp_path):
+    subprocess.run([command, "sweep", SOURCE / "tests/sweep/small_sweep.yaml", "--out", tmp_path / "out", "-q"], check=True,
+                   stdout=subprocess.DEVNULL)
+    table = drape.read_sweep(tmp_path / "out")
+    assert table.row_count == 48
+    frame = table.to_pandas()
+    assert frame["levels"].dtype == frame["seed"].dtype == int
+    of = frame[(frame["refiner"] == "loop") & (frame["levels"] == 2) & (frame["method"] == "pcs")]
+    assert len(of) == 6 and set(of["newton.step_growth"]) == {1.5, 3} and set(of["seed"]) == {1, 2, 3}
+    assert numpy.all(of["energy_released"] > 0)
+    with pytest.raises(RuntimeError, match="neither results.json nor sweep.json"):
+        drape.read_sweep(tmp_path)
 
 
 @pytest.fixture
@@ -191,7 +220,7 @@ def test_files_are_the_same_in_every_locale(experiment, tmp_path, set_decimal_co
     for table in (again.iterations, ours.iterations):
         assert numpy.array_equal(table["force_residual"], expected.iterations["force_residual"])
     assert numpy.array_equal(again.errors["seconds"], expected.errors["seconds"])
-    for name in ("steps.csv", "errors.csv"):
+    for name in ("iterations.csv", "errors.csv"):
         lines = (tmp_path / "comma" / name).read_text().splitlines()
         assert {line.count(",") for line in lines} == {lines[0].count(",")}
     assert not re.search(r"<td>[-0-9]+,[0-9]", (tmp_path / "comma/report.html").read_text())
@@ -212,14 +241,22 @@ def test_a_result_shows_itself(experiment, monkeypatch, tmp_path):
 
 def test_plots_have_the_reports_colours():
     style = (SOURCE / "core/app/view/assets/page.css").read_text()
-    light = {n: colour for n, colour in reversed(re.findall(r"--method-(\d): (#[0-9a-f]{6})", style))}
-    assert list(plots.METHOD_COLOURS) == [light[str(n)] for n in range(len(light))]
+    light = {n: colour for n, colour in reversed(re.findall(r"--solver-(\d): (#[0-9a-f]{6})", style))}
+    assert list(plots.COLOURS) == [light[str(n)] for n in range(len(light))]
 
 
 def test_plots(experiment):
     pytest.importorskip("matplotlib").use("Agg")
     result = experiment.run(methods=["all"], progress=False)
-    assert len(result.plot_errors().lines) == 3
+    axes = result.plot_errors()
+    assert axes.get_ylabel() == "reference_rms"
+    looks = {line.get_label(): (line.get_color(), line.get_marker()) for line in axes.lines}
+    assert looks == {"pcs": ("#0072b2", "o"), "cascadic": ("#d55e00", "s"), "newton": ("#009e73", "^")}
+    level, seconds = result.errors["level"], result.errors["seconds"]
+    newton = [name == "newton" for name in result.errors["method"]]
+    assert set(axes.lines[2].get_xdata()) == set(seconds[numpy.array(newton) & (level == 1)])
+    own = experiment.run(methods=["cascadic", "newton"], progress=False).plot_errors(target="own")
+    assert {line.get_label(): line.get_color() for line in own.lines} == {"cascadic": "#d55e00", "newton": "#009e73"}
     assert len(result.plot_convergence().lines) == 6
     with pytest.raises(ValueError, match="choose a measure"):
         result.plot_errors(measure="nothing_such")

@@ -61,7 +61,7 @@ def test_ctrl_c_raises_keyboard_interrupt(small, tmp_path):
     small["cloth"].update(columns=20, rows=20)
     small["levels"] = 3
     small["newton"] = {"force_tolerance": 1e-300, "step_size": 1e-3, "step_growth": 1, "max_steps": 10**8}  # ends by Ctrl-C
-    experiment, steps = drape.Experiment(small), tmp_path / "r/steps.csv"
+    experiment, steps = drape.Experiment(small), tmp_path / "r/iterations.csv"
 
     def interrupt():
         try:

@@ -23,7 +23,7 @@ inline std::map<std::string, std::string> outcome_of(const std::filesystem::path
     const nlohmann::json results = nlohmann::json::parse(text_of(sweep / folder / "results.json"));
     for (const auto& [name, method] : results["methods"].items())
       for (const nlohmann::json& level : method["levels"])
-        all[folder + ":" + name] += level["energy"].dump() + " " + level["newton_iterations"].dump() + " ";
+        all[folder + ":" + name] += level["energy"].dump() + " " + level["iterations"].dump() + " ";
   }
   return all;
 }

@@ -27,8 +27,6 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
                     remove = "; remove it and the run's folder\n";
   CHECK(said(status, [](Json& json) { json["status"] = "done"; }) ==
         of_status + "no status is called \"done\"" + remove);
-  CHECK(said(status, [](Json& json) { json["status"] = "ended"; }) ==
-        of_status + "status \"ended\" is now called \"not_converged\"" + remove);
   CHECK(said(status, [](Json& json) { json["status"] = 3; }) ==
         of_status + "\"status\" must be a text, not 3" + remove);
   CHECK(said(status, [](Json& json) { json["threads"] = 1e300; }) ==
@@ -48,8 +46,8 @@ TEST_CASE("a value of the wrong kind in a sweep's files is named with its file a
   CHECK(said("out/sweep.json", [](Json& json) { json["runs"][0]["seed"] = -1e300; }) ==
         of_sweep + "\"seed\" must be a whole number, not -1e+300" + another);
   CHECK(said("out/sweep.json", [](Json& json) {
-          json["runs"][0]["expect"] = {{"outcome", true}};
-        }) == of_sweep + "\"outcome\" must be a text, not true" + another);
+          json["runs"][0]["expect"] = {{"status", true}};
+        }) == of_sweep + "\"status\" must be a text, not true" + another);
 
   const std::string results = "out/runs/base/seed_1/results.json",
                     rerun = "; remove the run's folder, and the sweep runs it again\n";

@@ -23,13 +23,13 @@ ablation:
   - {name: easy}
   - name: unheld
     set: {pins: [{region: ball, point: [9, 9, 9], radius: 0.1}]}
-    expect: {outcome: refused, message: widen its region}
+    expect: {status: refused, message: widen its region}
   - name: short
     set: {newton.max_steps: 1}
-    expect: {outcome: max_steps_reached, message: max_steps = 1}
+    expect: {status: max_steps_reached, message: max_steps = 1}
   - name: for another reason
     set: {newton.max_steps: 2}
-    expect: {outcome: max_steps_reached, message: snow}
+    expect: {status: max_steps_reached, message: snow}
 )";
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   const OrderedJson rows = OrderedJson::parse(ended.out);
   REQUIRE(rows.size() == 5);
   const auto outcome = [&](int k) {
-    return rows[k]["run"].get<std::string>() + ": " + rows[k]["outcome"].get<std::string>() +
+    return rows[k]["run"].get<std::string>() + ": " + rows[k]["status"].get<std::string>() +
            (rows[k]["pass"] == true ? ", passes" : "");
   };
   CHECK(outcome(0) == "easy: converged, passes");
@@ -72,25 +72,23 @@ TEST_CASE("a run passes when it ends as its sweep expects, for the reason expect
   CHECK(rows[0]["method"] == "newton");
   CHECK(rows[0]["vertices"] > 10);
   CHECK(rows[2]["iterations"] == 1);
-  CHECK(rows[0]["energy"].is_number());
+  CHECK(rows[0]["energy_released"].is_number());
   CHECK(rows[1]["vertices"].is_null());
   CHECK_THAT(rows[1]["message"].get<std::string>(), Contains("selects no vertex"));
 
-  const Ended few = drape_with("table out --columns run,pass,outcome,steps", folder.path);
-  CHECK_THAT(few.out, StartsWith("| run | pass | outcome | steps |\n| --- | --- | --- | ---: |\n"));
+  const Ended few = drape_with("table out --columns run,pass,status,steps", folder.path);
+  CHECK_THAT(few.out, StartsWith("| run | pass | status | steps |\n| --- | --- | --- | ---: |\n"));
   CHECK_THAT(
       few.out,
       Contains("| short | yes | max_steps_reached | 1 |\n| for another reason | NO | max_steps_reached "
                "| 2 |\n| endless | NO | timeout |  |\n"));
-  const Ended csv = drape_with("table out --format csv --columns run,pass,outcome", folder.path);
-  CHECK_THAT(csv.out, StartsWith("run,pass,outcome\neasy,yes,converged\n"));
+  const Ended csv = drape_with("table out --format csv --columns run,pass,status", folder.path);
+  CHECK_THAT(csv.out, StartsWith("run,pass,status\neasy,yes,converged\n"));
   CHECK(drape_with("table out --columns runs", folder.path).err ==
         "error: there is no column \"runs\"; did you mean \"run\"?\n");
-  CHECK(drape_with("table out --columns cuts", folder.path).err ==
-        "error: column \"cuts\" is now called \"shortened_steps\"\n");
 }
 
-TEST_CASE("an intersection, or an energy that is no number, fails whatever the outcome") {
+TEST_CASE("an intersection, or an energy that is no number, fails whatever the status") {
   const auto rows = [](OptionalNumber energy, OptionalNumber intersections) {
     RunData data;
     data.methods.push_back({});
@@ -98,7 +96,7 @@ TEST_CASE("an intersection, or an energy that is no number, fails whatever the o
     data.methods[0].status = "converged";
     LevelRecord level;
     level.status = "converged";
-    level.energy_on_finest = energy;
+    level.energy_released = energy;
     level.intersections = intersections;
     data.methods[0].levels.push_back(level);
     RunRecord run;
@@ -119,14 +117,14 @@ TEST_CASE("a run that has converged passes no more once its results are gone") {
   CHECK(!table_of({"set", true, {run}}).all_pass());
 }
 
-TEST_CASE("a table counts no shortened steps where rows of steps.csv are missing") {
+TEST_CASE("a table counts no shortened steps where rows of iterations.csv are missing") {
   RunRecord run;
   run.status = "converged";
   run.data.emplace();
   run.data->methods.push_back({});
   run.data->methods[0].status = "converged";
   run.data->methods[0].levels.push_back({});
-  run.data->methods[0].levels[0].newton_iterations = 3;
+  run.data->methods[0].levels[0].iterations = 3;
   CHECK(table_of({"set", true, {run}}).rows[0]["shortened_steps"].is_null());
 }
 
@@ -137,7 +135,7 @@ TEST_CASE("what has converged to rounding passes where it was to converge, and i
     data.methods[0].status = status;
     LevelRecord level;
     level.status = status;
-    level.energy_on_finest = 1;
+    level.energy_released = 1;
     data.methods[0].levels.push_back(level);
     RunRecord run;
     run.status = "converged";
@@ -156,13 +154,13 @@ TEST_CASE("an expectation needs a message") {
   const Scratch folder;
   folder.write("e.yaml", small_experiment());
   folder.write("s.yaml",
-               "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {outcome: refused}}\n"
-               "  - {name: b, expect: {outcome: refuse}}\n");
+               "name: s\nbase: e.yaml\nablation:\n  - {name: a, expect: {status: refused}}\n"
+               "  - {name: b, expect: {status: refuse}}\n");
   CHECK(drape_with("sweep s.yaml", folder.path).err ==
-        "error: s.yaml:4:23: \"expect\" of an outcome other than converged needs a \"message\": a part of "
+        "error: s.yaml:4:23: \"expect\" of a status other than converged needs a \"message\": a part of "
         "the expected message "
         "then\n"
-        "error: s.yaml:5:33: \"outcome\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
+        "error: s.yaml:5:32: \"status\" must be \"converged\", \"converged_to_rounding\", \"infeasible\", "
         "\"stalled\", \"max_steps_reached\" or \"refused\", not \"refuse\"; did you mean \"refused\"?\n");
 }
 

@@ -25,7 +25,7 @@ void wait_for_endless(Command& command, const Scratch& folder) {
   wait_for(command, folder / "out", "running", 1);
   wait_for(command, folder / "out", "converged", 1);
   command.wait_until("the endless run makes steps",
-                     [&] { return fs::exists(folder / "out/runs/endless/seed_1/steps.csv"); });
+                     [&] { return fs::exists(folder / "out/runs/endless/seed_1/iterations.csv"); });
 }
 
 /// A folder with two runs that converge at once and, between them, one that never does.
@@ -68,6 +68,19 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   CHECK(runs[23]["name"] == "refiner=midpoint,levels=2,step_growth=3");
   CHECK(runs[23]["seed"] == 3);
   CHECK(runs[23]["settings"]["refiner"] == "midpoint");
+
+  // Its table is tidy: a column a variable, a row an observation.
+  const Json rows = Json::parse(drape_with("table one --format json", folder.path).out);
+  REQUIRE(rows.size() == 48);
+  CHECK(rows[47]["refiner"] == "midpoint");
+  CHECK(rows[47]["levels"].is_number_integer());
+  CHECK(rows[47]["levels"] == 2);
+  CHECK(rows[47]["newton.step_growth"] == 3);
+  CHECK(rows[47]["seed"].is_number_integer());
+  CHECK(rows[47]["seed"] == 3);
+  CHECK(rows[47]["run"] == runs[23]["name"]);
+  CHECK_THAT(drape_with("table one --format csv", folder.path).out,
+             StartsWith("sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,vertices,"));
 
   // A run can be repeated by hand from the file beside it.
   const std::string run = "one/" + runs[23]["folder"].get<std::string>();

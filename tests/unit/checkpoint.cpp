@@ -68,7 +68,7 @@ Checkpoint full() {
   c.recorder.states = {{"pcs", 1, Positions::Random(9, 3)}};
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};
   c.recorder.measured = {{"pcs", "f.bin", 1, {{1, 2, 3}}, {4}, {5}, Positions::Random(9, 3), true, 7}};
-  c.recorder.steps_bytes = 12345;
+  c.recorder.iterations_bytes = 12345;
   c.recorder.last_load = {2, {0.5, 0.75}};
   return c;
 }
@@ -161,7 +161,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(lag.touched.obstacle == 3);
   CHECK(s.switched_to_plain);
   CHECK(c.recorder.measured.at(0).last == full().recorder.measured.at(0).last);
-  CHECK(c.recorder.steps_bytes == 12345);
+  CHECK(c.recorder.iterations_bytes == 12345);
   CHECK(encode(decode(encode(Checkpoint()))) == encode(Checkpoint()));
 }
 

@@ -155,28 +155,6 @@ TEST_CASE("a report shows a column that nothing but its metric knows") {
   CHECK(table.find("77") == std::string::npos);
 }
 
-TEST_CASE("results without declarations open with plain names, none of them the best") {
-  Json results;
-  for (const std::string method : {"a", "b"})
-    results["methods"][method] = {
-        {"status", "converged"},
-        {"levels", Json::array({{{"level", 0}, {"energy", 1}, {"largest_stretch", 1.25}}})},
-        {"consistency", Json::array({{{"coarse", 0}, {"fine", 1}, {"d_<H", method == "a" ? 3 : 5}}})}};
-  const RunData run = run_of(results, "method,level,own_rms,own_energy_gap\na,0,0.5,0.25\n");
-  CHECK((names_of(run.columns(MetricScope::state, Shown::tables)) ==
-         std::vector<std::string>{"largest_stretch"}));
-  CHECK(run.methods[0].levels[0].metrics.of("largest_stretch") == 1.25);
-  CHECK(level_table(run).find("<th>largest_stretch</th>") != std::string::npos);
-  const std::string table = consistency_table(run);
-  CHECK(table.find("d_&lt;H") != std::string::npos);
-  CHECK(table.find("<td>3.00</td><td>5.00</td>") != std::string::npos);
-  CHECK(table.find("<strong>") == std::string::npos);
-  REQUIRE(run.error_measures.size() == 2);
-  CHECK(run.error_measures[0].name == "rms");
-  CHECK(run.errors.at(0).rows.at(0).error[0].of("rms") == 0.5);
-  CHECK(run.errors[0].rows[0].error[0].of("energy_gap") == 0.25);
-}
-
 TEST_CASE("a summary has the worst of a method's levels") {
   MethodRecord method;
   const MetricColumn lower{.name = "m"}, higher{.name = "m", .better = Better::higher},

@@ -96,15 +96,15 @@ struct SampleRun {
                                    {"triangles", rest[l].triangles.rows()},
                                    {"status", "converged"},
                                    {"steps", 17},
-                                   {"newton_iterations", 1234},
+                                   {"iterations", 1234},
                                    {"seconds", 6.1},
                                    {"seconds_by_phase", {{"factorise", 3.5}, {"assemble", 1.5}}},
                                    {"energy", -0.7654 - l},
-                                   {"energy_on_finest", method == "pcs" ? -1.7654 : -1.5432},
+                                   {"energy_released", method == "pcs" ? 1.7654 : 1.5432},
                                    {"force_residual", 8.76e-4},
                                    {"largest_stretch", 1.0432},
                                    {"intersections", nullptr},
-                                   {"energy_parts", {{"membrane", 0.4321}, {"gravity", -2.345}}},
+                                   {"energy_parts_released", {{"membrane", -0.4321}, {"gravity", 2.345}}},
                                    {"mesh", mesh}});
         for (int k = 0; k < 3; ++k) {
           steps += method + "," + std::to_string(l) + "," + std::to_string(k) + ",0," +
@@ -129,7 +129,7 @@ struct SampleRun {
                                       {"distance_rms", 0.0123},
                                       {"fields", fields}});
     }
-    write_file(folder / "steps.csv", steps);
+    write_file(folder / "iterations.csv", steps);
     write_file(folder / "config.yaml", "cloth: {size: 1 m}\n");
   }
   ~SampleRun() { fs::remove_all(folder); }
@@ -185,7 +185,7 @@ TEST_CASE("a report holds the figures of its run") {
   const std::string page = run.page(true, {});
 
   CHECK(contains(page, "2 of 2 methods converged"));
-  CHECK(contains(page, "<b>pcs</b> ends with the lowest energy (-1.77 J, newton 0.222 J above)"));
+  CHECK(contains(page, "<b>pcs</b> ends with the lowest energy (it released 1.77 J, newton 0.222 J less)"));
   CHECK(contains(page, "<b>pcs</b> changes its mean curvature least"));
   CHECK(contains(page, "<td>12.3</td>"));                               // seconds
   CHECK(contains(page, "<td>2\u202f468</td>"));                         // iterations, both levels
@@ -193,7 +193,7 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(contains(page, "<td>123 MB</td>"));                             // peak memory
   CHECK(contains(page, "<td><strong>13.6</strong></td><td>136</td>"));  // pcs leads, the lower is bold
   CHECK(contains(page, "<td><strong>2.72e4</strong></td><td>2.72e5</td>"));
-  CHECK(contains(page, "<td>0.432</td>"));  // an energy part
+  CHECK(contains(page, "-0.4321"));  // what a part of the energy released, in a plot
   CHECK(contains(page, "<th>largest stretch</th>"));
   CHECK(contains(page, "<td>1.0432</td>"));
   CHECK(contains(page, "d<sub>H</sub> is of mean curvature."));
@@ -279,14 +279,14 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
       if (key != "level") value = nullptr;
     }
     newton["consistency"][0]["d_H_fit"] = nullptr;
-    newton["levels"][0].erase("energy_parts");
+    newton["levels"][0].erase("energy_parts_released");
     newton["seconds"] = std::nan("");
     const std::string page = run.page();
     CHECK(contains(page, "<td>13.6</td><td>–</td>"));  // nothing to compare with: not bold
     CHECK_FALSE(contains(visible_words(page), "NaN"));
   }
   SECTION("no fields, steps, configuration and rest shapes") {
-    for (const char* name : {"fields", "rest", "levels", "steps.csv", "config.yaml"})
+    for (const char* name : {"fields", "rest", "levels", "iterations.csv", "config.yaml"})
       fs::remove_all(run.folder / name);
     const std::string page = run.page(true);
     CHECK(occurrences(page, "No field was stored for these pictures in this run.") == 2);
@@ -314,7 +314,7 @@ TEST_CASE("a report of a partial run has dashes and sentences instead") {
     CHECK(contrast(pictures.find("pcs_l0.png")->image) > 5);
   }
   SECTION("a last line of steps cut off") {
-    write_file(run.folder / "steps.csv", read_file(run.folder / "steps.csv") + "pcs,1,9");
+    write_file(run.folder / "iterations.csv", read_file(run.folder / "iterations.csv") + "pcs,1,9");
     run.page();
     const RunData data = read_run(run.folder);
     REQUIRE(data.iterations.size() == 4);
@@ -330,7 +330,7 @@ TEST_CASE("names in a report cannot break the page or leave its folder") {
   run.results["description"] = evil;
   run.results["methods"][evil] = run.results["methods"]["pcs"];
   run.results["methods"][evil]["status"] = evil;
-  run.results["methods"][evil]["levels"][0]["energy_parts"][evil] = 1;
+  run.results["methods"][evil]["levels"][0]["energy_parts_released"][evil] = 1;
   write_file(run.folder / "config.yaml", "# " + evil);
   const std::string page = run.page(true);
   CHECK_FALSE(contains(page, evil));
@@ -371,7 +371,7 @@ TEST_CASE("chart data compares energies of one level only, and never the proxy w
   SampleRun run;
   run.results["methods"]["pcs"]["levels"][0]["level"] = 0;
   write_file(run.folder / "results.json", run.results.dump());
-  write_file(run.folder / "steps.csv",
+  write_file(run.folder / "iterations.csv",
              "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy\n"
              "pcs,0,0,0,1,5,1,1,1,-9\npcs,0,1,0,2,4,1,0.1,1,-10\n"
              "pcs,1,0,0,3,2,1,1,1,\npcs,1,1,0,4,1,1,0.1,1,\n"
@@ -382,7 +382,7 @@ TEST_CASE("chart data compares energies of one level only, and never the proxy w
   CHECK(data["series"][1]["gap"] == Json({1, 0}));
   CHECK(data["series"][2]["gap"] == Json::array({0}));
   CHECK(data["series"][3]["gap"] == Json({2, 0.5}));
-  CHECK(data["series"][3]["residual"] == Json({1, 0.1}));
+  CHECK(data["series"][3]["force_residual"] == Json({1, 0.1}));
   CHECK(data["phases"]["values"][0] == Json({3.5, 3.5, 3.5, 3.5}));
   CHECK(data["tolerance"] == 1e-3);
 }
@@ -393,7 +393,7 @@ TEST_CASE("a report has plots of load increments if there is a schedule") {
   Json& increments = run.results["methods"]["pcs"]["increments"];
   for (const int level : {1, 0})
     for (const double time : {0.5, 1.0})
-      increments.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy", -time}});
+      increments.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy_released", time}});
   const std::string page = run.page();
   CHECK(contains(page, "id=\"load-stepping\""));
   CHECK(contains(page, "id=\"increment-energy\""));
@@ -403,7 +403,7 @@ TEST_CASE("a report has plots of load increments if there is a schedule") {
   CHECK(data[1]["level"] == 1);
   CHECK(data[1]["time"] == Json({0.5, 1}));
   CHECK(data[1]["steps"] == Json({5, 10}));
-  CHECK(data[1]["energy"] == Json({-0.5, -1}));
+  CHECK(data[1]["energy_released"] == Json({0.5, 1}));
 }
 
 TEST_CASE("figures in a report have three digits") {
@@ -484,21 +484,18 @@ TEST_CASE("every method has a verdict beside the others that converged") {
       level.level = l;
       level.seconds = m.name == "pcs" ? 2 : 6;
       level.from_initial_state = m.name == "newton";
-      level.energy_on_finest = m.name == "pcs" ? -2 - l : -1 - 1.5 * l;
+      level.energy_released = m.name == "pcs" ? 2 + l : 1 + 1.5 * l;
     }
   }
-  CHECK(method_verdict(run, run.methods[0]) == "fastest; lowest energy; best preview");
-  CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; energy higher by 0.500&nbsp;J");
-  run.energy_of_start = 2;
-  CHECK(method_verdict(run, run.methods[1]) ==
-        "1.50× the fastest's time; energy higher by 10.0&nbsp;% of what was released");
+  CHECK(method_verdict(run, run.methods[0]) == "fastest; released the most energy; best preview");
+  CHECK(method_verdict(run, run.methods[1]) == "1.50× the fastest's time; released 16.7&nbsp;% less energy");
   CHECK(method_verdict(run, run.methods[2]) == "did not converge; its figures are of where it stopped");
   run.force_tolerance = 0.001;
   CHECK(contains(outcome_sentence(run), "2 of 3 methods converged (force residual below 0.001); <b>pcs</b>"));
 
   run.methods[2].status = "converged_to_rounding";
   CHECK(method_verdict(run, run.methods[2]) ==
-        "3.00× the fastest's time; energy higher by 10.0&nbsp;% of what was released");
+        "3.00× the fastest's time; released 16.7&nbsp;% less energy");
   CHECK(contains(outcome_sentence(run),
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }

@@ -39,7 +39,7 @@ RunData contact_run() {
   run.experiment = "sample";
   run.metrics = sample_metrics();
   run.methods = {method_of("pcs", 12), method_of("a<b", 345)};
-  StepRow row;
+  RecordedIteration row;
   row.smallest_gap = 1.5e-5;
   run.iterations = {{"pcs", 0, {row, row}}};
   return run;
@@ -95,7 +95,7 @@ TEST_CASE("levels that did not converge are listed with their messages") {
   LevelRecord& level = run.methods[1].levels[0];
   level.status = "stalled";
   level.message = "held by cloth triangle 3 & ball";
-  level.newton_iterations = 1;
+  level.iterations = 1;
   level.force_residual = 1.01;
   const std::string text = troubles(run);
   CHECK(text.find("<b>a&lt;b</b>, level 0: stalled after 1 iterations at force residual 1.01: held by cloth "
@@ -160,8 +160,9 @@ TEST_CASE("No method is the best on a measure that the flat start would win") {
 TEST_CASE("Newton steps are the decrement times h, which a static method has from its settings") {
   RunData run = contact_run();
   run.methods[1].step_size = 0.5;
-  StepRow row;
+  RecordedIteration row;
   row.decrement = 4;
+  row.step_size = std::numeric_limits<double>::infinity();  // of a static step
   run.iterations = {{"pcs", 0, {row}}, {"a<b", 0, {row}}};
   run.iterations[0].rows[0].step_size = 0.25;
   Json data = Json::parse(chart_data(run));

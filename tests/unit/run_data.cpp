@@ -8,11 +8,11 @@ using namespace drape;
 
 namespace {
 
-/// What reading a run says whose results.json and steps.csv are these.
+/// What reading a run says whose results.json and iterations.csv are these.
 std::string said_of(const std::string& results, const std::string& steps = "") {
   const Scratch folder;
   folder.write("results.json", results);
-  folder.write("steps.csv", steps);
+  folder.write("iterations.csv", steps);
   try {
     read_run(folder.path);
   } catch (const std::runtime_error& error) {
@@ -44,5 +44,5 @@ TEST_CASE("a level that is no whole number is named with its file and its key") 
   CHECK(said_of(R"({"methods": {"pcs": {"increments": [{"level": -1e10}]}}})") ==
         "results.json: \"level\" must be a whole number, not -10000000000.0" + end);
   CHECK(said_of("{}", "method,level,energy\npcs,0,1\npcs,1e300,1\n") ==
-        "steps.csv: \"level\" of row 2 must be a whole number, not 1e300" + end);
+        "iterations.csv: \"level\" of row 2 must be a whole number, not 1e300" + end);
 }

@@ -219,14 +219,14 @@ int main_checked(int argc, char** argv) {
       ->allow_extra_args(false);
   CLI::App* table_command = app.add_subcommand(
       "table", "print a table of runs and sweeps, one row per method; exits with 1 unless all pass");
-  show_example(*table_command, "drape table results/sphere --columns method,outcome,seconds,energy");
+  show_example(*table_command, "drape table results/sphere --columns method,status,seconds,energy_released");
   table_command->add_option("folder", report_folders, "results folders, or sweeps'")->required();
   table_command->add_option("--format", format, "md (default), csv or json")
       ->type_name("NAME")
       ->check([](const std::string& name) {
         return formats.contains(name) ? "" : "must be md, csv or json, not " + excerpt(name);
       });
-  table_command->add_option("--columns", columns, "columns, as in run,outcome,energy")
+  table_command->add_option("--columns", columns, "columns, as in run,status,energy_released")
       ->type_name("A,B")
       ->delimiter(',')
       ->allow_extra_args(false);

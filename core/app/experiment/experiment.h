@@ -33,6 +33,8 @@ struct Experiment {
 
   /// The solver of a method. Throws std::logic_error for an unknown method.
   const Solver& solver_of(const std::string& method) const;
+  /// The type of that solver, which is not always the method's name.
+  std::string solver_type(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
   Location location_of(const std::string& key) const;
   /// How the contact models treat their input and a scene of the experiment, a line each: repaired obstacles,

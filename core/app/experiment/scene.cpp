@@ -187,6 +187,12 @@ const Solver& Experiment::solver_of(const std::string& method) const {
   throw std::logic_error("no method " + method);
 }
 
+std::string Experiment::solver_type(const std::string& method) const {
+  const ConfigNode* node = &resolved;
+  for (const char* key : {"methods", method.c_str(), "type"}) node = node ? node->find(key) : nullptr;
+  return node ? node->scalar : method;
+}
+
 Location Experiment::location_of(const std::string& key) const {
   const ConfigNode* node = source.find(key);
   return node ? node->where : source.where;

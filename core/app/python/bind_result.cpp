@@ -4,7 +4,9 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/module.h"
 #include "core/app/python/run_store.h"
+#include "core/app/report/run_table.h"
 #include "core/app/report/viewer_page.h"
+#include "core/app/view/colours.h"
 
 namespace drape::python {
 
@@ -46,12 +48,14 @@ void bind_level_record(py::module_& m) {
       .def_property_readonly("message", of_level(&LevelRecord::message))
       .def_property_readonly("vertices", count_of_level(&LevelRecord::vertices))
       .def_property_readonly("steps", count_of_level(&LevelRecord::steps))
-      .def_property_readonly("iterations", count_of_level(&LevelRecord::newton_iterations))
+      .def_property_readonly("iterations", count_of_level(&LevelRecord::iterations))
       .def_property_readonly("seconds", of_level(&LevelRecord::seconds))
       .def_property_readonly("energy", of_level(&LevelRecord::energy), "[J]")
       .def_property_readonly(
           "energy_on_finest", of_level(&LevelRecord::energy_on_finest),
           "The finest level's energy, without contact and strain limits, at the prolonged state [J].")
+      .def_property_readonly("energy_released", of_level(&LevelRecord::energy_released),
+                             "How far that energy has fallen since the scene's start [J].")
       .def_property_readonly("force_residual", of_level(&LevelRecord::force_residual), "[1]")
       .def_property_readonly("intersections", count_of_level(&LevelRecord::intersections))
       .def_property_readonly("smallest_gap", of_level(&LevelRecord::smallest_gap), "[m]")
@@ -83,6 +87,10 @@ void bind_method_record(py::module_& m) {
   py::class_<MethodHandle>(m, "MethodRecord", "One method of a run.")
       .def_property_readonly("name", [](const MethodHandle& h) { return h.record->name; })
       .def_property_readonly("status", [](const MethodHandle& h) { return h.record->status; })
+      .def_property_readonly("solver", [](const MethodHandle& h) { return h.record->solver; })
+      .def_property_readonly(
+          "_style", [](const MethodHandle& h) { return solver_style(h.record->solver); },
+          "Index of the colour and the mark that its solver has in every plot.")
       .def_property_readonly("seconds", [](const MethodHandle& h) { return h.record->seconds; })
       .def_property_readonly("peak_memory_bytes",
                              [](const MethodHandle& h) { return h.record->peak_memory_bytes; })
@@ -107,6 +115,12 @@ MethodHandle method_of(const std::shared_ptr<RunStore>& run, const std::string& 
 void bind_result(py::module_& m) {
   bind_level_record(m);
   bind_method_record(m);
+  m.def(
+      "_table",
+      [](const std::filesystem::path& folder) {
+        return table_text(table_of(read_runs({folder})), {}, TableFormat::json);
+      },
+      py::arg("folder"), "The rows of `drape table FOLDER --format json`.");
   py::class_<RunStore, std::shared_ptr<RunStore>>(
       m, "RunRecord", "What a run has written: result[\"pcs\"].levels[-1].x is the finest state of a method.")
       .def(py::init([](const std::filesystem::path& folder) {
@@ -126,10 +140,6 @@ void bind_result(py::module_& m) {
                              })
       .def("__getitem__", &method_of, py::arg("method"))
       .def("__len__", [](const RunStore& r) { return r.data.methods.size(); })
-      .def("_levels", [](const RunStore& r) { return levels_table(r.data); })
-      .def("_iterations", [](const RunStore& r) { return iterations_table(r.data); })
-      .def("_consistency", [](const RunStore& r) { return consistency_table(r.data); })
-      .def("_errors", [](const RunStore& r) { return errors_table(r.data); })
       .def(
           "page", [](const RunStore& r) { return viewer_page(r.data); },
           "An HTML page with the report's 3D viewer of every state.");

@@ -46,11 +46,4 @@ class RunStore {
   mutable std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
 };
 
-/// Tables of a run: a dict from the name of a column to its values, all of one length. Absent numbers are
-/// nan.
-py::dict levels_table(const RunData& run);
-py::dict iterations_table(const RunData& run);
-py::dict consistency_table(const RunData& run);
-py::dict errors_table(const RunData& run);
-
 }  // namespace drape::python

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/app/view/colours.h"
 #include "core/app/view/html.h"
 #include "core/kernel/files/number_text.h"
 #include "core/kernel/plugin/parameters.h"
@@ -18,28 +19,28 @@ constexpr std::size_t most_points = 500;  // per series; more are not visible
 
 /// Energies are comparable only within the same objective: a level's plain energy, or its proxy (the finest
 /// level has none).
-bool is_proxy(const RunData& run, const IterationSeries& series, const StepRow& row) {
+bool is_proxy(const RunData& run, const IterationSeries& series, const RecordedIteration& row) {
   return row.proxy_energy && series.level != run.finest_level();
 }
 
-OptionalNumber objective(const RunData& run, const IterationSeries& series, const StepRow& row) {
-  return is_proxy(run, series, row) ? row.proxy_energy : row.energy;
+OptionalNumber objective(const RunData& run, const IterationSeries& series, const RecordedIteration& row) {
+  return is_proxy(run, series, row) ? row.proxy_energy : finite(row.energy);
 }
 
 /// Root mean square length of the Newton direction over the vertices [m]. A static step has no h; its
 /// decrement was computed with the first one.
-OptionalNumber newton_step(const RunData& run, const IterationSeries& series, const StepRow& row) {
-  OptionalNumber h = row.step_size;
+OptionalNumber newton_step(const RunData& run, const IterationSeries& series, const RecordedIteration& row) {
+  OptionalNumber h = finite(row.step_size);
   for (const MethodRecord& method : run.methods) {
     if (!h && method.name == series.method) h = method.step_size;
   }
-  return h && row.decrement ? OptionalNumber(*h * *row.decrement) : OptionalNumber();
+  return h ? finite(*h * row.decrement) : OptionalNumber();
 }
 
 Json series_json(const RunData& run) {
   std::map<std::pair<int, bool>, double> best;
   for (const IterationSeries& series : run.iterations) {
-    for (const StepRow& row : series.rows) {
+    for (const RecordedIteration& row : series.rows) {
       const OptionalNumber energy = objective(run, series, row);
       if (!energy) continue;
       const auto key = std::pair(series.level, is_proxy(run, series, row));
@@ -54,11 +55,11 @@ Json series_json(const RunData& run) {
     const std::size_t count = series.rows.size(), stride = (count + most_points - 1) / most_points;
     for (std::size_t k = 0; k < count; ++k) {
       if (k % stride != 0 && k + 1 != count) continue;
-      const StepRow& row = series.rows[k];
+      const RecordedIteration& row = series.rows[k];
       const OptionalNumber energy = objective(run, series, row);
       iteration.push_back(k + 1);
-      seconds.push_back(rounded(row.seconds));
-      residual.push_back(rounded(row.force_residual));
+      seconds.push_back(rounded(finite(row.seconds)));
+      residual.push_back(rounded(finite(row.force_residual)));
       step.push_back(rounded(newton_step(run, series, row)));
       gap.push_back(energy ? rounded(*energy - best.at({series.level, is_proxy(run, series, row)})) : Json());
     }
@@ -66,7 +67,7 @@ Json series_json(const RunData& run) {
                    {"level", series.level},
                    {"iteration", iteration},
                    {"seconds", seconds},
-                   {"residual", residual},
+                   {"force_residual", residual},
                    {"step", step},
                    {"gap", gap}});
   }
@@ -126,17 +127,17 @@ Json errors_json(const RunData& run) {
 Json increments_json(const RunData& run) {
   Json all = Json::array();
   for (const IncrementSeries& series : run.increments) {
-    Json time = Json::array(), steps = time, energy = time;
+    Json time = Json::array(), steps = time, released = time;
     for (const IncrementRecord& row : series.rows) {
       time.push_back(rounded(row.time));
       steps.push_back(rounded(row.steps));
-      energy.push_back(rounded(row.energy));
+      released.push_back(rounded(row.energy_released));
     }
     all.push_back({{"method", series.method},
                    {"level", series.level},
                    {"time", time},
                    {"steps", steps},
-                   {"energy", energy}});
+                   {"energy_released", released}});
   }
   return all;
 }
@@ -148,6 +149,10 @@ Json rounded(const OptionalNumber& value) {
   return parse_number(general_text(*value, 6)).value();
 }
 
+Json method_json(const std::string& name, const std::string& solver) {
+  return {{"name", name}, {"style", solver_style(solver)}};
+}
+
 Json measures_json(const std::vector<ErrorMeasure>& measures) {
   Json all = Json::array();
   for (const ErrorMeasure& m : measures) all.push_back({{"name", m.name}, {"label", m.label}});
@@ -156,7 +161,7 @@ Json measures_json(const std::vector<ErrorMeasure>& measures) {
 
 std::string chart_data(const RunData& run) {
   Json methods = Json::array();
-  for (const MethodRecord& method : run.methods) methods.push_back(method.name);
+  for (const MethodRecord& method : run.methods) methods.push_back(method_json(method.name, method.solver));
   const Json data = {{"methods", methods},
                      {"coarsest", run.coarsest_level()},
                      {"finest", run.finest_level()},
@@ -166,7 +171,7 @@ std::string chart_data(const RunData& run) {
                      {"errors", errors_json(run)},
                      {"increments", increments_json(run)},
                      {"phases", bars_json(run, &LevelRecord::seconds_by_phase)},
-                     {"parts", bars_json(run, &LevelRecord::energy_parts)}};
+                     {"parts", bars_json(run, &LevelRecord::energy_parts_released)}};
   return html::script_json(data);
 }
 

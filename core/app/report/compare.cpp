@@ -21,16 +21,9 @@ constexpr double time_noise = 0.10;      // smaller relative differences of time
 constexpr double least_seconds = 0.05;   // smaller differences of times count as equal [s]
 constexpr double relative_noise = 0.01;  // the same for all other quantities
 
-struct Key {
-  const char* name;
-  OptionalNumber LevelRecord::*of;  ///< null for quantities of pairs of levels and of whole methods
-};
-constexpr Key level_keys[] = {{"seconds", &LevelRecord::seconds},
-                              {"iterations", &LevelRecord::newton_iterations},
-                              {"flops", &LevelRecord::flops},
-                              {"energy", &LevelRecord::energy_on_finest},
-                              {"intersections", &LevelRecord::intersections},
-                              {"smallest_gap", &LevelRecord::smallest_gap}};
+/// What is compared of every level.
+constexpr const char* level_keys[] = {"seconds",         "iterations",    "flops",
+                                      "energy_released", "intersections", "smallest_gap"};
 
 /// The quantities that one or both sides have, beside level_keys.
 struct ComparedQuantities {
@@ -53,7 +46,7 @@ struct ComparedQuantities {
     const auto add = [&](const std::string& name) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     };
-    for (const Key& key : level_keys) add(key.name);
+    for (const char* key : level_keys) add(key);
     for (const auto* columns : {&states, &pairs})
       for (const MetricColumn& column : *columns) add(column.name);
     for (const RowQuantity& f : rows) add(f.name);
@@ -64,7 +57,7 @@ struct ComparedQuantities {
     for (const auto* columns : {&states, &pairs})
       for (const MetricColumn& column : *columns)
         if (column.name == name) return column.better;
-    return name == "smallest_gap" ? Better::higher : Better::lower;
+    return name == "smallest_gap" || name == "energy_released" ? Better::higher : Better::lower;
   }
 };
 
@@ -102,14 +95,13 @@ void add_method(Sheet& sheet, const ComparedQuantities& quantities, const std::s
   if (method.levels.size() > 1)
     for (const LevelRecord& level : method.levels) {
       const std::string where = name + ", level " + std::to_string(level.level);
-      for (const Key& key : level_keys) sheet.add(where, key.name, level.*key.of);
+      for (const char* key : level_keys) sheet.add(where, key, level.*level_quantity(key).member);
       for (const MetricColumn& column : quantities.states)
         sheet.add(where, column.name, level.metrics.of(column.name));
     }
   else if (!method.levels.empty())
     for (const char* key : {"intersections", "smallest_gap"})
-      for (const Key& k : level_keys)
-        if (std::string(k.name) == key) sheet.add(name, key, method.levels.front().*k.of);
+      sheet.add(name, key, method.levels.front().*level_quantity(key).member);
   for (const ConsistencyRecord& pair : method.consistency)
     for (const MetricColumn& column : quantities.pairs)
       sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine),
@@ -141,10 +133,11 @@ std::string verdict(const Change& c) {
   return good ? "better" : "worse";
 }
 
-/// Energies may be negative and counts zero: a ratio is relative to the absolute value.
+/// What a cloth releases may be negative and counts zero: a ratio is relative to the absolute value.
 bool holds(const Change& c, double ratio) {
   if (is_time(c.key) && c.after - c.before < least_seconds) return true;
-  if (c.better == Better::higher) return c.after * ratio >= c.before;
+  if (c.better == Better::higher && c.before >= 0) return c.after * ratio >= c.before;
+  if (c.better == Better::higher) return c.after >= c.before * ratio;
   return c.after <= c.before + (ratio - 1) * std::abs(c.before);
 }
 
@@ -203,7 +196,7 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
     if (const Entry* now = b.find(was.where, was.key)) {
       Change& change = changes_.emplace_back(
           Change{was.where, was.key, was.value, now->value, quantities.better(was.key)});
-      if (was.key != "energy") {
+      if (was.key != "energy_released") {
         change.verdict = verdict(change);
         continue;
       }

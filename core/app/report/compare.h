@@ -24,7 +24,7 @@ struct Change {
   std::string key;
   double before = 0, after = 0;
   Better better = Better::lower;
-  /// An energy has no better and worse where the models differ (model_keys.h).
+  /// A released energy has no better and worse where the models differ (model_keys.h).
   /// "faster", "slower", "less work", "more work", "better", "worse", "other", or "" for the same
   std::string verdict = {};
   bool broken = false;  ///< violates a bound

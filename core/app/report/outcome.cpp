@@ -74,7 +74,7 @@ void audit_levels(const RunData& run, Audit& audit) {
 void audit_iterations(const RunData& run, Audit& audit) {
   for (const IterationSeries& series : run.iterations) {
     int crossing = 0;
-    for (const StepRow& row : series.rows) {
+    for (const RecordedIteration& row : series.rows) {
       audit.gap(row.smallest_gap);
       audit.iterations += row.intersections.has_value();
       crossing += row.intersections.value_or(0) > 0;
@@ -111,7 +111,7 @@ std::string troubles(const RunData& run) {
       if (level.status == "failed")
         items += where + ": failed" + message + "</li>\n";
       else if (!has_converged(level.status) && !level.status.empty())
-        items += where + ": " + escape(level.status) + " after " + html::count(level.newton_iterations) +
+        items += where + ": " + escape(level.status) + " after " + html::count(level.iterations) +
                  " iterations at force residual " + number_text(level.force_residual) + message + "</li>\n";
       else if (!message.empty())
         remarks += where + message + "</li>\n";
@@ -124,22 +124,18 @@ std::string troubles(const RunData& run) {
          list("Remarks on the input:", on_input);
 }
 
-OptionalNumber final_energy(const RunData& run, const MethodRecord& method) {
-  if (method.levels.empty()) return {};
-  const LevelRecord& last = method.levels.back();
-  if (last.energy_on_finest) return last.energy_on_finest;
-  return last.level == run.finest_level() ? last.energy : OptionalNumber();
+OptionalNumber energy_released(const MethodRecord& method) {
+  return method.levels.empty() ? OptionalNumber() : method.levels.back().energy_released;
 }
 
 namespace {
 
-/// Relative to the energy that the lowest state has released: energies themselves count from an origin.
-std::string energy_words(double energy, double lowest, const OptionalNumber& start) {
-  if (energy == lowest) return "lowest energy";
-  if (!start || *start <= lowest) return "energy higher by " + number_text(energy - lowest) + "&nbsp;J";
-  const double percent = 100 * (energy - lowest) / (*start - lowest);
-  return percent < 0.1 ? "energy within 0.1&nbsp;% of the lowest"
-                       : "energy higher by " + number_text(percent) + "&nbsp;% of what was released";
+std::string energy_words(double released, double most) {
+  if (released == most) return "released the most energy";
+  if (most <= 0) return "released " + number_text(most - released) + "&nbsp;J less energy";
+  const double percent = 100 * (most - released) / most;
+  return percent < 0.1 ? "released the most energy to within 0.1&nbsp;%"
+                       : "released " + number_text(percent) + "&nbsp;% less energy";
 }
 
 }  // namespace
@@ -147,27 +143,28 @@ std::string energy_words(double energy, double lowest, const OptionalNumber& sta
 std::string method_verdict(const RunData& run, const MethodRecord& method) {
   if (method.status == "failed") return "failed; below is why, and its figures are of the levels before that";
   if (!has_converged(method.status)) return "did not converge; its figures are of where it stopped";
-  OptionalNumber fastest, lowest, best_preview;
+  OptionalNumber fastest, most, best_preview;
   int compared = 0;
   const auto preview = [&](const MethodRecord& m) {
-    return m.levels.size() > 1 ? m.levels.front().energy_on_finest : OptionalNumber();
+    return m.levels.size() > 1 ? m.levels.front().energy_released : OptionalNumber();
   };
-  const auto lower = [](OptionalNumber& best, const OptionalNumber& value) {
-    if (value) best = std::min(best.value_or(*value), *value);
+  const auto higher = [](OptionalNumber& best, const OptionalNumber& value) {
+    if (value) best = std::max(best.value_or(*value), *value);
   };
   for (const MethodRecord& m : run.methods) {
     if (!has_converged(m.status)) continue;
     ++compared;
-    lower(fastest, m.cost(&LevelRecord::seconds));
-    lower(lowest, final_energy(run, m));
-    lower(best_preview, preview(m));
+    if (const OptionalNumber seconds = m.cost(&LevelRecord::seconds))
+      fastest = std::min(fastest.value_or(*seconds), *seconds);
+    higher(most, energy_released(m));
+    higher(best_preview, preview(m));
   }
   if (compared < 2) return "converged; nothing to compare it with";
-  const OptionalNumber seconds = method.cost(&LevelRecord::seconds), energy = final_energy(run, method);
+  const OptionalNumber seconds = method.cost(&LevelRecord::seconds), released = energy_released(method);
   std::string text;
   if (seconds && *fastest > 0)
     text = *seconds == *fastest ? "fastest" : number_text(*seconds / *fastest) + "× the fastest's time";
-  if (energy) text += (text.empty() ? "" : "; ") + energy_words(*energy, *lowest, run.energy_of_start);
+  if (released) text += (text.empty() ? "" : "; ") + energy_words(*released, *most);
   if (best_preview && preview(method) == best_preview) text += "; best preview";
   return text;
 }
@@ -192,22 +189,18 @@ std::string outcome_sentence(const RunData& run) {
             (to_rounding ? ", or as low as rounding allows)" : ")");
 
   const MethodRecord* lowest = nullptr;
-  int compared = 0;
-  for (const MethodRecord& m : run.methods) {
-    if (!has_converged(m.status) || !final_energy(run, m)) continue;
-    ++compared;
-    if (!lowest || *final_energy(run, m) < *final_energy(run, *lowest)) lowest = &m;
-  }
-  if (compared > 1) {
-    text += "; <b>" + escape(lowest->name) + "</b> ends with the lowest energy (" +
-            number_text(final_energy(run, *lowest)) + " J";
-    for (const MethodRecord& m : run.methods) {
-      if (&m == lowest || !has_converged(m.status) || !final_energy(run, m)) continue;
-      text += ", " + escape(m.name) + " " + number_text(*final_energy(run, m) - *final_energy(run, *lowest)) +
-              " J above";
-    }
-    text += ")";
-  }
+  std::string others;
+  for (const MethodRecord& m : run.methods)
+    if (has_converged(m.status) && energy_released(m) &&
+        (!lowest || *energy_released(m) > *energy_released(*lowest)))
+      lowest = &m;
+  for (const MethodRecord& m : run.methods)
+    if (&m != lowest && has_converged(m.status) && energy_released(m))
+      others += ", " + escape(m.name) + " " + number_text(*energy_released(*lowest) - *energy_released(m)) +
+                " J less";
+  if (!others.empty())
+    text += "; <b>" + escape(lowest->name) + "</b> ends with the lowest energy (it released " +
+            number_text(energy_released(*lowest)) + " J" + others + ")";
   for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::tables))
     if (!column.best.empty()) text += most_consistent(run, column);
   return text + ".";

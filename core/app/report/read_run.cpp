@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -8,7 +9,6 @@
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
 #include "core/app/report/run_data.h"
-#include "core/app/report/undeclared_metrics.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 
@@ -54,22 +54,13 @@ LevelRecord level_record(const JsonFile& file, const Metrics& metrics, const Jso
   r.level = file.find<int>(json, "level").value_or(position);
   r.status = text_member(json, "status");
   r.message = text_member(json, "message");
-  r.vertices = number(member_of(json, "vertices"));
-  r.triangles = number(member_of(json, "triangles"));
-  r.steps = number(member_of(json, "steps"));
-  r.newton_iterations = number(member_of(json, "newton_iterations"));
-  r.flops = number(member_of(json, "flops"));
+  for (const LevelQuantity& quantity : level_quantities)
+    r.*quantity.member = number(member_of(json, quantity.name));
   r.from_initial_state =
       member_of(json, "from_initial_state").is_boolean() && member_of(json, "from_initial_state").get<bool>();
-  r.seconds = number(member_of(json, "seconds"));
-  r.energy = number(member_of(json, "energy"));
-  r.energy_on_finest = number(member_of(json, "energy_on_finest"));
-  r.decrement = number(member_of(json, "decrement"));
-  r.force_residual = number(member_of(json, "force_residual"));
-  r.intersections = number(member_of(json, "intersections"));
-  r.smallest_gap = number(member_of(json, "smallest_gap"));
   r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
   r.energy_parts = named_numbers(member_of(json, "energy_parts"));
+  r.energy_parts_released = named_numbers(member_of(json, "energy_parts_released"));
   r.metrics = metric_values(json, metrics, MetricScope::state);
   r.mesh = text_member(json, "mesh");
   return r;
@@ -90,6 +81,7 @@ MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const s
   MethodRecord method;
   method.name = name;
   method.status = text_member(json, "status");
+  method.solver = text_member(json, "solver");
   method.seconds = number(member_of(json, "seconds"));
   method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
   const Json& levels = member_of(json, "levels");
@@ -113,7 +105,7 @@ MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const s
 
 IncrementRecord increment_record(const Json& json) {
   return {number(member_of(json, "time")), number(member_of(json, "steps")),
-          number(member_of(json, "energy"))};
+          number(member_of(json, "energy_released"))};
 }
 
 std::string file_if_there(const std::filesystem::path& path) {
@@ -137,16 +129,23 @@ Series& series_of(std::vector<Series>& all, const std::string& method, int level
   return *all.insert(all.end(), {method, level, {}});
 }
 
-std::vector<IterationSeries> read_steps(const std::filesystem::path& path) {
+void set_cell(int& value, const OptionalNumber& cell) { value = whole_number(cell.value_or(0)).value_or(0); }
+void set_cell(double& value, const OptionalNumber& cell) {
+  value = cell.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+template <class Number>
+void set_cell(std::optional<Number>& value, const OptionalNumber& cell) {
+  if (cell) set_cell(value.emplace(), cell);
+}
+
+std::vector<IterationSeries> read_iterations(const std::filesystem::path& path) {
   std::vector<IterationSeries> all;
   const Csv csv(path);
   if (!csv.has("method") || !csv.has("level")) return all;
   for (std::size_t k = 0; k < csv.size(); ++k) {
-    const auto cell = [&](const char* name) { return csv.number(k, name); };
-    series_of(all, csv.text(k, "method"), level_of(csv, k, path))
-        .rows.push_back({cell("seconds"), cell("energy"), cell("decrement"), cell("force_residual"),
-                         cell("step_length"), cell("proxy_energy"), cell("step_size"), cell("contacts"),
-                         cell("smallest_gap"), cell("intersections"), cell("step"), cell("iteration")});
+    RecordedIteration& row =
+        series_of(all, csv.text(k, "method"), level_of(csv, k, path)).rows.emplace_back();
+    for_each_column(row, [&](const char* name, auto& value, int) { set_cell(value, csv.number(k, name)); });
   }
   return all;
 }
@@ -227,13 +226,10 @@ RunData read_run(const std::filesystem::path& folder) {
   run.reference_is_file = !text_member(reference, "file").empty();
   run.reference_is_lowest = text_member(reference, "chosen") == ReferenceParameters::lowest;
   run.reference_tolerance = number(member_of(reference, "force_tolerance"));
-  run.energy_of_start = number(member_of(json, "energy_of_start"));
   run.force_tolerance = number(member_of(member_of(json, "tolerance"), "force_residual"));
   const Json& methods = member_of(json, "methods");
-  const Json& declared = member_of(json, "metrics");
-  run.metrics = declared.is_object() ? declared_metrics(declared) : undeclared_metrics(methods);
-  run.error_measures =
-      declared.is_object() ? error_measures(run.metrics) : undeclared_errors(Csv(folder / "errors.csv"));
+  run.metrics = declared_metrics(member_of(json, "metrics"));
+  run.error_measures = error_measures(run.metrics);
   if (methods.is_object()) {
     for (const auto& [name, value] : methods.items()) {
       run.methods.push_back(method_record(file, run.metrics, name, value));
@@ -245,7 +241,7 @@ RunData read_run(const std::filesystem::path& folder) {
   // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
                         [](const MethodRecord& m) { return m.name == "pcs"; });
-  run.iterations = read_steps(folder / "steps.csv");
+  run.iterations = read_iterations(folder / "iterations.csv");
   const auto place = [&run](const auto& s) {
     const auto method = std::find_if(run.methods.begin(), run.methods.end(),
                                      [&](const MethodRecord& m) { return m.name == s.method; });

@@ -29,7 +29,7 @@ std::string fault_of_snapshots(const nlohmann::ordered_json& results, const Meth
                                const LevelRecord& level, std::size_t count, std::size_t least) {
   const std::string name = "level " + std::to_string(level.level);
   if (count == 0) return "the run has no snapshots of " + name + "; run the experiment with snapshots: 8";
-  if (level.newton_iterations && *level.newton_iterations > 1)
+  if (level.iterations && *level.iterations > 1)
     return "the run has only the last state of " + name + "; run the experiment with snapshots: 8";
   const std::vector<std::string> others = levels_with_snapshots(results, method, least);
   return name + " of " + method.name +

@@ -73,9 +73,9 @@ std::string state_grid(const RunData& run, const Gallery& gallery) {
   for (const int level : run.level_indices()) {
     for (const MethodRecord& method : run.methods) {
       const LevelRecord* r = method.level(level);
-      const std::string caption =
-          label(method, level) + ": " + html::count(r ? r->vertices : OptionalNumber()) + " vertices, " +
-          number_text(r ? r->energy_on_finest : OptionalNumber()) + "&nbsp;J on finest";
+      const std::string caption = label(method, level) + ": " +
+                                  html::count(r ? r->vertices : OptionalNumber()) + " vertices, " +
+                                  number_text(r ? r->energy_released : OptionalNumber()) + "&nbsp;J released";
       text += gallery.shown(state_picture(method, level),
                             method.name + ": the cloth at level " + std::to_string(level), caption);
     }
@@ -239,7 +239,6 @@ std::vector<std::string> write_report(const std::filesystem::path& run_directory
                   {"consistency", consistency_table(run)},
                   {"metric_pictures", metric_pictures(run, gallery, set)},
                   {"load_stepping", load_stepping_section(run)},
-                  {"energies", energy_table(run)},
                   {"configuration",
                    run.configuration.empty() ? "config.yaml was not stored." : escape(run.configuration)},
                   {"data", chart_data(run)},

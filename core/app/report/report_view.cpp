@@ -155,7 +155,7 @@ class ReportViewMaker {
         left -= bytes;
       }
       Json last = document_->state(name, state->second.x, state->second.fields);
-      last["iteration"] = level.newton_iterations ? Json(*level.newton_iterations) : Json();
+      last["iteration"] = level.iterations ? Json(*level.iterations) : Json();
       states.push_back(last);
       levels.push_back({{"level", level.level}, {"status", level.status}, {"states", states}});
     }

@@ -35,12 +35,11 @@ void read_sweep(const fs::path& folder, RunCollection& collection) {
     run.sweep = text_member(json, "sweep");
     run.name = run.variation = text_member(entry, "name");
     run.status = text_member(entry, "status");
-    if (run.status == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
-    if (run.status == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
+    run.settings = member_of(entry, "settings");
     run.error = text_member(entry, "error");
     run.exit_code = file.find<int>(entry, "exit_code").value_or(0);
     if (const auto expect = entry.find("expect"); expect != entry.end() && expect->is_object()) {
-      run.expected = text_member(*expect, "outcome");
+      run.expected = text_member(*expect, "status");
       run.expected_message = text_member(*expect, "message");
     }
     run.folder = folder / text_member(entry, "folder");

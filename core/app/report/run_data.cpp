@@ -1,8 +1,14 @@
 #include "core/app/report/run_data.h"
 
+#include <algorithm>
 #include <set>
 
 namespace drape {
+
+const LevelQuantity& level_quantity(std::string_view name) {
+  return *std::find_if(std::begin(level_quantities), std::end(level_quantities),
+                       [&](const LevelQuantity& quantity) { return quantity.name == name; });
+}
 
 OptionalNumber MethodRecord::sum(OptionalNumber LevelRecord::*member) const {
   OptionalNumber sum;

@@ -5,10 +5,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/app/experiment/error_measures.h"
+#include "core/app/files/iterations_file.h"
 #include "core/app/files/optional_number.h"
 #include "core/kernel/model/solver.h"
 
@@ -32,16 +34,41 @@ struct Values : std::map<std::string, double> {
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  OptionalNumber vertices, triangles, steps, newton_iterations, seconds, flops;
-  bool from_initial_state = false;           ///< earlier levels do not contribute
-  OptionalNumber energy, energy_on_finest;   ///< [J]
-  OptionalNumber decrement, force_residual;  ///< [m/s], [1]
-  OptionalNumber intersections, smallest_gap;
+  OptionalNumber vertices, triangles, steps, iterations, seconds, flops;
+  bool from_initial_state = false;          ///< earlier levels do not contribute
+  OptionalNumber energy, energy_on_finest;  ///< from the potentials' origin [J]
+  OptionalNumber energy_released;           ///< of the finest level, since the scene's start [J]
+  OptionalNumber decrement, force_residual, intersections, smallest_gap;
   OptionalNumber contacts;  ///< in the last iteration
-  NamedNumbers seconds_by_phase, energy_parts;
+  NamedNumbers seconds_by_phase, energy_parts, energy_parts_released;
   Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
+
+/// A number that results.json has of every level, under the name that it has there, in tables, in comparisons
+/// and in Python.
+struct LevelQuantity {
+  const char* name;
+  OptionalNumber LevelRecord::*member;
+  const char* title;   ///< for the head of a table, with the unit
+  bool count = false;  ///< shown as a whole number
+};
+inline constexpr LevelQuantity level_quantities[] = {
+    {"vertices", &LevelRecord::vertices, "vertices", true},
+    {"triangles", &LevelRecord::triangles, "triangles", true},
+    {"steps", &LevelRecord::steps, "steps", true},
+    {"iterations", &LevelRecord::iterations, "Newton iterations", true},
+    {"seconds", &LevelRecord::seconds, "time [s]"},
+    {"flops", &LevelRecord::flops, "flops"},
+    {"energy", &LevelRecord::energy, "energy [J]"},
+    {"energy_on_finest", &LevelRecord::energy_on_finest, "energy on finest [J]"},
+    {"energy_released", &LevelRecord::energy_released, "energy released [J]"},
+    {"force_residual", &LevelRecord::force_residual, "force residual"},
+    {"decrement", &LevelRecord::decrement, "decrement [m/s]"},
+    {"intersections", &LevelRecord::intersections, "intersections", true},
+    {"smallest_gap", &LevelRecord::smallest_gap, "smallest gap [m]"}};
+/// The quantity of that name, which must be one of them.
+const LevelQuantity& level_quantity(std::string_view name);
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.
 struct ConsistencyRecord {
@@ -53,6 +80,7 @@ struct ConsistencyRecord {
 
 struct MethodRecord {
   std::string name, status;
+  std::string solver;  ///< its type: a method is named in the experiment
   OptionalNumber seconds, peak_memory_bytes;
   OptionalNumber step_size;         ///< h of the first implicit step, and of the static form's decrement [s]
   std::vector<LevelRecord> levels;  ///< coarse to fine
@@ -68,23 +96,16 @@ struct MethodRecord {
   const ConsistencyRecord* pair(int coarse, int fine) const;
 };
 
-/// One row of steps.csv.
-struct StepRow {
-  OptionalNumber seconds, energy, decrement, force_residual, step_length, proxy_energy, step_size;
-  OptionalNumber contacts, smallest_gap, intersections;
-  OptionalNumber step, iteration;
-};
-
 /// All rows of one level of one method, in order.
 struct IterationSeries {
   std::string method;
   int level = 0;
-  std::vector<StepRow> rows;
+  std::vector<RecordedIteration> rows;
 };
 
 /// One load increment, at its end.
 struct IncrementRecord {
-  OptionalNumber time, steps, energy;  ///< pseudo-time; the others as in LevelRecord
+  OptionalNumber time, steps, energy_released;  ///< pseudo-time; the others as in LevelRecord
 };
 
 /// All increments of one level of one method, in order.
@@ -113,12 +134,11 @@ struct RunData {
   bool complete = false;
   std::string aborted;  ///< why the run was aborted; empty if it was not
   OptionalNumber cores, threads, force_tolerance;
-  OptionalNumber energy_of_start;            ///< of the finest level, without noise [J]
-  std::vector<std::string> remarks;          ///< on the input, such as the repair of an obstacle
-  std::vector<std::string> obstacles;        ///< meshes, relative to the folder
-  std::vector<std::string> obstacle_names;   ///< of each of them; empty for an obstacle without a name
-  std::vector<DeclaredMetric> metrics;       ///< as declared; plain names if results.json has no declarations
-  std::vector<ErrorMeasure> error_measures;  ///< likewise
+  std::vector<std::string> remarks;         ///< on the input, such as the repair of an obstacle
+  std::vector<std::string> obstacles;       ///< meshes, relative to the folder
+  std::vector<std::string> obstacle_names;  ///< of each of them; empty for an obstacle without a name
+  std::vector<DeclaredMetric> metrics;
+  std::vector<ErrorMeasure> error_measures;
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
@@ -141,8 +161,8 @@ struct RunData {
   std::vector<std::pair<int, int>> pairs() const;
 };
 
-/// Reads results.json (required), steps.csv, errors.csv and config.yaml (optional). Null values are absent.
-/// Throws std::runtime_error with one line if results.json is missing or is not JSON.
+/// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are
+/// absent. Throws std::runtime_error with one line if results.json is missing or is not JSON.
 RunData read_run(const std::filesystem::path& folder);
 
 }  // namespace drape

@@ -31,10 +31,9 @@ RowQuantity error_quantity(const std::string& name, const std::string& title, bo
 }
 
 OptionalNumber seconds(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::seconds); }
-OptionalNumber iterations(const RunData&, const MethodRecord& m) {
-  return m.cost(&LevelRecord::newton_iterations);
-}
+OptionalNumber iterations(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::iterations); }
 OptionalNumber flops(const RunData&, const MethodRecord& m) { return m.cost(&LevelRecord::flops); }
+OptionalNumber released(const RunData&, const MethodRecord& m) { return energy_released(m); }
 OptionalNumber preview_seconds(const RunData&, const MethodRecord& m) {
   return m.levels.size() > 1 ? m.levels.front().seconds : OptionalNumber();
 }
@@ -59,7 +58,7 @@ std::vector<RowQuantity> row_quantities(const std::vector<ErrorMeasure>& measure
   std::vector<RowQuantity> all = {{"seconds", "time [s]", seconds},
                                   {"iterations", "iterations", iterations},
                                   {"flops", "flops", flops},
-                                  {"energy", "final energy [J]", final_energy}};
+                                  {"energy_released", "energy released [J]", released}};
   std::vector<ErrorMeasure> shown;
   for (const ErrorMeasure& m : measures)
     if (m.use >= ErrorUse::summary) shown.push_back(m);

@@ -198,8 +198,15 @@ std::string rows_chart_data(const RunCollection& collection) {
   const bool several = collection.variations().size() > 1;
   const std::vector<ErrorMeasure> measures = collection.error_measures();
   const Quantities quantities = row_quantities(measures);
+  Json methods = Json::array();
+  for (const std::string& name : collection.methods())
+    for (const RunRow& row : rows)
+      if (row.method == name) {
+        methods.push_back(method_json(name, row.repeats.front().method->solver));
+        break;
+      }
   Json data = {{"variations", collection.variations()},
-               {"methods", collection.methods()},
+               {"methods", methods},
                {"measures", measures_json(measures)},
                {"rows", Json::array()}};
   for (const RunRow& row : rows)

@@ -1,11 +1,13 @@
 #include "core/app/report/run_table.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/app/experiment/exit_codes.h"
+#include "core/app/files/json_file.h"
 #include "core/app/report/metric_columns.h"
+#include "core/app/report/run_rows.h"
 #include "core/app/report/tables.h"
-#include "core/app/view/html.h"
 #include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
@@ -15,11 +17,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const OptionalNumber& number) { return number ? Json(*number) : Json(); }
+/// A whole number.
+Json count_of(const OptionalNumber& number) { return number ? Json(std::llround(*number)) : Json(); }
 
 /// What the iterations of a method tell beyond its levels. Shortened steps are counted as costs are, on the
 /// levels that the last state builds on.
 struct IterationSummary {
-  OptionalNumber shortened_steps = 0.0;  // empty if steps.csv lacks rows
+  OptionalNumber shortened_steps = 0.0;  // empty if iterations.csv lacks rows
   OptionalNumber smallest_gap, intersections;
 
   IterationSummary(const RunData& run, const MethodRecord& method) {
@@ -27,20 +31,20 @@ struct IterationSummary {
     for (const IterationSeries& series : run.iterations) {
       if (series.method != method.name) continue;
       const bool counts = series.level >= method.first_level();
-      for (const StepRow& row : series.rows) {
+      for (const RecordedIteration& row : series.rows) {
         rows += counts;
-        *shortened_steps += counts && row.step_length.value_or(1) < 1;
+        *shortened_steps += counts && row.step_length < 1;
         if (row.smallest_gap)
           smallest_gap = std::min(smallest_gap.value_or(*row.smallest_gap), *row.smallest_gap);
         if (row.intersections) intersections = intersections.value_or(0) + *row.intersections;
       }
     }
-    if (rows < method.cost(&LevelRecord::newton_iterations).value_or(0)) shortened_steps.reset();
+    if (rows < method.cost(&LevelRecord::iterations).value_or(0)) shortened_steps.reset();
   }
 };
 
-/// The outcomes of the levels, or the one that all have.
-std::string outcomes(const MethodRecord& method) {
+/// The statuses of the levels, or the one that all have.
+std::string statuses(const MethodRecord& method) {
   std::vector<std::string> words;
   for (const LevelRecord& level : method.levels) words.push_back(level.status);
   const bool same =
@@ -73,15 +77,16 @@ Json row_of(const RunData& run, const MethodRecord& method) {
         (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
         "\n";
   }
-  Json row = {{"method", method.name}, {"pass", false}, {"outcome", outcomes(method)}};
-  row["vertices"] = method.levels.empty() ? Json() : json_of(method.levels.back().vertices);
-  row["steps"] = json_of(method.cost(&LevelRecord::steps));
-  row["iterations"] = json_of(method.cost(&LevelRecord::newton_iterations));
-  row["shortened_steps"] = json_of(iterations.shortened_steps);
-  row["seconds"] = json_of(method.cost(&LevelRecord::seconds));
-  row["energy"] = json_of(final_energy(run, method));
+  Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
+  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().vertices);
+  row["steps"] = count_of(method.cost(&LevelRecord::steps));
+  row["shortened_steps"] = count_of(iterations.shortened_steps);
   row["smallest_gap"] = json_of(iterations.smallest_gap);
-  row["intersections"] = json_of(iterations.intersections);
+  row["intersections"] = count_of(iterations.intersections);
+  for (const RowQuantity& quantity : row_quantities(run.error_measures)) {
+    const OptionalNumber value = quantity.of(run, method);
+    row[quantity.name] = quantity.name == "iterations" ? count_of(value) : json_of(value);
+  }
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : run.columns(scope, Shown::summary))
       row[column.name] = json_of(metric_value(column, scope, method));
@@ -89,7 +94,7 @@ Json row_of(const RunData& run, const MethodRecord& method) {
   return row;
 }
 
-std::string outcome_without_results(const RunRecord& run) {
+std::string status_without_results(const RunRecord& run) {
   if (run.status != "failed") return run.status;
   return run.refused()                    ? "refused"
          : run.exit_code == exit_too_slow ? "timeout"
@@ -97,44 +102,61 @@ std::string outcome_without_results(const RunRecord& run) {
                                           : "failed";
 }
 
-bool passes(const RunRecord& run, const std::string& outcome, const TableRow& row) {
-  const Json energy = row.value("energy", Json()), crossing = row.value("intersections", Json());
-  if (!run.data && has_converged(outcome)) return false;  // its results are gone
+bool passes(const RunRecord& run, const std::string& status, const TableRow& row) {
+  const Json energy = row.value("energy_released", Json()), crossing = row.value("intersections", Json());
+  if (!run.data && has_converged(status)) return false;  // its results are gone
   if (run.data && (energy.is_null() || (crossing.is_number() && crossing.get<double>() > 0))) return false;
-  const bool expected = outcome == run.expected || (run.expected == "converged" && has_converged(outcome));
+  const bool expected = status == run.expected || (run.expected == "converged" && has_converged(status));
   return expected && row.value("message", "").find(run.expected_message) != std::string::npos;
+}
+
+/// The keys that the variations of sweeps set. Methods and seeds have columns of their own.
+std::vector<std::string> varied_keys(const RunCollection& collection) {
+  std::vector<std::string> keys;
+  for (const RunRecord& run : collection.runs)
+    for (const auto& [key, value] : run.settings.items())
+      if (key != "methods" && key != "start.seed" && std::find(keys.begin(), keys.end(), key) == keys.end())
+        keys.push_back(key);
+  return keys;
 }
 
 }  // namespace
 
 RunTable table_of(const RunCollection& collection) {
   RunTable table;
-  table.columns = {"sweep",        "run",        "method",          "pass",    "outcome", "vertices",
-                   "steps",        "iterations", "shortened_steps", "seconds", "energy",  "smallest_gap",
-                   "intersections"};
+  table.columns = {"sweep", "run"};
+  const std::vector<std::string> varied = varied_keys(collection);
+  table.columns.insert(table.columns.end(), varied.begin(), varied.end());
+  for (const char* column :
+       {"seed", "method", "pass", "status", "vertices", "steps", "iterations", "shortened_steps", "seconds",
+        "energy_released", "smallest_gap", "intersections"})
+    table.columns.emplace_back(column);
   const std::vector<DeclaredMetric> metrics = collection.metrics();
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
       table.columns.push_back(column.name);
+  for (const RowQuantity& quantity : row_quantities(collection.error_measures()))
+    if (std::find(table.columns.begin(), table.columns.end(), quantity.name) == table.columns.end())
+      table.columns.push_back(quantity.name);
   table.columns.push_back("message");
   for (const RunRecord& run : collection.runs) {
-    const bool repeated = collection.of(run.variation).size() > 1 && run.seed;
-    const Json name = {{"sweep", run.sweep},
-                       {"run", run.name + (repeated ? ", seed " + html::fixed(run.seed, 0) : "")}};
-    const auto add = [&](const std::string& outcome, const Json& cells) {
+    Json name = {{"sweep", run.sweep}, {"run", run.name}, {"seed", count_of(run.seed)}};
+    for (const std::string& key : varied) {
+      const Json& value = member_of(run.settings, key);
+      name[key] = value.is_structured() ? Json(json_text(value)) : value;
+    }
+    const auto add = [&](const std::string& status, const Json& cells) {
       TableRow row = name;
       row.update(cells);
-      row["pass"] = passes(run, outcome, row);
+      row["pass"] = passes(run, status, row);
       table.rows.push_back(row);
     };
     table.has_results = table.has_results || run.data;
     if (run.data)
       for (const MethodRecord& method : run.data->methods) add(method.status, row_of(*run.data, method));
     else
-      add(outcome_without_results(run), {{"method", ""},
-                                         {"pass", false},
-                                         {"outcome", outcome_without_results(run)},
-                                         {"message", run.error}});
+      add(status_without_results(run),
+          {{"method", ""}, {"pass", false}, {"status", status_without_results(run)}, {"message", run.error}});
   }
   return table;
 }

@@ -10,8 +10,8 @@ namespace drape {
 /// known. A run without results is one row.
 using TableRow = nlohmann::ordered_json;
 
-/// Rows and all their columns, in order: those that every run has, with the summary columns of the runs'
-/// metrics before the message.
+/// Rows and all their columns, in order: what tells the runs apart, the keys that a sweep varies and the seed
+/// among it; what every run has; the summary columns of the runs' metrics, errors and previews; the message.
 struct RunTable {
   std::vector<std::string> columns;
   std::vector<TableRow> rows;
@@ -20,15 +20,15 @@ struct RunTable {
   bool all_pass() const;
 };
 
-/// One row per method and run. The outcome of a run without results is `refused` before any computation,
+/// One row per method and run. The status of a run without results is `refused` before any computation,
 /// `timeout` at the time limit, `crash` by a signal, otherwise `failed` or its status. A row passes with the
-/// expected outcome and message, finite energies and no intersection.
+/// expected status and message, finite energies and no intersection.
 RunTable table_of(const RunCollection& collection);
 
 enum class TableFormat { markdown, csv, json };
 
 /// A table of the chosen columns, by default of all non-empty ones. Throws std::runtime_error for an unknown
-/// column, with its new or the nearest name.
+/// column, with the nearest name.
 std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format);
 
 }  // namespace drape

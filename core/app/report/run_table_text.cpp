@@ -39,16 +39,18 @@ std::string csv_cell(const Json& value) {
   return text.find_first_of(",\"\n") == std::string::npos ? text : "\"" + replaced(text, "\"", "\"\"") + "\"";
 }
 
-bool is_text(const std::string& column) {
-  return column == "sweep" || column == "run" || column == "method" || column == "outcome" ||
-         column == "pass" || column == "message";
+/// Whether the column has words: it is aligned to the left.
+bool is_text(const RunTable& table, const std::string& column) {
+  return std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
+    const Json value = row.value(column, Json());
+    return value.is_string() || value.is_boolean();
+  });
 }
 
 std::vector<std::string> chosen_columns(const RunTable& table, const std::vector<std::string>& chosen) {
   const std::vector<std::string>& known = table.columns;
   for (const std::string& column : chosen) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    if (column == "cuts") throw std::runtime_error("column \"cuts\" is now called \"shortened_steps\"");
     if (!table.has_results) continue;  // a metric might declare it
     const std::string near = nearest_word(column, known);
     throw std::runtime_error(
@@ -87,7 +89,8 @@ std::string table_text(const RunTable& table, std::vector<std::string> columns, 
   };
   std::string text = line([](const std::string& column) { return column; });
   if (!csv)
-    text += line([](const std::string& column) { return std::string(is_text(column) ? "---" : "---:"); });
+    text +=
+        line([&](const std::string& column) { return std::string(is_text(table, column) ? "---" : "---:"); });
   for (const TableRow& row : table.rows)
     text += line([&](const std::string& column) {
       const Json value = row.value(column, Json());

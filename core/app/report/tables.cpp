@@ -26,10 +26,18 @@ std::string status_badge(const std::string& status) {
   return "<span class=\"status " + kind + "\">" + text + "</span>";
 }
 
+/// The head of a column that has a quantity of levels.
+Cell head_of(const char* name) {
+  Cell cell{level_quantity(name).title};
+  cell.column = name;
+  return cell;
+}
+
 /// Contact quantities of a state; empty without contact.
 void add_contact_head(Row& head, const RunData& run) {
   if (!run.has_contact()) return;
-  for (const char* title : {"contacts", "smallest gap [m]", "intersections"}) head.push_back({title});
+  head.push_back({"contacts"});
+  for (const char* name : {"smallest_gap", "intersections"}) head.push_back(head_of(name));
 }
 
 void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
@@ -48,37 +56,25 @@ void add_metric_cells(Row& row, const std::vector<MetricColumn>& columns, const 
   for (const MetricColumn& column : columns) row.push_back({value_text(column, r.metrics.of(column.name))});
 }
 
-/// Names of all energy parts, in order of first appearance.
-std::vector<std::string> part_names(const RunData& run) {
-  std::vector<std::string> names;
-  for (const MethodRecord& method : run.methods) {
-    for (const LevelRecord& level : method.levels) {
-      for (const auto& [name, value] : level.energy_parts) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-      }
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 std::string summary_table(const RunData& run) {
-  Row head = {words("method"),      words("status"),    words("verdict"),      {"levels"},
-              {"time [s]"},         {"steps"},          {"Newton iterations"}, {"final energy [J]"},
-              {"above lowest [J]"}, {"force residual"}, {"decrement [m/s]"}};
+  Row head = {words("method"), words("status"), words("verdict"), {"levels"}};
+  for (const char* name : {"seconds", "steps", "iterations", "energy_released"})
+    head.push_back(head_of(name));
+  head.push_back({"above lowest [J]"});
+  for (const char* name : {"force_residual", "decrement"}) head.push_back(head_of(name));
   const std::vector<MetricColumn> columns = run.columns(MetricScope::state, Shown::summary);
   add_metric_head(head, columns);
   add_contact_head(head, run);
   head.push_back({"peak memory"});
-  OptionalNumber lowest;
-  for (const MethodRecord& method : run.methods) {
-    const OptionalNumber energy = final_energy(run, method);
-    if (energy) lowest = std::min(lowest.value_or(*energy), *energy);
-  }
+  OptionalNumber most;
+  for (const MethodRecord& method : run.methods)
+    if (const OptionalNumber released = energy_released(method))
+      most = std::max(most.value_or(*released), *released);
   std::vector<Row> body;
   for (const MethodRecord& method : run.methods) {
-    const OptionalNumber energy = final_energy(run, method);
+    const OptionalNumber released = energy_released(method);
     const LevelRecord none, &last = method.levels.empty() ? none : method.levels.back();
     const OptionalNumber seconds = method.seconds ? method.seconds : method.sum(&LevelRecord::seconds);
     Row row = {words(escape(method.name)),
@@ -87,9 +83,9 @@ std::string summary_table(const RunData& run) {
                {std::to_string(method.levels.size())},
                {number_text(seconds)},
                {html::count(method.sum(&LevelRecord::steps))},
-               {html::count(method.sum(&LevelRecord::newton_iterations))},
-               {number_text(energy)},
-               {number_text(energy ? OptionalNumber(*energy - *lowest) : energy)},
+               {html::count(method.sum(&LevelRecord::iterations))},
+               {number_text(released)},
+               {number_text(released ? OptionalNumber(*most - *released) : released)},
                {number_text(last.force_residual)},
                {number_text(last.decrement)}};
     add_metric_cells(row, columns, last);
@@ -101,9 +97,10 @@ std::string summary_table(const RunData& run) {
 }
 
 std::string level_table(const RunData& run) {
-  Row head = {words("method"), {"level"},         {"vertices"},          {"triangles"},
-              words("status"), {"steps"},         {"Newton iterations"}, {"time [s]"},
-              {"energy [J]"},  {"on finest [J]"}, {"force residual"},    {"decrement [m/s]"}};
+  constexpr const char* quantities[] = {"vertices", "triangles",       "steps",          "iterations",
+                                        "seconds",  "energy_released", "force_residual", "decrement"};
+  Row head = {words("method"), {"level"}, words("status")};
+  for (const char* name : quantities) head.push_back(head_of(name));
   const std::vector<MetricColumn> columns = run.columns(MetricScope::state, Shown::tables);
   add_metric_head(head, columns);
   add_contact_head(head, run);
@@ -115,41 +112,15 @@ std::string level_table(const RunData& run) {
         row.push_back(words(escape(method.name)));
         row.back().rows = static_cast<int>(method.levels.size());
       }
-      const Row rest = {
-          {std::to_string(r.level)},       {html::count(r.vertices)}, {html::count(r.triangles)},
-          words(status_badge(r.status)),   {html::count(r.steps)},    {html::count(r.newton_iterations)},
-          {number_text(r.seconds)},        {number_text(r.energy)},   {number_text(r.energy_on_finest)},
-          {number_text(r.force_residual)}, {number_text(r.decrement)}};
-      row.insert(row.end(), rest.begin(), rest.end());
+      row.push_back({std::to_string(r.level)});
+      row.push_back(words(status_badge(r.status)));
+      for (const char* name : quantities) {
+        const LevelQuantity& quantity = level_quantity(name);
+        const OptionalNumber& value = r.*quantity.member;
+        row.push_back({quantity.count ? html::count(value) : number_text(value)});
+      }
       add_metric_cells(row, columns, r);
       add_contact_cells(row, run, r);
-      body.push_back(row);
-    }
-  }
-  return html::table({head}, body);
-}
-
-std::string energy_table(const RunData& run) {
-  const std::vector<std::string> names = part_names(run);
-  if (names.empty()) return "<p class=\"absent\">No energy parts were recorded.</p>";
-  Row head = {words("method"), {"level"}};
-  for (const std::string& name : names) head.push_back({escape(name)});
-  head.push_back({"sum"});
-  std::vector<Row> body;
-  for (const MethodRecord& method : run.methods) {
-    for (const LevelRecord& level : method.levels) {
-      Row row;
-      if (&level == &method.levels.front()) {
-        row.push_back(words(escape(method.name)));
-        row.back().rows = static_cast<int>(method.levels.size());
-      }
-      row.push_back({std::to_string(level.level)});
-      for (const std::string& name : names) {
-        const auto part = std::find_if(level.energy_parts.begin(), level.energy_parts.end(),
-                                       [&](const auto& p) { return p.first == name; });
-        row.push_back({number_text(part == level.energy_parts.end() ? OptionalNumber() : part->second)});
-      }
-      row.push_back({number_text(level.energy)});
       body.push_back(row);
     }
   }

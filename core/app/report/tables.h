@@ -22,8 +22,9 @@ std::optional<Verdict> intersection_verdict(const RunData& run);
 /// HTML list of the messages of levels that did not converge; empty without any.
 std::string troubles(const RunData& run);
 
-/// The finest level's energy, without contact and strain limits, in the last state of a method [J].
-OptionalNumber final_energy(const RunData& run, const MethodRecord& method);
+/// What the finest level has released of its energy, without contact and strain limits, from the scene's
+/// start to the last state of a method [J].
+OptionalNumber energy_released(const MethodRecord& method);
 
 /// A method compared with the others that converged, in a few words.
 std::string method_verdict(const RunData& run, const MethodRecord& method);
@@ -40,8 +41,5 @@ std::string consistency_table(const RunData& run);
 
 /// What metrics of a scope say of their shown columns, as HTML.
 std::string metric_texts(const RunData& run, MetricScope scope);
-
-/// Parts of the energy, one row per level and method [J].
-std::string energy_table(const RunData& run);
 
 }  // namespace drape

@@ -171,7 +171,7 @@ void fields(A& a, RecordedState& s) {
 template <class A>
 void fields(A& a, RecorderState& s) {
   a(s.results, s.method, s.intersection_free, s.method_intersection_free, s.states, s.snapshots, s.measured,
-    s.spent, s.last, s.overhead, s.steps_bytes, s.log_bytes, s.last_load);
+    s.spent, s.last, s.overhead, s.iterations_bytes, s.log_bytes, s.last_load);
 }
 
 template <class A>

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/app/experiment/declared_metrics.h"
+#include "core/app/files/iterations_file.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/machine.h"
 #include "core/app/run/recorder_files.h"
@@ -15,22 +16,34 @@
 
 namespace drape {
 
+namespace {
+
+std::string cell_text(int value, int) { return std::to_string(value); }
+std::string cell_text(double value, int digits) { return general_text(value, digits); }
+template <class Number>
+std::string cell_text(const std::optional<Number>& value, int digits) {
+  return value && std::isfinite(double(*value)) ? cell_text(*value, digits) : "";
+}
+
+}  // namespace
+
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
                    std::ios::openmode mode)
     : folder_(folder),
       experiment_(experiment),
       scene_(scene),
-      steps_(folder.file("steps.csv"), mode),
+      iterations_(folder.file("iterations.csv"), mode),
       log_(folder.file("log.jsonl"), mode),
       snapshots_(experiment.parameters.snapshots),
       errors_(folder, experiment, scene) {}
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene)
     : Recorder(folder, experiment, scene, std::ios::out) {
-  steps_ << "method,level,step,iteration,seconds,energy,decrement,force_residual,step_length,proxy_energy,"
-            "step_size,contacts,smallest_gap,intersections,flops"
-         << std::endl;
-  require_written(steps_, "steps.csv");
+  iterations_ << "method";
+  RecordedIteration none;
+  for_each_column(none, [&](const char* name, const auto&, int) { iterations_ << ',' << name; });
+  iterations_ << std::endl;
+  require_written(iterations_, "iterations.csv");
   const ExperimentParameters& p = experiment.parameters;
   results_["experiment"] = p.name;
   results_["description"] = p.description;
@@ -39,7 +52,6 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   results_["commit"] = commit();
   results_["machine"] = {{"cpu", cpu_name()}, {"cores", core_count()}, {"threads", thread_count()}};
   results_["tolerance"] = {{"force_residual", p.newton.force_tolerance}};
-  results_["energy_of_start"] = finite_or_null(energy_of_start(scene));
   const std::vector<std::string> remarks = experiment.remarks(scene);
   if (!remarks.empty()) results_["remarks"] = remarks;
   results_["metrics"] = json_of(declared_metrics(experiment.metrics));
@@ -76,7 +88,7 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 }
 
 RecorderState Recorder::state() const {
-  const auto [steps_bytes, log_bytes] = file_sizes(folder_);
+  const auto [iterations_bytes, log_bytes] = file_sizes(folder_);
   RecorderState s{json_text(results_),
                   method_,
                   intersection_free_,
@@ -87,10 +99,10 @@ RecorderState Recorder::state() const {
                   spent_,
                   last_,
                   overhead_,
-                  steps_bytes,
+                  iterations_bytes,
                   log_bytes,
                   last_load_};
-  sync_to_disk(folder_.file("steps.csv"));
+  sync_to_disk(folder_.file("iterations.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
 }
@@ -118,11 +130,9 @@ void Recorder::method_started(const std::string& method) {
   spent_ = Cost();
   overhead_ = 0;
   reset_peak_memory();
-  method_entry() = {{"status", "running"},
-                    {"seconds", 0.0},
-                    {"peak_memory_bytes", 0},
-                    {"levels", Json::array()},
-                    {"consistency", Json::array()}};
+  method_entry() = {{"status", "running"},     {"solver", experiment_.solver_type(method)},
+                    {"seconds", 0.0},          {"peak_memory_bytes", 0},
+                    {"levels", Json::array()}, {"consistency", Json::array()}};
   save();
   log({{"event", "method_started"}, {"method", method}});
 }
@@ -149,30 +159,30 @@ Recorder::Json Recorder::intersections(int level, const Positions& x) {
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
-  const double seconds = r.seconds - overhead_;
-  last_ = {std::max(seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
+  RecordedIteration row{r, {}};
+  row.seconds -= overhead_;
+  last_ = {std::max(row.seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
+  row.flops += spent_.flops;
   if (snapshots_.any()) snapshots_.iteration(last_, x);
-  steps_ << method_ << ',' << r.level << ',' << r.step << ',' << r.iteration << ',' << fixed_text(seconds, 6)
-         << ',' << general_text(r.energy, 17) << ',' << general_text(r.decrement, 9) << ','
-         << general_text(r.force_residual, 9) << ',' << general_text(r.step_length, 9) << ',';
-  if (r.proxy_energy) steps_ << general_text(*r.proxy_energy, 17);
-  steps_ << ',' << general_text(r.step_size, 9) << ',';
-  if (r.contacts) steps_ << *r.contacts;
-  steps_ << ',';
-  if (r.smallest_gap && std::isfinite(*r.smallest_gap)) steps_ << general_text(*r.smallest_gap, 6);
-  steps_ << ',';
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
-    if (const Json count = intersections(r.level, x); !count.is_null()) steps_ << json_text(count);
-  steps_ << ',' << general_text(spent_.flops + r.flops, 9) << std::endl;
-  require_written(steps_, "steps.csv");
+    if (const Json count = intersections(r.level, x); !count.is_null()) row.intersections = count.get<int>();
+  iterations_ << method_;
+  for_each_column(row, [&](const char*, const auto& value, int digits) {
+    iterations_ << ',' << cell_text(value, digits);
+  });
+  iterations_ << std::endl;
+  require_written(iterations_, "iterations.csv");
 }
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
   const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
   const double energy = model.energy(r.x);
-  Json parts = Json::object();
+  Json parts = Json::object(), released_parts = parts;
   for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = finite_or_null(joules);
+  for (const auto& [name, joules] : model.energy_parts(scene_.placed[r.level]))
+    released_parts[name] =
+        parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
   const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
@@ -183,7 +193,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"status", to_string(apart ? r.outcome : Outcome::infeasible)},
                 {"message", apart ? r.message : "the state has intersections; log.jsonl names them"},
                 {"steps", r.steps},
-                {"newton_iterations", r.iterations},
+                {"iterations", r.iterations},
                 {"from_initial_state", r.from_initial_state},
                 {"factorisations", r.factorisations},
                 {"flops", r.flops},
@@ -193,6 +203,8 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"energy", finite_or_null(energy)},
                 {"energy_parts", parts},
                 {"energy_on_finest", finite_or_null(on_finest)},
+                {"energy_released", finite_or_null(energy_of_start(scene_) - on_finest)},
+                {"energy_parts_released", released_parts},
                 {"decrement", finite_or_null(r.decrement)},
                 {"force_residual", finite_or_null(r.force_residual)},
                 {"intersections", crossing},
@@ -202,16 +214,19 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
   return entry;
 }
 
-void Recorder::increment_finished(const IncrementRow& r, const Positions&) {
-  method_entry()["increments"].push_back({{"level", r.level},
-                                          {"increment", r.increment},
-                                          {"time", r.time},
-                                          {"steps", r.steps},
-                                          {"newton_iterations", r.iterations},
-                                          {"seconds", r.seconds},
-                                          {"energy", finite_or_null(r.energy)},
-                                          {"force_residual", finite_or_null(r.force_residual)},
-                                          {"max_constraint_violation", r.max_constraint_violation}});
+void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
+  const LevelModel& model = scene_.model(r.level);
+  method_entry()["increments"].push_back(
+      {{"level", r.level},
+       {"increment", r.increment},
+       {"time", r.time},
+       {"steps", r.steps},
+       {"iterations", r.iterations},
+       {"seconds", r.seconds},
+       {"energy", finite_or_null(r.energy)},
+       {"energy_released", finite_or_null(model.value(scene_.placed[r.level]) - model.value(x))},
+       {"force_residual", finite_or_null(r.force_residual)},
+       {"max_constraint_violation", r.max_constraint_violation}});
 }
 
 void Recorder::level_finished(const LevelResult& r) {

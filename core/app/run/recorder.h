@@ -31,7 +31,7 @@ struct RecorderState {
   std::vector<LevelSnapshots> measured;
   Cost spent, last;     ///< of the method's levels before this one; of this level so far
   double overhead = 0;  ///< time that recording took between the levels of the method [s]
-  std::uint64_t steps_bytes = 0, log_bytes = 0;
+  std::uint64_t iterations_bytes = 0, log_bytes = 0;
   /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
   LoadSteppingState last_load;
 };
@@ -42,7 +42,7 @@ struct MethodFailure {
   std::string cause;
 };
 
-/// Writes a run's results while it proceeds: steps.csv, log.jsonl, levels/*.ply and results.json. Every
+/// Writes a run's results while it proceeds: iterations.csv, log.jsonl, levels/*.ply and results.json. Every
 /// function throws WriteError if a file cannot be written.
 class Recorder : public Observer {
  public:
@@ -98,7 +98,7 @@ class Recorder : public Observer {
   Names write_again();
   /// Writes the obstacles again if load stepping has moved them on.
   void follow_schedule();
-  /// Throws WriteError if the last write to steps.csv or log.jsonl failed.
+  /// Throws WriteError if the last write to iterations.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
   Json& method_entry() { return results_["methods"][method_]; }
   Json state_entry(const LevelResult& result);
@@ -122,7 +122,7 @@ class Recorder : public Observer {
   const RunFolder& folder_;
   const Experiment& experiment_;
   const Scene& scene_;
-  std::ofstream steps_, log_;
+  std::ofstream iterations_, log_;
   Json results_;
   std::string method_;
   std::map<std::string, std::string> not_measured_;

@@ -43,11 +43,11 @@ double wall_clock() {
 }
 
 std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder) {
-  return {size_of(folder.file("steps.csv")), size_of(folder.file("log.jsonl"))};
+  return {size_of(folder.file("iterations.csv")), size_of(folder.file("log.jsonl"))};
 }
 
 void cut_files(const RunFolder& folder, const RecorderState& state) {
-  cut(folder.file("steps.csv"), state.steps_bytes);
+  cut(folder.file("iterations.csv"), state.iterations_bytes);
   cut(folder.file("log.jsonl"), state.log_bytes);
 }
 
@@ -63,7 +63,7 @@ std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene)
 
 void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
   for (const auto& [name, bytes] :
-       {std::pair("steps.csv", state.steps_bytes), {"log.jsonl", state.log_bytes}}) {
+       {std::pair("iterations.csv", state.iterations_bytes), {"log.jsonl", state.log_bytes}}) {
     const std::filesystem::path file = folder.file(name);
     std::error_code error;
     const std::uint64_t now = std::filesystem::file_size(file, error);

@@ -24,15 +24,15 @@ std::string level_file(const std::string& method, int level, const char* extensi
 /// Seconds since 1970.
 double wall_clock();
 
-/// Sizes of steps.csv and log.jsonl [bytes].
+/// Sizes of iterations.csv and log.jsonl [bytes].
 std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
-/// Truncates steps.csv and log.jsonl to the sizes of the state.
+/// Truncates iterations.csv and log.jsonl to the sizes of the state.
 void cut_files(const RunFolder& folder, const RecorderState& state);
 
 /// Writes the rest shapes that differ from their files, and returns their names.
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
 
-/// Throws std::runtime_error if steps.csv or log.jsonl is shorter than in the state.
+/// Throws std::runtime_error if iterations.csv or log.jsonl is shorter than in the state.
 void refuse_short_files(const RunFolder& folder, const RecorderState& state);
 
 /// Records in the folder that the run was aborted, and why, as far as it is still writable.

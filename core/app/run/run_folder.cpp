@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // Names that a run writes, the only ones that --overwrite may remove: files, and patterns of those in its
 // folders. Its method may have had any name.
-constexpr const char* own_files[] = {"config.yaml", "results.json", "report.html", "steps.csv",
+constexpr const char* own_files[] = {"config.yaml", "results.json", "report.html", "iterations.csv",
                                      "log.jsonl",   "errors.csv",   "start.ply",   "reference.ply"};
 constexpr std::pair<const char*, const char*> own_folders[] = {
     {"levels", R"(.+_l\d+\.(ply|vtp)|.+\.pvd)"},
@@ -235,7 +235,7 @@ RunFolder RunFolder::of_run(std::filesystem::path path) {
     throw std::runtime_error(folder.path_.string() + ": holds no run; give the results folder of one");
   folder.lock();
   // A pipe in their place would block the resumed run.
-  for (const char* name : {"steps.csv", "log.jsonl"})
+  for (const char* name : {"iterations.csv", "log.jsonl"})
     if (const fs::path file = folder.file(name); fs::exists(file) && !fs::is_regular_file(file))
       throw std::runtime_error(file.string() + ": is no file on a disk; run the experiment again");
   return folder;

@@ -108,8 +108,6 @@ RunStatus read_status(const RunFiles& files) {
   if (!json.is_object()) file.refuse("is not a run's status");
   RunStatus status;
   const auto word = file.at<std::string>(json, "status");
-  if (word == "ended") file.refuse("status \"ended\" is now called \"not_converged\"");
-  if (word == "waiting") file.refuse("status \"waiting\" is now called \"pending\"");
   const auto* found = std::find(std::begin(words), std::end(words), word);
   if (found == std::end(words)) file.refuse("no status is called \"" + excerpt(word) + "\"");
   status.state = RunState(found - words);

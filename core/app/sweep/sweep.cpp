@@ -41,6 +41,18 @@ void keep_methods(ConfigNode& resolved, const std::vector<std::string>& chosen) 
   }
 }
 
+/// The value at a path of a resolved experiment: of a plugin its type; null if the experiment has none.
+nlohmann::ordered_json value_at(const ConfigNode& resolved, const std::string& path) {
+  const ConfigNode* node = &resolved;
+  for (const std::string& word : words_of_path(resolved, path)) {
+    const auto index = node->kind == NodeKind::list ? node->index_of(word) : std::nullopt;
+    node = index ? &node->items[*index] : node->find(word);
+    if (!node) return nullptr;
+  }
+  const ConfigNode* type = node->find("type");
+  return json_value(type ? *type : *node);
+}
+
 class Reader {
  public:
   Reader(const Registry& registry, ConfigErrors& errors, std::optional<int> most_levels)
@@ -61,7 +73,8 @@ class Reader {
     if (errors_.size() > before) return sweep_;
     for (const ExperimentSource& experiment : experiments)
       for (const Variation& variation : variations)
-        add_variation(experiment.root, common, labelled(variation, experiment.label));
+        add_variation(experiment, common, labelled(variation, experiment.label));
+    complete_settings();
     list_faults(experiments.size() * variations.size());
     return sweep_;
   }
@@ -92,13 +105,16 @@ class Reader {
     return variation;
   }
 
-  void add_variation(ConfigNode source, const std::vector<Setting>& common, const Variation& variation) {
+  void add_variation(const ExperimentSource& base, const std::vector<Setting>& common,
+                     const Variation& variation) {
     const SweepParameters& p = sweep_.parameters;
+    ConfigNode source = base.root;
     ConfigErrors faults;
     SweepRun run;
     run.name = variation.name;
     run.expect = variation.expect;
     run.settings = nlohmann::ordered_json::object();
+    if (!base.label.empty()) run.settings["experiment"] = base.label;
     for (const auto* settings : {&common, &variation.settings})
       for (const Setting& setting : *settings) {
         if (setting.path == "start.seed" && !p.seeds.empty())
@@ -156,6 +172,24 @@ class Reader {
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
                                               "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
+    }
+  }
+
+  /// Gives every run a value for each key that some variation sets.
+  void complete_settings() {
+    nlohmann::ordered_json keys = nlohmann::ordered_json::object();
+    for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
+    for (SweepRun& run : sweep_.runs) {
+      if (run.settings.size() == keys.size()) continue;
+      ConfigErrors unread;
+      const ConfigNode resolved = parse_yaml(run.config, run.folder, unread);
+      nlohmann::ordered_json all = nlohmann::ordered_json::object();
+      for (const auto& [key, value] : keys.items())
+        if (run.settings.contains(key))
+          all[key] = run.settings[key];
+        else if (key != "methods")
+          all[key] = value_at(resolved, key);
+      run.settings = all;
     }
   }
 

@@ -6,9 +6,9 @@
 
 namespace drape {
 
-/// The expected outcome of a run: a case that is made to fail passes if it fails as expected.
+/// The expected status of a run: a case that is made to fail passes if it fails as expected.
 struct Expectation {
-  std::string outcome = "converged";
+  std::string status = "converged";
   std::string message;  ///< a part of the message
   static void declare(Declaration<Expectation>& d);
 };
@@ -43,7 +43,7 @@ struct SweepParameters {
 /// One run: a resolved experiment.
 struct SweepRun {
   std::string name;                 ///< of the variation, after its experiment's if there are several
-  nlohmann::ordered_json settings;  ///< values that the variation sets, by path of keys
+  nlohmann::ordered_json settings;  ///< the run's values of all keys that variations set, by path
   int seed = 1;
   std::string folder;  ///< "runs/NAME/seed_1", unique in the sweep
   std::string config;  ///< the resolved experiment as YAML, with the chosen methods only

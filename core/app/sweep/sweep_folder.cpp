@@ -39,7 +39,7 @@ Json SweepFolder::read() const {
     sweep.at<std::string>(run, "name");
     sweep.at<std::string>(run, "folder");
     sweep.at<int>(run, "seed");
-    if (run.contains("expect")) sweep.at<std::string>(run["expect"], "outcome");
+    if (run.contains("expect")) sweep.at<std::string>(run["expect"], "status");
   }
   return json;
 }
@@ -103,8 +103,8 @@ void SweepFolder::prepare(const Sweep& sweep, int threads) const {
   for (const SweepRun& run : sweep.runs) {
     json["runs"].push_back(
         {{"name", run.name}, {"settings", run.settings}, {"seed", run.seed}, {"folder", run.folder}});
-    if (run.expect.outcome != "converged")
-      json["runs"].back()["expect"] = {{"outcome", run.expect.outcome}, {"message", run.expect.message}};
+    if (run.expect.status != "converged")
+      json["runs"].back()["expect"] = {{"status", run.expect.status}, {"message", run.expect.message}};
     const RunFiles files = this->files(run.folder);
     make_folder(files.folder.parent_path());
     RunStatus status = resolve_interrupted(files, read_status(files));
@@ -135,7 +135,7 @@ std::vector<std::size_t> SweepFolder::missing(const Sweep& sweep, bool retry_fai
 bool is_refused_as_expected(const Json& run) {
   const Json expect = run.value("expect", Json::object());
   return run["status"] == to_string(RunState::failed) && run["exit_code"] == exit_bad_input &&
-         expect.value("outcome", "") == "refused";
+         expect.value("status", "") == "refused";
 }
 
 Json SweepFolder::refresh() const {

@@ -37,7 +37,7 @@ class SweepFolder {
 
 /// Whether a run was refused before any computation, as its sweep expects.
 inline bool refused_as_expected(const SweepRun& run, const RunStatus& status) {
-  return status.refused() && run.expect.outcome == "refused";
+  return status.refused() && run.expect.status == "refused";
 }
 
 /// The same of an entry of sweep.json's runs.

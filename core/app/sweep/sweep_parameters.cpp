@@ -5,12 +5,12 @@
 namespace drape {
 
 void Expectation::declare(Declaration<Expectation>& d) {
-  d.add("outcome", &Expectation::outcome)
+  d.add("status", &Expectation::status)
       .choices(
           {"converged", "converged_to_rounding", "infeasible", "stalled", "max_steps_reached", "refused"})
-      .description("expected outcome of every method's worst level; refused: before any computation");
+      .description("expected status of every method's worst level; refused: before any computation");
   d.add("message", &Expectation::message)
-      .description("expected part of the message; required unless the outcome is converged");
+      .description("expected part of the message; required unless the status is converged");
 }
 
 void VariationParameters::declare(Declaration<VariationParameters>& d) {
@@ -26,7 +26,7 @@ void VariationParameters::declare(Declaration<VariationParameters>& d) {
   d.add("methods", &VariationParameters::methods)
       .description("methods to run; by default those of the sweep");
   d.add_section("expect", &VariationParameters::expect)
-      .description("expected outcome of its runs, checked by `drape table` and the exit code");
+      .description("expected status of its runs, checked by `drape table` and the exit code");
 }
 
 void SweepParameters::declare(Declaration<SweepParameters>& d) {

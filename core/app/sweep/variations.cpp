@@ -82,9 +82,9 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
   VariationParameters p;
   schema_of<VariationParameters>("a variation").read(&p, node, errors);
   Variation v{p.name, "", node.where, {}, p.methods, node.where, p.expect};
-  if (!has_converged(p.expect.outcome) && p.expect.message.empty())
+  if (!has_converged(p.expect.status) && p.expect.message.empty())
     errors.push_back({node.find("expect")->where,
-                      "\"expect\" of an outcome other than converged needs a \"message\": a part of the "
+                      "\"expect\" of a status other than converged needs a \"message\": a part of the "
                       "expected message then"});
   if (p.levels) v.settings.push_back({"levels", *node.find("levels"), node.find("levels")->where});
   for (Setting& setting : settings_of(p.set, errors)) {

@@ -24,7 +24,14 @@ Colour diverging_colour(double t) {
          Eigen::Map<const Colour>(table[cell + 1]) * share;
 }
 
+constexpr std::string_view styled_solvers[] = {"pcs", "cascadic", "newton"};
+
 }  // namespace
+
+int solver_style(std::string_view solver) {
+  return static_cast<int>(std::find(std::begin(styled_solvers), std::end(styled_solvers), solver) -
+                          std::begin(styled_solvers));
+}
 
 double magnitude_quantile(const std::vector<const Eigen::VectorXd*>& fields, double quantile) {
   std::vector<double> all;

@@ -22,6 +22,7 @@ std::string row(const std::vector<Cell>& cells, bool head) {
     if (!head && !cell.number) text += " scope=\"row\"";
     if (!cell.number) text += " class=\"text\"";
     if (cell.rows > 1) text += " rowspan=\"" + std::to_string(cell.rows) + "\"";
+    if (!cell.column.empty()) text += " data-column=\"" + escape(cell.column) + "\"";
     if (cell.columns > 1) text += " colspan=\"" + std::to_string(cell.columns) + "\"";
     text += ">" + (cell.strong ? "<strong>" + cell.content + "</strong>" : cell.content);
     text += "</" + tag + ">";

@@ -31,8 +31,9 @@ struct Cell {
   std::string content;  ///< HTML
   bool number = true;
   bool strong = false;
-  int rows = 1;     ///< rowspan
-  int columns = 1;  ///< colspan
+  int rows = 1;             ///< rowspan
+  int columns = 1;          ///< colspan
+  std::string column = {};  ///< of a head: the name of the column in exported tables, if not the content
 };
 
 /// A cell of words, aligned to the left.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/app/files/json_file.h"
+#include "core/app/view/colours.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
 
@@ -29,7 +30,7 @@ LiveView::LiveView(const Experiment& experiment, const Scene& scene, const std::
                 [this](const std::string& name, std::string bytes) { keep(name, std::move(bytes)); }) {
   for (const auto& [name, solver] : experiment.methods)
     if (methods.empty() || std::find(methods.begin(), methods.end(), name) != methods.end())
-      methods_.push_back(name);
+      methods_.push_back(name), styles_.push_back(solver_style(experiment.solver_type(name)));
   server_ = std::make_unique<LiveServer>(
       port, LiveAnswers{[this] { return page(); },
                         [this](long version, std::size_t rows) { return news(version, rows); },
@@ -180,7 +181,7 @@ std::string LiveView::news(long version, std::size_t rows) {
       if (key.first == static_cast<int>(m) && !shown.entry.is_null())
         levels.push_back(
             {{"level", key.second}, {"status", shown.status}, {"states", Json::array({shown.entry})}});
-    methods.push_back({{"name", methods_[m]}, {"levels", levels}});
+    methods.push_back({{"name", methods_[m]}, {"style", styles_[m]}, {"levels", levels}});
   }
   Json news = document_.document(title_, methods);
   news["version"] = version_;

@@ -61,6 +61,7 @@ class LiveView : public Observer {
   const std::string title_;
   const double tolerance_;
   std::vector<std::string> methods_;
+  std::vector<int> styles_;  // of the methods
   int finest_ = 0;
 
   std::atomic<bool> stop_ = false, refine_ = false;

@@ -32,13 +32,13 @@ from .errors import ConfigError, ConfigFault
 from .experiment import Experiment
 from .page import Page
 from .prototypes import Column, Energy, Metric, Parameter, Refiner, Solver, register
-from .result import Result, Table, read_run
+from .result import Result, Table, read_run, read_sweep
 
 __all__ = [
     "BoundEnergy", "Checkpoint", "Column", "ConfigError", "ConfigFault", "Energy", "Experiment", "Iteration",
     "Level", "LevelRecord", "LevelResult", "Material", "MethodRecord", "Metric", "Model", "Page", "Parameter",
     "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "Table", "__commit__",
-    "__version__", "bind_energy", "check_energy", "plugins", "read_run", "register", "set_threads", "show",
+    "__version__", "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "set_threads", "show",
 ]
 
 

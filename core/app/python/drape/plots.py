@@ -1,10 +1,12 @@
-"""Plots by matplotlib, in the report's colours (core/app/view/assets/page.css)."""
+"""Plots by matplotlib, in the report's colours (core/app/view/assets/page.css) and with its marks."""
 
 from __future__ import annotations
 
 import numpy
 
-METHOD_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0518c", "#7a6a00")
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#b0518c")
+MARKS = "os^D"
+LINES = ("-", "--", ":", "-.")
 COSTS = {"seconds": "time [s]", "iterations": "Newton iterations", "flops": "floating-point operations"}
 
 
@@ -14,8 +16,11 @@ def _axes(axes):
     return matplotlib.pyplot.subplots()[1] if axes is None else axes
 
 
-def _colour(result, method: str) -> str:
-    return METHOD_COLOURS[list(result.methods).index(method) % len(METHOD_COLOURS)]
+def _look(result, method: str) -> dict:
+    """Colour and mark are those of the method's solver; lines tell methods of one solver apart."""
+    style = result[method]._style
+    alike = [name for name in result.methods if result[name]._style == style]
+    return {"color": COLOURS[style], "marker": MARKS[style], "linestyle": LINES[alike.index(method) % len(LINES)]}
 
 
 def _rows(table, **wanted):
@@ -25,23 +30,29 @@ def _rows(table, **wanted):
     return chosen
 
 
+def _first_level(result, method: str) -> int:
+    """The coarsest level that the method's last state builds on: of a direct method the finest."""
+    table = result.levels
+    begun = _rows(table, method=method, from_initial_state=True)
+    return max(table["level"][begun], default=0)
+
+
 def plot_errors(result, measure: str, target: str, cost: str, axes=None):
     """See Result.plot_errors."""
     table = result.errors
-    columns = [name for name in table if name.startswith(target + ".")]
-    if not columns:
-        targets = sorted({name.split(".")[0] for name in table if "." in name})
+    measures = {t: [name.removeprefix(t + "_") for name in table if name.startswith(t + "_")
+                    and not numpy.all(numpy.isnan(table[name]))] for t in ("own", "reference")}
+    if not measures.get(target):
+        targets = [repr(name) for name, found in measures.items() if found]
         raise ValueError(f"the run has no errors against \"{target}\"; "
-                         + (f"take target={' or '.join(map(repr, targets))}" if targets else "it recorded no snapshots"))
-    column = f"{target}.{measure}" if measure else columns[0]
-    if column not in table or cost not in COSTS:
-        raise ValueError(f"choose a measure of {[name.split('.', 1)[1] for name in columns]} and a cost of "
-                         f"{list(COSTS)}")
-    axes = _axes(axes)
+                         + (f"take target={' or '.join(targets)}" if targets else "it recorded no snapshots"))
+    measure = measure or measures[target][0]
+    if measure not in measures[target] or cost not in COSTS:
+        raise ValueError(f"choose a measure of {measures[target]} and a cost of {list(COSTS)}")
+    axes, column = _axes(axes), f"{target}_{measure}"
     for method in result.methods:
-        rows = _rows(table, method=method)
-        axes.plot(table[cost][rows], table[column][rows], "o-", markersize=3, label=method,
-                  color=_colour(result, method))
+        rows = _rows(table, method=method) & (table["level"] >= _first_level(result, method))
+        axes.plot(table[cost][rows], table[column][rows], markersize=4, label=method, **_look(result, method))
     axes.set(xlabel=COSTS[cost], ylabel=column, xscale="log", yscale="log")
     axes.legend()
     return axes
@@ -55,8 +66,9 @@ def plot_convergence(result, axes=None):
         levels = sorted(set(table["level"][_rows(table, method=method)]))
         for level in levels:
             rows = _rows(table, method=method, level=level)
-            axes.plot(table["seconds"][rows], table["force_residual"][rows], color=_colour(result, method),
-                      linewidth=0.7 + 0.6 * level, label=method if level == levels[-1] else None)
+            axes.plot(table["seconds"][rows], table["force_residual"][rows],
+                      **{**_look(result, method), "marker": ""}, linewidth=0.7 + 0.6 * level,
+                      label=method if level == levels[-1] else None)
     axes.set(xlabel="time [s]", ylabel="force residual [1]", yscale="log")
     axes.legend()
     return axes

@@ -9,13 +9,15 @@ const drape = (() => {
     ? value.toExponential(2).replace('e+', 'e') : String(Number(value.toPrecision(3)));
   const superscript = n => String(n).replace(/./g, c => c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]);
 
-  // Measures (those that the run's metrics declare), targets and costs of errors, as in errors.csv.
+  // Measures (those that the run's metrics declare), targets and costs of errors, by their names in errors.csv.
   const measures = Object.fromEntries(data.measures.map(measure => [measure.name, measure.label]));
   const targets = {reference: 'the reference', own: 'the method’s own finest state'};
   const costKinds = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
 
-  function axis(title, logarithmic) {
+  /// `name` is the column's in exported data.
+  function axis(title, logarithmic, name = title) {
     const options = {
+      name,
       type: logarithmic ? 'logarithmic' : 'linear',
       title: {display: true, text: title, color: colour('--soft')},
       grid: {color: colour('--line'), borderColor: colour('--line')},
@@ -96,7 +98,7 @@ const drape = (() => {
     }
     const {x, y} = chart.options.scales, extra = [...new Set(sets.flatMap(set =>
       set.data.flatMap(point => Object.keys(point).filter(key => key !== 'x' && key !== 'y'))))];
-    return [['series', x.title.text, y.title.text, ...extra],
+    return [['series', x.name, y.name, ...extra],
       ...sets.flatMap(set => set.data.map(p => [set.label, p.x, p.y, ...extra.map(key => p[key])]))];
   }
 
@@ -127,6 +129,16 @@ const drape = (() => {
     charts.set(id, new Chart(canvas, config));
     if (!figure.querySelector('p.data'))
       offer(figure, id, canvas.getAttribute('aria-label'), () => rowsOf(charts.get(id)));
+  }
+
+  /// A method's look, the same on every page: colour and mark are its solver's, dashes tell methods of one solver
+  /// and lines that coincide apart.
+  const marks = ['circle', 'rect', 'triangle', 'rectRot'], dashes = [[], [9, 5], [2, 3], [12, 4, 2, 4]];
+  function methodStyle(name) {
+    const {style} = data.methods.find(method => method.name === name) || {style: marks.length - 1};
+    const same = data.methods.filter(method => method.style === style).findIndex(method => method.name === name);
+    return {borderColor: colour('--solver-' + style), backgroundColor: colour('--solver-' + style),
+      borderDash: dashes[(style + Math.max(same, 0)) % dashes.length], pointStyle: marks[style]};
   }
 
   const tooltip = {callbacks: {label: item => item.dataset.label + ': ' + short(item.parsed.x) + ', ' +
@@ -162,7 +174,8 @@ const drape = (() => {
     return copy.textContent.trim().replace(/^–$/, '').replace(/\u202f/g, '');
   }
 
-  /// The cells by row and column; one that spans several stands in each.
+  /// The cells by row and column; one that spans several stands in each. Of every column the name that is shown,
+  /// and the one that tables have of it elsewhere.
   function gridOf(table) {
     const grid = [];
     [...table.rows].forEach((row, r) => {
@@ -177,19 +190,19 @@ const drape = (() => {
     const heads = table.tHead ? table.tHead.rows.length : 1, body = grid.slice(heads);
     const names = grid[0].map((_, c) =>
       [...new Set(grid.slice(0, heads).map(row => wordsOf(row[c])))].join(' ').trim());
-    return {names, body};
+    return {names, columns: names.map((name, c) => grid[0][c].dataset.column || name), body};
   }
 
   /// Names and values. A column of medians gives three: median, lowest and highest.
   function cellsOf(table) {
-    const {names, body} = gridOf(table);
+    const {names, columns, body} = gridOf(table);
     const spreadOf = cell => cell && cell.querySelector('[data-spread]');
     const ranged = names.map((_, c) => body.some(row => spreadOf(row[c])));
     const values = (cell, c) => {
       const range = spreadOf(cell), words = cell && wordsOf(cell);
       return range ? range.dataset.spread.split(' ') : ranged[c] ? [words, '', ''] : [words];
     };
-    return [names.flatMap((name, c) => ranged[c] ? [name, name + ', lowest', name + ', highest'] : [name]),
+    return [columns.flatMap((name, c) => ranged[c] ? [name, name + '_lowest', name + '_highest'] : [name]),
       ...body.map(row => names.flatMap((_, c) => values(row[c], c)))];
   }
 
@@ -219,5 +232,5 @@ const drape = (() => {
   addEventListener('resize', fitTables);
   document.addEventListener('toggle', fitTables, true);  // a closed part of the page has no width
 
-  return {data, colour, short, axis, show, choices, follow, tooltip, measures, targets, costKinds};
+  return {data, colour, short, axis, methodStyle, show, choices, follow, tooltip, measures, targets, costKinds};
 })();

@@ -21,8 +21,8 @@
         responsive: true, maintainAspectRatio: false,
         scales: {x: axis('time [s]', 'linear'), y: axis('force residual', 'logarithmic')},
         plugins: {legend: {position: 'bottom', labels: {color: style('--ink')}}}}});
-      chart.data.datasets = news.methods.map((method, k) => ({label: method.name, data: [], showLine: true, pointRadius: 0,
-        borderWidth: 2, borderColor: style('--method-' + k % 5), backgroundColor: style('--method-' + k % 5)}));
+      chart.data.datasets = news.methods.map(method => ({label: method.name, data: [], showLine: true, pointRadius: 0,
+        borderWidth: 2, borderColor: style('--solver-' + method.style), backgroundColor: style('--solver-' + method.style)}));
       chart.data.datasets.push({label: 'tolerance', data: [], showLine: true, pointRadius: 0, borderWidth: 1,
         borderDash: [5, 4], borderColor: style('--soft'), backgroundColor: style('--soft')});
     }

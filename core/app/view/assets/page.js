@@ -5,22 +5,19 @@
   // Level shows as dash and width: dotted and thin is coarse, solid and thick is the finest.
   const dashes = [[1, 3], [4, 3], [8, 3], [12, 3, 2, 3]];
   function lineStyle(series) {
-    const k = data.methods.indexOf(series.method);
     const finest = series.level === data.finest;
     return {
       label: series.method + ', level ' + series.level,
-      borderColor: colour('--method-' + (Math.max(k, 0) % 5)),
+      borderColor: drape.methodStyle(series.method).borderColor,
       borderWidth: finest ? 2.6 : 1.5,
       borderDash: finest ? [] : dashes[series.level % dashes.length],
       pointRadius: series.iteration.length > 1 ? 0 : 3, pointHitRadius: 6, tension: 0, fill: false, spanGaps: true,
     };
   }
 
-  /// Plots of one level: methods by name, also distinguished by dashes, since lines may coincide.
+  /// Plots of one level: methods by name.
   function methodStyle(series) {
-    const k = data.methods.indexOf(series.method);
-    return Object.assign(lineStyle(series), {label: series.method, borderWidth: 2.2,
-      borderDash: [[], [9, 5], [2, 3], [12, 4, 2, 4]][Math.max(k, 0) % 4]});
+    return Object.assign(lineStyle(series), {label: series.method, borderWidth: 2.2}, drape.methodStyle(series.method));
   }
 
   function lines(id, x, y, titles, logarithmicX, withTolerance, chosen = data.series, style = lineStyle,
@@ -39,7 +36,7 @@
       type: 'scatter',
       data: {datasets: datasets.map(set => Object.assign(set, {showLine: true}))},
       options: {
-        scales: {x: axis(titles[0], logarithmicX), y: axis(titles[1], logarithmicY)},
+        scales: {x: axis(titles[0], logarithmicX, x), y: axis(titles[1], logarithmicY, y)},
         plugins: {tooltip: drape.tooltip},
       },
     }, all.length);
@@ -76,14 +73,14 @@
 
   /// One line per method, through the levels that its last state builds on; levels end in larger points.
   function errorLines(id, measure, target, cost) {
-    const datasets = data.methods.map(method => {
+    const datasets = data.methods.map(({name: method}) => {
       const points = data.errors.filter(series => series.method === method).flatMap(series => {
         const errors = (series[target] || {})[measure] || [];
         const last = series[cost].length - 1;
         return series[cost].map((x, k) => ({x, y: errors[k], level: series.level, radius: k === last ? 4.5 : 1.5}));
       }).filter(p => p.x > 0 && p.y > 0);
       const style = methodStyle({method, level: data.finest, iteration: points});
-      return Object.assign(style, {data: points, showLine: true, borderWidth: method === data.methods[0] ? 3 : 1.8,
+      return Object.assign(style, {data: points, showLine: true, borderWidth: method === data.methods[0].name ? 3 : 1.8,
         pointRadius: points.map(p => p.radius)});
     }).filter(set => set.data.length > 0);
     const label = item => item.dataset.label + ', level ' + item.raw.level + ': ' + short(item.parsed.x) + ', ' +
@@ -92,7 +89,7 @@
       type: 'scatter',
       data: {datasets},
       options: {
-        scales: {x: axis(drape.costKinds[cost], true), y: axis(drape.measures[measure], true)},
+        scales: {x: axis(drape.costKinds[cost], true, cost), y: axis(drape.measures[measure], true, target + '_' + measure)},
         plugins: {tooltip: {callbacks: {label}}},
       },
     }, datasets.flatMap(set => set.data).length, 6);
@@ -108,15 +105,15 @@
 
   function draw() {
     drawErrors();
-    lines('residual-iteration', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true);
-    lines('residual-seconds', 'seconds', 'residual', ['time [s]', 'force residual'], false, true);
+    lines('residual-iteration', 'iteration', 'force_residual', ['Newton iteration', 'force residual'], false, true);
+    lines('residual-seconds', 'seconds', 'force_residual', ['time [s]', 'force residual'], false, true);
     lines('gap-seconds', 'seconds', 'gap', ['time [s]', 'energy above the lowest [J]'], true, false);
     const coarsest = data.series.filter(series => series.level === data.coarsest);
     lines('coarsest-step', 'iteration', 'step', ['Newton iteration', 'Newton step, RMS [m]'], false, false,
       coarsest, methodStyle);
-    lines('coarsest-residual', 'iteration', 'residual', ['Newton iteration', 'force residual'], false, true,
+    lines('coarsest-residual', 'iteration', 'force_residual', ['Newton iteration', 'force residual'], false, true,
       coarsest, methodStyle);
-    increments('increment-energy', 'energy', 'energy [J]');
+    increments('increment-energy', 'energy_released', 'energy released [J]');
     increments('increment-steps', 'steps', 'steps');
     bars('phases', data.phases, 's');
     bars('parts', data.parts, 'J');

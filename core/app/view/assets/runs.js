@@ -1,15 +1,16 @@
 'use strict';
 (() => {
   const {data, colour, axis, show} = drape;
-  const palette = ['--method-0', '--method-1', '--method-2', '--method-3', '--method-4', '--ink', '--soft'];
-  const dashes = [[], [8, 4], [2, 3], [12, 4, 2, 4]];
+  const palette = ['#4c78a8', '#f58518', '#54a24b', '#b279a2', '#e45756', '#72b7b2', '#eeca3b', '#9d755d',
+    '#bab0ac', '#ff9da6'];
 
-  /// Colours are variations and dashes methods, or colours methods where there is one variation.
+  /// A method's look; several variations have colours that no solver has.
   function style(row) {
-    const several = data.variations.length > 1;
-    const v = data.variations.indexOf(row.variation), m = data.methods.indexOf(row.method);
-    return {borderColor: colour(palette[(several ? v : m) % palette.length]), borderWidth: 2,
-      borderDash: several ? dashes[m % dashes.length] : []};
+    const look = Object.assign(drape.methodStyle(row.method), {borderWidth: 2});
+    const v = data.variations.indexOf(row.variation);
+    if (data.variations.length > 1)
+      look.borderColor = look.backgroundColor = palette[v % palette.length];
+    return look;
   }
 
   const chosen = drape.choices('error', drawErrors, target =>
@@ -26,7 +27,7 @@
       const curve = plot.curves[r], line = style(row);
       count += curve.length;
       if (!curve.length) return;
-      datasets.push(Object.assign({label: row.title, pointRadius: curve.length > 1 ? 0 : 3, pointHitRadius: 6,
+      datasets.push(Object.assign({label: row.title, pointRadius: curve.map((_, k) => k + 1 < curve.length ? 0 : 5), pointHitRadius: 6,
         fill: false, tension: 0, stepped: true,
         data: curve.map(([x, y, low, high, runs]) => ({x, y, low, high, runs}))}, line));
       if (!ranges.checked || curve.every(([, , low, high]) => low === high)) return;
@@ -43,7 +44,7 @@
       type: 'scatter',
       data: {datasets: datasets.map(set => Object.assign({showLine: true}, set))},
       options: {
-        scales: {x: axis(drape.costKinds[cost], true), y: axis(drape.measures[measure], true)},
+        scales: {x: axis(drape.costKinds[cost], true, cost), y: axis(drape.measures[measure], true, target + '_' + measure)},
         plugins: {tooltip: drape.tooltip},
       },
     }, count);
@@ -86,7 +87,7 @@
       },
       options: {
         indexAxis: 'y',
-        scales: {x: Object.assign(axis(drape.costKinds[kind.value], false), {beginAtZero: true,
+        scales: {x: Object.assign(axis(drape.costKinds[kind.value], false, kind.value), {beginAtZero: true,
           suggestedMax: Math.max(...costs.filter(c => c).map(c => 1.02 * c[2]))}),
           y: {grid: {display: false}, ticks: {color: colour('--ink'), autoSkip: false}}},
         plugins: {legend: {display: false}},
