@@ -39,7 +39,8 @@ TEST_CASE("the bare command shows its usage; a misspelt command names the neares
   CHECK_THAT(shown_by("run --help"), Contains("--overwrite"));
   CHECK(refusal_of("rnu e.yaml") == "error: there is no command \"rnu\"; did you mean \"run\"?\n");
   CHECK(refusal_of("simulate") ==
-        "error: there is no command \"simulate\"; the commands are new, check, run, view, export, "
+        "error: there is no command \"simulate\"; the commands are new, check, check-energy, run, view, "
+        "export, "
         "report, compare, table, sweep, list, describe, schema, help, reference\n");
   CHECK(refusal_of("run") == "error: experiment is required; see `drape run --help`\n");
   CHECK(refusal_of("--fast") == "error: A subcommand is required; see `drape --help`\n");
@@ -52,8 +53,9 @@ TEST_CASE("help shows a command's options and an example; developers' commands a
   CHECK(all.find("\n  help ") < all.find(heading));
   CHECK(all.find(heading) < all.find("\n  reference "));
   CHECK(all.find("\n  reference ") != std::string::npos);
-  for (const std::string command : {"new", "check", "run", "view", "export", "report", "compare", "table",
-                                    "sweep", "list", "describe", "schema", "help", "reference"}) {
+  for (const std::string command :
+       {"new", "check", "check-energy", "run", "view", "export", "report", "compare", "table", "sweep",
+        "list", "describe", "schema", "help", "reference"}) {
     INFO(command);
     const std::string page = shown_by("help " + command);
     CHECK(page == shown_by(command + " --help"));
@@ -64,6 +66,35 @@ TEST_CASE("help shows a command's options and an example; developers' commands a
         "error: there is no option --methods; did you mean --method? See `drape run --help`\n");
   CHECK(refusal_of("export out --to a.glb --frame") ==
         "error: there is no option --frame; did you mean --frames? See `drape export --help`\n");
+}
+
+TEST_CASE("check-energy compares the derivatives of an energy with differences") {
+  const std::string agrees = shown_by("check-energy '{type: pressure, pressure: 20}'");
+  CHECK_THAT(agrees, StartsWith("gradient: largest error ") && Contains("\nhessian: largest error ") &&
+                         EndsWith("\nderivatives agree with finite differences\n"));
+  CHECK_THAT(refusal_of("check-energy neo_hokean"),
+             StartsWith("error: energy: unknown energy \"neo_hokean\"; did you mean \"neo_hookean\"?"));
+}
+
+TEST_CASE("check of a sweep says so, and checks every variation") {
+  const Scratch folder;
+  folder.write("e.yaml", small_experiment());
+  const std::string sweep =
+      "name: s\nbase: e.yaml\nrepeats: 2\nablation:\n  - {name: one}\n  - name: two\n    set: ";
+  folder.write("s.yaml", sweep + "{levels: 1}\n");
+  const Ended valid = drape_with("check s.yaml", folder.path);
+  CHECK(valid.err == "");
+  CHECK(valid.out ==
+        "s.yaml: valid. A sweep of 4 runs: 2 variations, 2 seeds each. `drape sweep s.yaml` runs it.\n");
+  folder.write("s.yaml", sweep + "{start.scale: [0, 0, 1]}\n");
+  const Ended flat = drape_with("check s.yaml", folder.path);
+  CHECK(flat.exit_code == 2);
+  CHECK_THAT(
+      flat.err,
+      StartsWith(
+          "error: s.yaml: variation \"two\": energy or forces at the start of level 0 are not finite: "));
+  CHECK_THAT(drape_with("check s.yaml --levels 2", folder.path).err,
+             StartsWith("error: s.yaml is a sweep: leave out --set, --levels "));
 }
 
 TEST_CASE("new writes an experiment that passes check and runs, and overwrites nothing") {

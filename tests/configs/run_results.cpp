@@ -266,6 +266,11 @@ TEST_CASE("the saved config has the defaults of omitted parameters") {
 TEST_CASE("a metric that throws leaves a note, and the run continues") {
   const Scratch folder;
   folder.write("e.yaml", replaced(small_experiment(), "[0.9, 0.9, 1]", "[0, 0, 1]"));
+  CHECK_THAT(
+      drape_with("check e.yaml", folder.path).err,
+      Catch::Matchers::Contains("\nerror: e.yaml:4:8: energy or forces at the start of level 0 are not "
+                                "finite: energy neo_hookean is not, as triangle 0 (0, 1, 7) has no "
+                                "area there; change the start\n"));
   const Ended ended =
       drape_with("run e.yaml --out out --method all --threads 1 --quiet --no-report", folder.path);
   CHECK(ended.exit_code == 1);

@@ -92,6 +92,12 @@ def test_every_fault_is_listed_with_its_place(tmp_path):
         experiment.run(progress=False)
 
 
+def test_check_finds_an_energy_that_is_not_finite(small):
+    small["start"] = {"scale": [0, 0, 1], "perturbation": 1e-3}
+    with pytest.warns(UserWarning), pytest.raises(drape.ConfigError, match="energy neo_hookean is not"):
+        drape.Experiment(small).check()
+
+
 def test_a_fault_of_a_dict_names_its_key(small):
     small.update(contact="shapes", obstacles=[{"shape": "sphere", "radius": -1}], levls=2)
     with pytest.raises(drape.ConfigError) as raised:

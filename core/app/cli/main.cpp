@@ -11,7 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/app/cli/config_arguments.h"
+#include "core/app/cli/check_command.h"
 #include "core/app/cli/export_command.h"
 #include "core/app/cli/help.h"
 #include "core/app/cli/new_command.h"
@@ -43,25 +43,6 @@ namespace {
 using namespace drape;
 
 constexpr const char* kinds[] = {"energy", "refiner", "contact", "solver", "metric"};
-
-int check(const ConfigArguments& arguments, const Registry& registry) {
-  Loaded loaded(arguments, registry);
-  if (loaded.exit_code) return loaded.exit_code;
-  std::cout << arguments.config << ": valid.";
-  for (const Level& level : loaded.scene->hierarchy.levels)
-    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
-  std::cout << "\nMemory to solve them, at most about:";
-  for (const Level& level : loaded.scene->hierarchy.levels)
-    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
-  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
-            << "\n";
-  for (const std::string& line : loaded.experiment->remarks(*loaded.scene))
-    std::cout << printable(line) << "\n";
-  for (const NamedEnergy& e : loaded.experiment->energies)
-    for (const std::string& line : e.energy->remarks(loaded.experiment->parameters.material))
-      std::cout << printable(e.name + ": " + line) << "\n";
-  return exit_done;
-}
 
 int list(const std::string& kind, const Registry& registry) {
   const std::vector<std::string> all(std::begin(kinds), std::end(kinds));
@@ -187,11 +168,8 @@ int main_checked(int argc, char** argv) {
 
   const NewCommand new_command(app);
 
-  ConfigArguments check_arguments;
-  CLI::App* check_command = app.add_subcommand("check", "check an experiment without running it");
-  show_example(*check_command, "drape check configs/sphere.yaml --set newton.step_size=0.1");
-  check_arguments.add_to(*check_command);
-
+  const CheckCommand check(app);
+  const CheckEnergyCommand check_energy(app);
   const RunCommand run(app);
   const ViewCommand view(app);
   const ExportCommand export_command(app);
@@ -292,7 +270,8 @@ int main_checked(int argc, char** argv) {
   load_plugins(registry, plugin_directories());
   if (run.chosen()) return run.run(registry);
   if (sweep.chosen()) return sweep.run(registry);
-  if (*check_command) return check(check_arguments, registry);
+  if (check.chosen()) return check.run(registry);
+  if (check_energy.chosen()) return check_energy.run(registry);
   if (*list_command) return list(kind, registry);
   if (*describe_command) return describe_plugin(plugin, registry);
   if (*schema_command) {

@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "core/kernel/solve/start_fault.h"
+
 namespace drape {
 
 namespace {
@@ -169,6 +171,18 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
   check_start(e, scene, warnings);
   check_contact(s, warnings);
   return all;
+}
+
+void refuse_infinite_energies(const Experiment& e, const Scene& scene, ConfigErrors& errors) {
+  for (std::size_t l = 0; l < scene.starts.size(); ++l) {
+    const LevelModel& model = scene.model(static_cast<int>(l));
+    Positions gradient;
+    const double energy = model.energy_gradient(scene.starts[l], gradient);
+    if (!std::isfinite(energy) || !gradient.allFinite())
+      errors.push_back({e.location_of("start"),
+                        "energy or forces at the start of level " + std::to_string(l) + " are not finite: " +
+                            fault_at_start(PlainObjective(model), scene.starts[l], gradient)});
+  }
 }
 
 }  // namespace drape

@@ -10,4 +10,7 @@ namespace drape {
 ConfigErrors plausibility_warnings(const Experiment& experiment, const Scene& scene,
                                    const SceneSummary& summary);
 
+/// Appends an error for every level at whose start an energy or a force is not finite.
+void refuse_infinite_energies(const Experiment& experiment, const Scene& scene, ConfigErrors& errors);
+
 }  // namespace drape

@@ -147,10 +147,20 @@ void bind_experiment(py::module_& m) {
            "ConfigError for a path that is none. The key and the value are checked by `check` and `run`.")
       .def(
           "check",
-          [](const ExperimentHandle& e, bool allow_memory) { warn_of_implausible(e.scene(allow_memory)); },
+          [](const ExperimentHandle& e, bool allow_memory) {
+            const SceneHandle s = e.scene(allow_memory);
+            warn_of_implausible(s);
+            ConfigErrors errors;
+            {
+              const py::gil_scoped_release released;  // evaluating may call prototypes
+              refuse_infinite_energies(*s.experiment, *s.scene, errors);
+            }
+            throw_errors(errors);
+          },
           py::arg("allow_memory") = false,
-          "Validate the experiment without running it. Raises ConfigError with every fault and its file, "
-          "line and column. Warns of what no fabric has, as `run` does.")
+          "Validate the experiment without running it, and evaluate its energies at the start. Raises "
+          "ConfigError with every fault and its file, line and column. Warns of what no fabric has, as `run` "
+          "does.")
       .def_property_readonly(
           "resolved", [](const ExperimentHandle& e) { return value_of(e.read()->resolved); },
           "The experiment as a dict with every parameter of every plugin.")

@@ -79,6 +79,8 @@ py::dict check(const BoundEnergyHandle& h, const py::object& state, double step)
   all["hessian_at"] = py::make_tuple(found.hessian.row / 3, found.hessian.row % 3, found.hessian.column / 3,
                                      found.hessian.column % 3);
   all["asymmetry"] = found.asymmetry;
+  all["worst"] = found.worst();
+  all["text"] = found.text();
   return all;
 }
 
@@ -103,10 +105,12 @@ void bind_bound_energy(py::module_& m) {
             return bsr_matrix(hessian_of(h, h.state(x)));
           },
           py::arg("x"), "3n×3n scipy.sparse.bsr_matrix [N/m], without projection.")
-      .def("check", &check, py::arg("x"), py::arg("step") = 1e-5,
+      .def("check", &check, py::arg("x"), py::arg("step") = difference_step,
            "The largest relative errors of gradient and Hessian against finite differences with this step "
            "[m], "
            "and where they are.");
+  m.def("_checked_level", [] { return LevelHandle{std::make_shared<const Level>(checked_level())}; });
+  m.def("_checked_state", [](const LevelHandle& level) { return array_of(checked_state(*level.level)); });
   m.def(
       "bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),
       "An energy on a level: of a plugin's name, of {\"type\": name, parameter: value}, or of a drape.Energy "

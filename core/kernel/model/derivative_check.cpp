@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/mesh/generate.h"
 
 namespace drape {
 
@@ -65,7 +66,30 @@ void require_contract(const BoundEnergy& energy, const Positions& x, const Posit
                              general_text(value, 9) + "; both are the energy");
 }
 
+std::string place_of(int coordinate) { return std::to_string(coordinate / 3) + ", " + "xyz"[coordinate % 3]; }
+
 }  // namespace
+
+double DerivativeCheck::worst() const { return std::max({gradient.error, hessian.error, asymmetry}); }
+
+std::string DerivativeCheck::text() const {
+  return "gradient: largest error " + scientific_text(gradient.error, 2) + ", at vertex " +
+         place_of(gradient.row) + "\nhessian: largest error " + scientific_text(hessian.error, 2) +
+         ", at vertices " + place_of(hessian.row) + " and " + place_of(hessian.column) + "; asymmetry " +
+         scientific_text(asymmetry, 2) + "\n";
+}
+
+Level checked_level() { return Level::of(0, grid({0.02, 0.02}, 3, 3, Diagonals::one_way)); }
+
+Positions checked_state(const Level& level) {
+  const double edge = std::sqrt(2 * level.vertex_area.sum() / level.triangle_count());
+  Eigen::Matrix3d f;
+  f << 1.05, 0.03, 0, 0.01, 0.97, 0, 0.1, 0.2, 1;
+  Positions x = level.rest.vertices * f.transpose();
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (int c = 0; c < 3; ++c) x(i, c) += 0.02 * edge * std::sin(static_cast<double>(7 * i + 3 * c + 1));
+  return x;
+}
 
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h) {
   if (x.size() == 0 || !(h > 0)) throw std::runtime_error("a check needs vertices and a step above 0");

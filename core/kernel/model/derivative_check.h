@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/kernel/model/energy.h"
 
 namespace drape {
@@ -15,7 +17,19 @@ struct DerivativeCheck {
   DerivativeError gradient;  ///< against differences of value()
   DerivativeError hessian;   ///< against differences of add_gradient(), without projection
   double asymmetry = 0;      ///< of the Hessian's diagonal blocks, relative to its largest entry [1]
+
+  /// The largest of the three.
+  double worst() const;
+  /// Two lines that say how large the errors are, and at which vertices.
+  std::string text() const;
 };
+
+/// The level on which an energy is checked unless there is another: four flat square cells of 1 cm.
+Level checked_level();
+/// The level's rest shape stretched, sheared and bent (n×3) [m].
+Positions checked_state(const Level& level);
+/// The step of the differences, for lengths like the checked level's [m].
+inline constexpr double difference_step = 1e-5;
 
 /// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
 /// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not

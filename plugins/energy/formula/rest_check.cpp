@@ -4,7 +4,6 @@
 #include <exception>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/derivative_check.h"
 #include "core/kernel/plugin/refused_parameters.h"
 
@@ -12,19 +11,6 @@ namespace drape::formula {
 namespace {
 
 constexpr double cell = 0.01;  // [m]
-
-/// Two cells by two.
-Level patch() { return Level::of(0, grid({2 * cell, 2 * cell}, 3, 3, Diagonals::one_way)); }
-
-/// The patch stretched, sheared and folded.
-Positions deformed(const Positions& rest) {
-  Eigen::Matrix3d f;
-  f << 1.05, 0.03, 0, 0.01, 0.97, 0, 0.1, 0.2, 1;
-  Positions x = rest * f.transpose();
-  for (Eigen::Index i = 0; i < x.rows(); ++i)
-    for (int c = 0; c < 3; ++c) x(i, c) += 0.02 * cell * std::sin(static_cast<double>(7 * i + 3 * c + 1));
-  return x;
-}
 
 bool has_finite_hessian(const BoundEnergy& energy, const Positions& x) {
   const Stencils stencils = energy.stencils();
@@ -47,7 +33,7 @@ void require_computable(const Law& law, const std::string& key, const Energy& en
     throw RefusedParameters({{key, message, 0, with_caret(text, Fault(0, ""))}});
   };
   std::unique_ptr<BoundEnergy> bound;
-  const Level level = patch();
+  const Level level = checked_level();
   try {
     bound = energy.bind(level, Material());
   } catch (const std::exception& error) {
@@ -61,9 +47,9 @@ void require_computable(const Law& law, const std::string& key, const Energy& en
 
 std::string derivatives_remark(const Energy& energy, const Material& material) {
   try {
-    const Level level = patch();
+    const Level level = checked_level();
     const DerivativeCheck check =
-        check_derivatives(*energy.bind(level, material), deformed(level.rest.vertices), 1e-3 * cell);
+        check_derivatives(*energy.bind(level, material), checked_state(level), difference_step);
     const double worst = std::max(check.gradient.error, check.hessian.error);
     return "derivatives " + std::string(worst <= 1e-5 ? "agree with" : "DIFFER from") +
            " finite differences, forces to " + three_digits(check.gradient.error) + ", stiffness to " +

@@ -1,0 +1,120 @@
+#include "core/app/cli/check_command.h"
+
+#include <iostream>
+#include <set>
+
+#include "core/app/cli/help.h"
+#include "core/app/experiment/exit_codes.h"
+#include "core/app/experiment/plausibility.h"
+#include "core/app/files/machine.h"
+#include "core/app/files/yaml_file.h"
+#include "core/app/sweep/sweep.h"
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/model/derivative_check.h"
+#include "core/kernel/plugin/make.h"
+
+namespace drape {
+
+namespace {
+
+constexpr double largest_error = 1e-5;  // of derivatives that agree
+
+/// Whether the file has a key that only sweeps have.
+bool is_sweep_file(const std::string& file) {
+  ConfigErrors unread;
+  const ConfigNode root = read_yaml(file, unread);
+  return root.find("base") || root.find("experiments") || root.find("ablation");
+}
+
+/// Appends the faults of a run of a sweep, each named after its variation.
+void check_run(const SweepRun& run, const Location& where, LargeMemory large, const Registry& registry,
+               ConfigErrors& errors) {
+  ConfigErrors faults;
+  const auto experiment = read_experiment(parse_yaml(run.config, run.folder, faults), registry, faults);
+  if (faults.empty()) refuse_too_large(*experiment, large, faults);
+  const auto scene = faults.empty() ? build_scene(*experiment, faults) : nullptr;
+  if (scene) refuse_infinite_energies(*experiment, *scene, faults);
+  for (const ConfigError& fault : faults)
+    errors.push_back({where, "variation \"" + run.name + "\": " + fault.message});
+}
+
+}  // namespace
+
+CheckCommand::CheckCommand(CLI::App& app)
+    : command_(app.add_subcommand("check", "check an experiment or a sweep without running it")) {
+  show_example(*command_, "drape check configs/sphere.yaml --set newton.step_size=0.1");
+  arguments_.add_to(*command_);
+}
+
+int CheckCommand::run(const Registry& registry) const {
+  return is_sweep_file(arguments_.config) ? check_sweep(registry) : check_experiment(registry);
+}
+
+int CheckCommand::check_experiment(const Registry& registry) const {
+  Loaded loaded(arguments_, registry);
+  if (loaded.exit_code) return loaded.exit_code;
+  ConfigErrors errors;
+  refuse_infinite_energies(*loaded.experiment, *loaded.scene, errors);
+  if (!errors.empty()) return report_errors(errors);
+  std::cout << arguments_.config << ": valid.";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " Vertices by level: ") << level.vertex_count();
+  std::cout << "\nMemory to solve them, at most about:";
+  for (const Level& level : loaded.scene->hierarchy.levels)
+    std::cout << (level.index ? ", " : " ") << memory_text(estimated_memory(level.vertex_count()));
+  std::cout << "; this machine has " << memory_text(machine_memory()) << "\nRead: " << text_of(loaded.summary)
+            << "\n";
+  for (const std::string& line : loaded.experiment->remarks(*loaded.scene))
+    std::cout << printable(line) << "\n";
+  for (const NamedEnergy& e : loaded.experiment->energies)
+    for (const std::string& line : e.energy->remarks(loaded.experiment->parameters.material))
+      std::cout << printable(e.name + ": " + line) << "\n";
+  return exit_done;
+}
+
+int CheckCommand::check_sweep(const Registry& registry) const {
+  const std::string& file = arguments_.config;
+  if (!arguments_.sets.empty() || arguments_.levels > 0 || arguments_.allow_start_repair)
+    throw std::runtime_error(file +
+                             " is a sweep: leave out --set, --levels and --allow-start-repair, and "
+                             "change what it sets in the file");
+  ConfigErrors errors;
+  const std::optional<Sweep> sweep = read_sweep(file, registry, errors);
+  if (!sweep) return report_errors(errors);
+  std::set<std::string> variations;
+  for (const SweepRun& run : sweep->runs)
+    if (variations.insert(run.name).second && run.expect.status != "refused")
+      check_run(run, {file}, arguments_.large_memory(), registry, errors);
+  if (!errors.empty()) return report_errors(errors);
+  const std::size_t runs = sweep->runs.size(), seeds = runs / variations.size();
+  std::cout << file << ": valid. A sweep of " << runs << (runs == 1 ? " run: " : " runs: ")
+            << variations.size() << (variations.size() == 1 ? " variation, " : " variations, ") << seeds
+            << (seeds == 1 ? " seed" : " seeds") << " each. `drape sweep " << file << "` runs it.\n";
+  return exit_done;
+}
+
+CheckEnergyCommand::CheckEnergyCommand(CLI::App& app)
+    : command_(
+          app.add_subcommand("check-energy", "compare an energy's derivatives with finite differences")) {
+  show_example(*command_, "drape check-energy neo_hookean");
+  command_
+      ->add_option("energy", energy_,
+                   "name of the energy, or a map with its type and parameters as in an experiment")
+      ->required();
+}
+
+int CheckEnergyCommand::run(const Registry& registry) const {
+  ConfigErrors errors;
+  const std::optional<ConfigNode> node = value_of_option(energy_, "energy", errors);
+  const auto energy = node ? make_from<Energy>(registry, *node, errors) : nullptr;
+  if (!energy) return report_errors(errors);
+  const Level level = checked_level();
+  const DerivativeCheck check =
+      check_derivatives(*energy->bind(level, Material()), checked_state(level), difference_step);
+  const bool agrees = check.worst() <= largest_error;
+  std::cout << check.text() << "derivatives " << (agrees ? "agree with" : "DIFFER from")
+            << " finite differences\n";
+  return agrees ? exit_done : exit_not_converged;
+}
+
+}  // namespace drape
