@@ -194,7 +194,7 @@ TEST_CASE("a report holds the figures of its run") {
   CHECK(contains(page, "<td><strong>13.6</strong></td><td>136</td>"));  // pcs leads, the lower is bold
   CHECK(contains(page, "<td><strong>2.72e4</strong></td><td>2.72e5</td>"));
   CHECK(contains(page, "-0.4321"));  // what a part of the energy released, in a plot
-  CHECK(contains(page, "<th>largest stretch</th>"));
+  CHECK(contains(page, "<th data-column=\"largest_stretch\">largest stretch</th>"));
   CHECK(contains(page, "<td>1.0432</td>"));
   CHECK(contains(page, "d<sub>H</sub> is of mean curvature."));
   CHECK(contains(page, "cloth: {size: 1 m}"));

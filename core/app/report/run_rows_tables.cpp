@@ -129,7 +129,7 @@ std::string rows_table(const RunCollection& collection) {
     if (std::any_of(rows.begin(), rows.end(), [&](const RunRow& r) { return spread_of(r, f).has_value(); }))
       quantities.push_back(&f);
   Row head = {words("variation"), words("method"), words("verdict"), {"converged"}};
-  for (const RowQuantity* f : quantities) head.push_back({f->title});
+  for (const RowQuantity* f : quantities) head.push_back(html::head(f->title, f->name));
   std::vector<Row> body;
   for (const RunRow& row : rows) {
     Row cells;

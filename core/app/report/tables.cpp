@@ -26,12 +26,7 @@ std::string status_badge(const std::string& status) {
   return "<span class=\"status " + kind + "\">" + text + "</span>";
 }
 
-/// The head of a column that has a quantity of levels.
-Cell head_of(const char* name) {
-  Cell cell{level_quantity(name).title};
-  cell.column = name;
-  return cell;
-}
+Cell head_of(const char* name) { return html::head(level_quantity(name).title, name); }
 
 /// Contact quantities of a state; empty without contact.
 void add_contact_head(Row& head, const RunData& run) {
@@ -49,7 +44,7 @@ void add_contact_cells(Row& row, const RunData& run, const LevelRecord& r) {
 
 /// Values of state metrics.
 void add_metric_head(Row& head, const std::vector<MetricColumn>& columns) {
-  for (const MetricColumn& column : columns) head.push_back({title_html(column)});
+  for (const MetricColumn& column : columns) head.push_back(html::head(title_html(column), column.name));
 }
 
 void add_metric_cells(Row& row, const std::vector<MetricColumn>& columns, const LevelRecord& r) {

@@ -34,6 +34,12 @@ std::string row(const std::vector<Cell>& cells, bool head) {
 
 Cell words(const std::string& content) { return {content, false}; }
 
+Cell head(const std::string& content, const std::string& column) {
+  Cell cell{content};
+  cell.column = column;
+  return cell;
+}
+
 std::string escape(std::string_view text) {
   std::string safe;
   for (const char c : text) {

@@ -38,6 +38,8 @@ struct Cell {
 
 /// A cell of words, aligned to the left.
 Cell words(const std::string& content);
+/// The head of a column of numbers, with the column's name in exported tables.
+Cell head(const std::string& content, const std::string& column);
 
 /// A table in a frame that scrolls sideways when the screen is narrow.
 std::string table(const std::vector<std::vector<Cell>>& head, const std::vector<std::vector<Cell>>& body);
