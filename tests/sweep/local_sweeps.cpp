@@ -82,6 +82,10 @@ TEST_CASE("24 runs give the same results with one worker and with two, and are n
   CHECK_THAT(drape_with("table one --format csv", folder.path).out,
              StartsWith("sweep,run,refiner,levels,newton.step_growth,seed,method,pass,status,vertices,"));
 
+  const std::string page = drape_with("table one", folder.path).out;
+  CHECK(page.substr(0, page.find('\n')).find("error_rms") ==
+        std::string::npos);  // of CSV and JSON, or if asked for
+
   // A run can be repeated by hand from the file beside it.
   const std::string run = "one/" + runs[23]["folder"].get<std::string>();
   CHECK(drape_with("run " + run + ".yaml --out by_hand --method all --quiet --no-report", folder.path)

@@ -136,8 +136,10 @@ RunTable table_of(const RunCollection& collection) {
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
       table.columns.push_back(column.name);
   for (const RowQuantity& quantity : row_quantities(collection.error_measures()))
-    if (std::find(table.columns.begin(), table.columns.end(), quantity.name) == table.columns.end())
+    if (std::find(table.columns.begin(), table.columns.end(), quantity.name) == table.columns.end()) {
       table.columns.push_back(quantity.name);
+      table.in_files.push_back(quantity.name);
+    }
   table.columns.push_back("message");
   for (const RunRecord& run : collection.runs) {
     Json name = {{"sweep", run.sweep}, {"run", run.name}, {"seed", count_of(run.seed)}};

@@ -14,6 +14,7 @@ using TableRow = nlohmann::ordered_json;
 /// among it; what every run has; the summary columns of the runs' metrics, errors and previews; the message.
 struct RunTable {
   std::vector<std::string> columns;
+  std::vector<std::string> in_files;  ///< columns that Markdown leaves out unless they are asked for
   std::vector<TableRow> rows;
   bool has_results = false;  ///< of any run: else it is not known which metrics there would be
 
@@ -27,8 +28,8 @@ RunTable table_of(const RunCollection& collection);
 
 enum class TableFormat { markdown, csv, json };
 
-/// A table of the chosen columns, by default of all non-empty ones. Throws std::runtime_error for an unknown
-/// column, with the nearest name.
+/// A table of the chosen columns, by default of all non-empty ones, for Markdown without `in_files`. Throws
+/// std::runtime_error for an unknown column, with the nearest name.
 std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format);
 
 }  // namespace drape

@@ -47,7 +47,8 @@ bool is_text(const RunTable& table, const std::string& column) {
   });
 }
 
-std::vector<std::string> chosen_columns(const RunTable& table, const std::vector<std::string>& chosen) {
+std::vector<std::string> chosen_columns(const RunTable& table, const std::vector<std::string>& chosen,
+                                        TableFormat format) {
   const std::vector<std::string>& known = table.columns;
   for (const std::string& column : chosen) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
@@ -59,8 +60,12 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
   }
   if (!chosen.empty()) return chosen;
   std::vector<std::string> columns;
+  const auto left_out = [&](const std::string& column) {
+    return format == TableFormat::markdown &&
+           std::find(table.in_files.begin(), table.in_files.end(), column) != table.in_files.end();
+  };
   for (const std::string& column : known)
-    if (std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
+    if (!left_out(column) && std::any_of(table.rows.begin(), table.rows.end(), [&](const TableRow& row) {
           const auto cell = row.find(column);
           return cell != row.end() && !cell->is_null() && !cell_text(*cell, true).empty();
         }))
@@ -71,7 +76,7 @@ std::vector<std::string> chosen_columns(const RunTable& table, const std::vector
 }  // namespace
 
 std::string table_text(const RunTable& table, std::vector<std::string> columns, TableFormat format) {
-  columns = chosen_columns(table, columns);
+  columns = chosen_columns(table, columns, format);
   if (format == TableFormat::json) {
     Json chosen = Json::array();
     for (const TableRow& row : table.rows) {
