@@ -58,8 +58,8 @@ Checkpoint full() {
   factor.pattern.smooth_only = false;
   factor.analysis = {{0, 1, 0}, {2, 0}, {0, 2}, 123, 4};
   factor.age = 1;
-  factor.updates_in_double = 7;
-  factor.mixed = true;
+  factor.fallback_updates = 7;
+  factor.solver = LinearSolver::supernodal;
   factor.shift = 16;
   factor.values = {1, 2, 3};
   c.first_level = 1;
@@ -137,8 +137,8 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.factor.modification.blend == 3);
   CHECK(s.step.factor.pattern.extra.blocks.at(1) == std::pair(2, 7));
   CHECK(s.step.factor.age == 1);
-  CHECK(s.step.factor.updates_in_double == 7);
-  CHECK(s.step.factor.mixed);
+  CHECK(s.step.factor.fallback_updates == 7);
+  CHECK(s.step.factor.solver == LinearSolver::supernodal);
   CHECK(s.step.factor.shift == 16);
   CHECK(s.step.factor.values == std::vector<double>{1, 2, 3});
   CHECK(s.check.decrements == std::array<double, 3>{1, 2, 3});
@@ -186,7 +186,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 15; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 16; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

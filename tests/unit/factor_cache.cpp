@@ -105,7 +105,7 @@ TEST_CASE("A factor in single precision solves as well as one in double precisio
   CacheSolve c(wells, {});
   CHECK(c.factorisations() == 1);
   CHECK(c.residual() < 1e-5);
-  CHECK(c.cache.state().updates_in_double == 0);
+  CHECK(c.cache.state().fallback_updates == 0);
   NewtonParameters p;
   p.linear_solver = LinearSolver::supernodal;
   CacheSolve in_double(wells, p);
@@ -117,10 +117,10 @@ TEST_CASE("Where single precision does not suffice, factors are in double precis
   CacheSolve c(std::make_shared<StiffPairs>(), {});
   for (int round = 0; round < 2; ++round) {
     CHECK(c.factorisations() == 2);
-    CHECK(c.cache.state().updates_in_double == 10);
+    CHECK(c.cache.state().fallback_updates == 10);
     for (int k = 9; k >= 0; --k) {
       CHECK(c.factorisations() == 1);
-      CHECK(c.cache.state().updates_in_double == k);
+      CHECK(c.cache.state().fallback_updates == k);
     }
     Positions sums(8, 3), expected(8, 3);  // of a pair, which moves as one
     for (int i = 0; i < 8; ++i) {
@@ -224,7 +224,7 @@ TEST_CASE("A restored cache solves with the same factor, bit for bit") {
   const auto wells = std::make_shared<Wells>(NewtonProblem::rest().array() + 0.3, 10, 0.1);
   CacheSolve first(wells, CacheCase::with(3)), resumed(wells, CacheCase::with(3));
   CHECK(first.factorisations() == 1);
-  REQUIRE(first.cache.state().mixed);
+  REQUIRE(first.cache.state().solver == LinearSolver::mixed);
   resumed.cache.restore(first.cache.state());
   resumed.right = first.right = Positions::Random(16, 3);
   CHECK(first.factorisations(1) == 0);

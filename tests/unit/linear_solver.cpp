@@ -65,6 +65,7 @@ newton: {force_tolerance: 1e-7}
 methods:
   supernodal: {type: cascadic, newton: {linear_solver: supernodal}}
   mixed: {type: cascadic}
+  multigrid: {type: cascadic, newton: {linear_solver: multigrid}}
   cholmod: {type: cascadic, newton: {linear_solver: cholmod}}
 )");
   const auto energy = [&] {
@@ -80,7 +81,7 @@ methods:
   const Positions x = s.x();
   const double expected = energy();
 
-  for (const char* other : {"mixed", "cholmod"}) {
+  for (const char* other : {"mixed", "multigrid", "cholmod"}) {
     run_method(s, other);
     CAPTURE(other, s.levels.back().message);
     REQUIRE(has_converged(s.levels.back().outcome));

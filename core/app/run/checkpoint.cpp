@@ -8,6 +8,10 @@ namespace drape {
 /// An outcome is valid if it has a name.
 bool is_value(Outcome outcome) { return *to_string(outcome) != '\0'; }
 
+bool is_value(LinearSolver solver) {
+  return solver >= LinearSolver::automatic && solver <= LinearSolver::cholmod;
+}
+
 // Fields of a checkpoint's structs. Increment `format` with every change.
 
 template <class A>
@@ -115,7 +119,7 @@ void fields(A& a, HessianModification::State& s) {
 
 template <class A>
 void fields(A& a, FactorCache::State& s) {
-  a(s.modification, s.pattern, s.analysis, s.age, s.updates_in_double, s.mixed, s.shift, s.values);
+  a(s.modification, s.pattern, s.analysis, s.age, s.fallback, s.fallback_updates, s.solver, s.shift, s.values);
 }
 
 template <class A>
@@ -188,7 +192,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 15;
+constexpr std::uint32_t format = 16;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

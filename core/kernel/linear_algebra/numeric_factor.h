@@ -9,8 +9,10 @@
 
 namespace drape {
 
-/// How BlockCholesky solves.
+/// How Newton's linear systems are solved. BlockCholesky has the last three.
 enum class LinearSolver {
+  automatic,   ///< multigrid on large meshes of a hierarchy, else mixed
+  multigrid,   ///< Multigrid
   mixed,       ///< SupernodalFactor in single precision as preconditioner of conjugate gradients in double
   supernodal,  ///< SupernodalFactor in double precision
   cholmod      ///< CHOLMOD's factor, with the BLAS and LAPACK that the machine has

@@ -58,7 +58,7 @@ struct IterationRow {
   int level = 0, step = 0, iteration = 0;
   std::optional<double> time;          ///< pseudo-time, with a schedule
   double seconds = 0;                  ///< since the method's start
-  double flops = 0;                    ///< of the level's factorisations so far
+  double flops = 0;                    ///< of the level's factorisations and multigrid cycles so far
   double energy = 0;                   ///< E_l, the plain energy of the level [J]
   std::optional<double> proxy_energy;  ///< F_l, if the method minimises a proxy [J]
   double decrement = 0;         ///< ‖p‖ / (h √n), a velocity [m/s]; not Newton's √(gᵀH⁻¹g)
@@ -79,7 +79,7 @@ struct LevelResult {
   /// started from the scene's start all the same: the attempt counts.
   bool from_initial_state = false;
   int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
-  double flops = 0;  ///< of the factorisations; a failed one counts in full
+  double flops = 0;  ///< of factorisations, of which a failed one counts in full, and multigrid cycles
   double seconds = 0;
   std::map<std::string, double> seconds_by_phase;
   double decrement = 0;

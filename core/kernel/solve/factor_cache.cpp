@@ -6,28 +6,55 @@ namespace drape {
 
 namespace {
 
-/// Updates of the Hessian for which factors stay in double precision after one in single precision failed
-/// with the whole projection.
-constexpr int updates_in_double = 10;
+/// Updates of the Hessian for which another solver stays in use after the preferred one has failed.
+constexpr int fallback_updates = 10;
+/// Vertices from which on multigrid takes less time than a factorisation.
+constexpr int multigrid_from = 20'000;
+
+std::unique_ptr<Multigrid> multigrid_for(const Level& level, const NewtonParameters& p,
+                                         const Hierarchy* hierarchy) {
+  const bool wanted =
+      p.form == NewtonForm::quasistatic &&
+      (p.linear_solver == LinearSolver::multigrid ||
+       (p.linear_solver == LinearSolver::automatic && level.vertex_count() >= multigrid_from));
+  if (!wanted || !hierarchy || level.index == 0) return nullptr;
+  const auto& all = hierarchy->prolongations;
+  return std::make_unique<Multigrid>(std::vector<ProlongationMatrix>(all.begin(), all.begin() + level.index));
+}
+
+LinearSolver direct_solver(const NewtonParameters& p) {
+  return p.linear_solver == LinearSolver::cholmod ? LinearSolver::cholmod : LinearSolver::supernodal;
+}
+
+LinearSolver factorising_solver(const NewtonParameters& p) {
+  const bool is_direct = p.form == NewtonForm::statics || p.linear_solver == LinearSolver::supernodal ||
+                         p.linear_solver == LinearSolver::cholmod;
+  return is_direct ? direct_solver(p) : LinearSolver::mixed;
+}
 
 }  // namespace
 
-FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters)
+FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy)
     : iterate_(iterate),
       interval_(parameters.hessian_update_interval),
-      direct_(parameters.linear_solver == LinearSolver::cholmod ? LinearSolver::cholmod
-                                                                : LinearSolver::supernodal),
-      mixed_(parameters.linear_solver == LinearSolver::mixed && parameters.form == NewtonForm::quasistatic),
+      direct_(direct_solver(parameters)),
+      multigrid_(multigrid_for(iterate.model().level(), parameters, hierarchy)),
+      preferred_(multigrid_ ? LinearSolver::multigrid : factorising_solver(parameters)),
       modification_(parameters),
-      cholesky_(mixed_ ? LinearSolver::mixed : direct_) {}
+      cholesky_(factorising_solver(parameters)),
+      solver_(preferred_) {}
+
+void FactorCache::use(LinearSolver solver) {
+  solver_ = solver;
+  if (solver != LinearSolver::multigrid) cholesky_.use(solver);
+}
 
 bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
                         const Positions& right_hand_side, Positions& solution) {
   if (has_fresh_factor() && solve_with_factor(right_hand_side, solution)) return true;
   age_ = 0;
-  const bool in_double = !mixed_ || updates_in_double_ > 0;
-  if (updates_in_double_ > 0) --updates_in_double_;
-  cholesky_.use(in_double ? direct_ : LinearSolver::mixed);
+  use(fallback_updates_ > 0 ? fallback_ : preferred_);
+  if (fallback_updates_ > 0) --fallback_updates_;
   bool has_whole_projection = false;
   fault_ = modification_.factorise(
       [&](Projection projection) -> const BlockMatrix& {
@@ -35,28 +62,34 @@ bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, doubl
         return iterate_.hessian(projection);
       },
       [&](const BlockMatrix& matrix, double shift) {
-        const auto serves = [&] {
-          return factorise(matrix, fixed, mass_shift + shift) && solve_with_factor(right_hand_side, solution);
-        };
-        if (serves()) return true;
-        if (cholesky_.solver() != LinearSolver::mixed || !has_whole_projection) return false;
-        updates_in_double_ = updates_in_double;
-        cholesky_.use(direct_);
-        return serves();
+        while (!factorise(matrix, fixed, mass_shift + shift) ||
+               !solve_with_factor(right_hand_side, solution)) {
+          const bool may_be_definite = has_whole_projection || too_slow_;
+          if (solver_ == direct_ || !may_be_definite) return false;
+          fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
+          fallback_updates_ = fallback_updates;
+          use(fallback_);
+        }
+        return true;
       },
       fixed, step_length == 1);
   return fault_.empty();
 }
 
 bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions& solution) {
-  PhaseTimer t(iterate_.result().seconds_by_phase, "solve");
-  return cholesky_.solve(right_hand_side, solution);
+  LevelResult& result = iterate_.result();
+  PhaseTimer t(result.seconds_by_phase, "solve");
+  if (solver_ != LinearSolver::multigrid) return cholesky_.solve(right_hand_side, solution);
+  const auto end = multigrid_->solve(right_hand_side, solution);
+  result.flops += multigrid_->take_flops();
+  too_slow_ = end == ConjugateGradients::End::not_converged;
+  return end == ConjugateGradients::End::converged;
 }
 
 bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
-  if (has_fresh_factor() && cholesky_.solver() != LinearSolver::mixed) return true;
+  if (has_fresh_factor() && solver_ == direct_) return true;
   age_ = 0;
-  cholesky_.use(direct_);
+  use(direct_);
   fault_ = modification_.factorise(
       [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); },
       [&](const BlockMatrix& matrix, double shift) { return factorise(matrix, fixed, mass_shift + shift); },
@@ -65,14 +98,21 @@ bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, doub
 }
 
 bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
-  analyse(matrix, fixed);
   LevelResult& result = iterate_.result();
-  PhaseTimer t(result.seconds_by_phase, "factorise");
-  ++result.factorisations;
-  result.flops += cholesky_.flops();
+  too_slow_ = false;
   factored_ = &matrix;
   shift_ = shift;
-  return cholesky_.factorise(matrix, shift_ * iterate_.model().masses());
+  ++result.factorisations;
+  if (solver_ != LinearSolver::multigrid) analyse(matrix, fixed);
+  PhaseTimer t(result.seconds_by_phase, "factorise");
+  const Eigen::VectorXd shifts = shift_ * iterate_.model().masses();
+  if (solver_ == LinearSolver::multigrid) {
+    const bool is_definite = multigrid_->set(matrix, shifts, fixed);
+    result.flops += multigrid_->take_flops();
+    return is_definite;
+  }
+  result.flops += cholesky_.flops();
+  return cholesky_.factorise(matrix, shifts);
 }
 
 void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fixed) {
@@ -101,9 +141,10 @@ FactorCache::State FactorCache::state() const {
   s.pattern = iterate_.objective().pattern_state();
   s.analysis = cholesky_.analysis();
   s.age = age_;
-  s.updates_in_double = updates_in_double_;
+  s.fallback = fallback_;
+  s.fallback_updates = fallback_updates_;
   if (has_fresh_factor()) {
-    s.mixed = cholesky_.solver() == LinearSolver::mixed;
+    s.solver = solver_;
     s.shift = shift_;
     s.values = factored_->values;
   }
@@ -113,10 +154,10 @@ FactorCache::State FactorCache::state() const {
 void FactorCache::restore(const State& s) {
   modification_.restore(s.modification);
   age_ = s.age;
-  updates_in_double_ = s.updates_in_double;
-  if (s.analysis.count == 0) return;
+  fallback_ = s.fallback;
+  fallback_updates_ = s.fallback_updates;
   const std::shared_ptr<const BlockPattern> pattern = iterate_.objective().restore(s.pattern, iterate_.x());
-  cholesky_.restore(pattern, s.analysis);
+  if (s.analysis.count > 0) cholesky_.restore(pattern, s.analysis);
   if (s.values.empty()) return;
   BlockMatrix matrix(pattern);
   if (s.values.size() != matrix.values.size())
@@ -124,9 +165,13 @@ void FactorCache::restore(const State& s) {
   matrix.values = s.values;
   restored_ = std::move(matrix);
   factored_ = &restored_;
-  cholesky_.use(s.mixed ? LinearSolver::mixed : direct_);
-  cholesky_.factorise(restored_, s.shift * iterate_.model().masses());
+  use(s.solver);
   shift_ = s.shift;
+  const Eigen::VectorXd shifts = shift_ * iterate_.model().masses();
+  if (solver_ == LinearSolver::multigrid)
+    multigrid_->set(restored_, shifts, iterate_.fixed());
+  else
+    cholesky_.factorise(restored_, shifts);
 }
 
 }  // namespace drape

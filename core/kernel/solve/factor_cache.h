@@ -1,9 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/kernel/linear_algebra/multigrid.h"
+#include "core/kernel/model/hierarchy.h"
 #include "core/kernel/solve/hessian_modification.h"
 #include "core/kernel/solve/iterate.h"
 
@@ -12,20 +15,21 @@ namespace drape {
 /// The factorised Newton matrix of a minimisation. One factor serves `hessian_update_interval` iterations,
 /// unless a shortened step shows that it is stale.
 ///
-/// With LinearSolver::mixed, a factor in single precision that gives no solution counts as that of a matrix
-/// which is not positive definite, so more of the projection is blended in. If the whole does not suffice,
-/// the matrix is ill-conditioned, and factors are in double precision for some iterations. The static form,
-/// whose matrix has no inertia and may be singular, always has them so.
+/// A matrix that LinearSolver::multigrid or mixed, in single precision, finds not to be positive definite has
+/// more of the projection blended in. If the whole does not suffice, or cycles converge too slowly, the next
+/// solver is used for some iterations: mixed after multigrid, double precision after mixed. The static form,
+/// whose matrix has no inertia and may be singular, always has factors in double precision.
 class FactorCache {
  public:
   struct State {
     HessianModification::State modification;
     Objective::PatternState pattern;
     BlockCholesky::Analysis analysis;
-    int age = 0;                ///< iterations since the Hessian was updated
-    int updates_in_double = 0;  ///< further updates of the Hessian with factors in double precision
+    int age = 0;                                  ///< iterations since the Hessian was updated
+    LinearSolver fallback = LinearSolver::mixed;  ///< used instead of the preferred one …
+    int fallback_updates = 0;                     ///< … for so many further updates of the Hessian
     // A factor that later iterations reuse; without values there is none.
-    bool mixed = false;          ///< its LinearSolver was `mixed`
+    LinearSolver solver = LinearSolver::mixed;  ///< by which it was made
     double shift = 0;            ///< multiple of the masses that was added to the matrix [1/s²]
     std::vector<double> values;  ///< blocks of the factorised matrix
   };
@@ -33,8 +37,9 @@ class FactorCache {
   /// The iterate must have been evaluated. Throws std::runtime_error if the state is of another matrix.
   void restore(const State& state);
 
-  /// Refers to the iterate. Its result counts the factorisations, their operations and seconds.
-  FactorCache(Iterate& iterate, const NewtonParameters& parameters);
+  /// Refers to the iterate. Its result counts the factorisations, their operations and seconds. Without a
+  /// hierarchy of its level there is no multigrid.
+  FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy = nullptr);
 
   /// Solves with the Newton matrix; n×3 right-hand side [N] and solution [m], whose fixed rows are zero. If
   /// the present factor is stale, first factorises the Hessian at the iterate plus `mass_shift` [1/s²] times
@@ -70,22 +75,32 @@ class FactorCache {
   int analyses() const { return cholesky_.analyses(); }
 
  private:
-  bool has_fresh_factor() const { return cholesky_.has_factor() && age_ < interval_; }
+  bool has_fresh_factor() const {
+    const bool has_factor =
+        solver_ == LinearSolver::multigrid ? multigrid_->is_set() : cholesky_.has_factor();
+    return has_factor && age_ < interval_;
+  }
+  void use(LinearSolver solver);
+  void set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
   void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
   bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
   bool solve_with_factor(const Positions& right_hand_side, Positions& solution);
 
   Iterate& iterate_;
   const int interval_;
-  const LinearSolver direct_;  // for matrices of which nothing is known
-  const bool mixed_;
+  const LinearSolver direct_;             // for matrices of which nothing is known
+  std::unique_ptr<Multigrid> multigrid_;  // null where it is not to be used
+  const LinearSolver preferred_;
   HessianModification modification_;
   BlockCholesky cholesky_;
   const BlockMatrix* factored_ = nullptr;  // the objective's matrix, or restored_
   BlockMatrix restored_;
   double shift_ = 0;
   int age_ = 0;
-  int updates_in_double_ = 0;
+  LinearSolver solver_;    // in use
+  bool too_slow_ = false;  // the last solve did not converge
+  LinearSolver fallback_ = LinearSolver::mixed;
+  int fallback_updates_ = 0;
   std::string fault_;
 };
 

@@ -44,7 +44,8 @@ class Newton {
         iterate_(objective, result_),
         check_(iterate_, parameters),
         step_(
-            iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); }),
+            iterate_, check_, parameters, [this](int k) { report(k); }, [this] { return is_to_end(); },
+            run.hierarchy),
         dirichlet_(objective.model()),
         predictor_(dirichlet_, iterate_, step_, run.load_stepping != nullptr),
         load_(run.load_stepping, iterate_, dirichlet_, run.clock, run.observer) {

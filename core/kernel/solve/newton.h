@@ -17,6 +17,7 @@ struct LevelRun {
   LoadStepping* load_stepping = nullptr;     ///< null without a schedule
   std::string remark = {};                   ///< beginning of the result's message
   ContactStiffness stiffness = {};           ///< at least this of each contact model [Pa]
+  const Hierarchy* hierarchy = nullptr;      ///< of the level, for LinearSolver::multigrid; may be null
 };
 
 /// Minimises the objective F from x (n×3) [m] by implicit steps

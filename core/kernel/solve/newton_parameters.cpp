@@ -74,11 +74,17 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .description("iterations that share one Hessian and its factor")
       .source("departure from the paper");
   d.add_choice("linear_solver", &NewtonParameters::linear_solver,
-               {{"mixed", LinearSolver::mixed},
+               {{"automatic", LinearSolver::automatic},
+                {"multigrid", LinearSolver::multigrid},
+                {"mixed", LinearSolver::mixed},
                 {"supernodal", LinearSolver::supernodal},
                 {"cholmod", LinearSolver::cholmod}})
       .description(
-          "mixed: drape's Cholesky factorisation in single precision, as preconditioner of conjugate "
+          "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
+          "mixed on others. multigrid: conjugate "
+          "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
+          "residual of 0.1; where that fails, mixed. mixed: drape's Cholesky factorisation in single "
+          "precision, as preconditioner of conjugate "
           "gradients in double precision; the static form, ill-conditioned matrices and moved pins have it "
           "in double precision. supernodal: that in double precision throughout. Both are parallel and give "
           "the same bits with any number of threads. cholmod: CHOLMOD's, whose speed, threads and bits "

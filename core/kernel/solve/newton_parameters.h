@@ -28,7 +28,7 @@ struct NewtonParameters {
   Projection::Kind projection = Projection::clamp;
   PsdBlend psd_blend = PsdBlend::adaptive;
   int hessian_update_interval = 1;
-  LinearSolver linear_solver = LinearSolver::mixed;
+  LinearSolver linear_solver = LinearSolver::automatic;
 
   static void declare(Declaration<NewtonParameters>& d);
 };

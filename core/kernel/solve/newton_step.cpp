@@ -21,14 +21,15 @@ constexpr int iterations_after_obstacle_motion = 30;
 }  // namespace
 
 NewtonStep::NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
-                       std::function<void(int)> report, std::function<bool()> interrupt)
+                       std::function<void(int)> report, std::function<bool()> interrupt,
+                       const Hierarchy* hierarchy)
     : iterate_(iterate),
       check_(check),
       p_(parameters),
       report_(std::move(report)),
       interrupt_(std::move(interrupt)),
       controller_(parameters),
-      factor_(iterate, parameters) {}
+      factor_(iterate, parameters, hierarchy) {}
 
 void NewtonStep::restore(const State& s) {
   step_.restore(s.implicit_step, iterate_.x());

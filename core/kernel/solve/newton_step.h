@@ -27,10 +27,11 @@ class NewtonStep {
   /// The iterate must have been evaluated.
   void restore(const State& state);
 
-  /// Refers to all arguments. `report` is called after iteration k of a step and its check, and `interrupt`
-  /// between two iterations of one step: true ends it.
+  /// Refers to all arguments; `hierarchy` may be null. `report` is called after iteration k of a step and its
+  /// check, and `interrupt` between two iterations of one step: true ends it.
   NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
-             std::function<void(int k)> report, std::function<bool()> interrupt);
+             std::function<void(int k)> report, std::function<bool()> interrupt,
+             const Hierarchy* hierarchy = nullptr);
 
   /// Begins a step at the iterate; lags friction there.
   void begin();

@@ -1,0 +1,159 @@
+#include "core/kernel/linear_algebra/multigrid.h"
+
+#include <catch2/catch.hpp>
+
+#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/solve/factor_cache.h"
+#include "tests/support/solve.h"
+
+using namespace drape;
+
+namespace {
+
+/// A deformed hanging cloth of three levels, the finest of 6,889 vertices, and its matrix.
+struct Hanging {
+  Solved s = scene_from(R"(
+name: hanging
+cloth: {shape: square, side: 0.5, triangulation: one_way, columns: 21, rows: 22}
+levels: 3
+pins: [{region: nearest, point: [0, 0, 0]}]
+energies: [neo_hookean, hinge, gravity]
+refiner: loop
+methods: {newton: {}}
+)");
+  BlockMatrix matrix;
+  Eigen::VectorXd shift;
+  Positions b;
+
+  Hanging() {
+    Positions x = s.rest();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) x(i, 2) += 0.03 * std::sin(20 * x(i, 0) + 5 * x(i, 1));
+    matrix = s.model().energy_hessian(x, Projection::clamp);
+    shift = 100 * s.model().masses();
+    std::srand(3);
+    b = Positions::Random(x.rows(), 3);
+  }
+  Multigrid multigrid() const { return Multigrid(s.scene->hierarchy.prolongations); }
+  double residual(const Positions& x) const {
+    Positions r;
+    matrix.multiply(x, r);
+    double sum = 0, of = 0;
+    for (Eigen::Index i = 0; i < r.rows(); ++i) {
+      if (s.model().fixed()[i]) continue;
+      sum += (r.row(i) + shift[i] * x.row(i) - b.row(i)).squaredNorm();
+      of += b.row(i).squaredNorm();
+    }
+    return std::sqrt(sum / of);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Cycles of multigrid solve a cloth's system, and leave fixed vertices where they are") {
+  const Hanging h;
+  REQUIRE(h.s.model().fixed()[0] == 1);
+  Multigrid m = h.multigrid();
+  REQUIRE(m.set(h.matrix, h.shift, h.s.model().fixed()));
+  Positions x;
+  REQUIRE(m.solve(h.b, x) == ConjugateGradients::End::converged);
+  CHECK(x.row(0).isZero(0));
+  CHECK(h.residual(x) <= 0.1 + 1e-9);
+  CHECK(h.residual(x) > 1e-6);  // the measure can fail
+  CHECK(m.take_flops() > 0);
+  CHECK(m.take_flops() == 0);
+}
+
+TEST_CASE("Multigrid has the same bits with any number of threads") {
+  const Hanging h;
+  Positions first, x;
+  for (const int threads : {1, 2, 4}) {
+    set_thread_count(threads);
+    Multigrid m = h.multigrid();
+    REQUIRE(m.set(h.matrix, h.shift, h.s.model().fixed()));
+    REQUIRE(m.solve(h.b, x) == ConjugateGradients::End::converged);
+    if (threads == 1) first = x;
+    CHECK(x == first);
+  }
+  set_thread_count(0);
+}
+
+TEST_CASE("Multigrid refuses a matrix that is not positive definite") {
+  Hanging h;
+  Multigrid m = h.multigrid();
+  SECTION("in the block of a vertex") {
+    h.shift[100] = -1e9;
+    CHECK_FALSE(m.set(h.matrix, h.shift, h.s.model().fixed()));
+    CHECK_FALSE(m.is_set());
+  }
+  SECTION("on the whole") {
+    h.shift.setConstant(-0.02);
+    Positions x;
+    CHECK((!m.set(h.matrix, h.shift, h.s.model().fixed()) ||
+           m.solve(h.b, x) == ConjugateGradients::End::not_definite));
+  }
+}
+
+TEST_CASE("Multigrid keeps its matrix for later iterations, also across a checkpoint") {
+  const Hanging h;
+  NewtonParameters p;
+  p.linear_solver = LinearSolver::multigrid;
+  p.hessian_update_interval = 2;
+  const Hierarchy& hierarchy = h.s.scene->hierarchy;
+  struct Cache {
+    PlainObjective objective;
+    LevelResult result;
+    Iterate iterate;
+    FactorCache cache;
+    Positions solution;
+    static LevelResult at_rest(const Hanging& h) {
+      LevelResult r;
+      r.x = h.s.rest();
+      return r;
+    }
+    Cache(const Hanging& h, const NewtonParameters& p, const Hierarchy& hierarchy)
+        : objective(h.s.model()),
+          result(at_rest(h)),
+          iterate(objective, result),
+          cache(iterate, p, &hierarchy) {
+      iterate.set_constraints(h.s.model().fixed(), nullptr);
+      iterate.evaluate();
+    }
+    int factorisations(const Hanging& h) {
+      const int before = result.factorisations;
+      REQUIRE(cache.solve(h.s.model().fixed(), 100, 1, h.b, solution));
+      cache.end_iteration(1);
+      return result.factorisations - before;
+    }
+  };
+  Cache first(h, p, hierarchy), second(h, p, hierarchy);
+  REQUIRE(first.factorisations(h) == 1);
+  REQUIRE(first.cache.state().solver == LinearSolver::multigrid);
+  CHECK(first.cache.analyses() == 0);  // of the whole matrix
+  second.cache.restore(first.cache.state());
+  CHECK(first.factorisations(h) == 0);
+  CHECK(second.factorisations(h) == 0);
+  CHECK(second.solution == first.solution);
+  CHECK(first.factorisations(h) == 1);
+}
+
+TEST_CASE("By itself multigrid is for large levels of a hierarchy") {
+  const Hanging h;
+  PlainObjective objective(h.s.model());
+  LevelResult result;
+  result.x = h.s.rest();
+  Iterate iterate(objective, result);
+  iterate.set_constraints(h.s.model().fixed(), nullptr);
+  const auto solver = [&](LinearSolver chosen, const Hierarchy* hierarchy) {
+    NewtonParameters p;
+    p.linear_solver = chosen;
+    p.hessian_update_interval = 2;
+    iterate.evaluate();
+    FactorCache cache(iterate, p, hierarchy);
+    Positions x;
+    REQUIRE(cache.solve(h.s.model().fixed(), 100, 1, h.b, x));
+    return cache.state().solver;
+  };
+  CHECK(solver(LinearSolver::automatic, &h.s.scene->hierarchy) == LinearSolver::mixed);
+  CHECK(solver(LinearSolver::multigrid, &h.s.scene->hierarchy) == LinearSolver::multigrid);
+  CHECK(solver(LinearSolver::multigrid, nullptr) == LinearSolver::mixed);
+}
