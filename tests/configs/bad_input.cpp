@@ -367,32 +367,13 @@ TEST_CASE("errors of keys, of mesh files and of obstacles are listed together, e
         "error: e.yaml:4:8: cannot read s.ply: No such file or directory\n");
 }
 
-TEST_CASE("keys of earlier versions are refused with the new ones") {
-  CHECK(said_of_set("frames=3") == "error: --set frames: \"frames\" is now called \"snapshots\"\n");
-  CHECK(said_of_set("verify=every_step") ==
-        "error: --set verify: \"verify\" is now called \"check_intersections\"\n");
-  CHECK(said_of_set("pins.0.move=[0, 0, 0]") ==
-        "error: --set pins.0.move: \"move\" in pins is now called \"translate\"\n");
-  CHECK(said_of(small_experiment() +
-                "schedule: {keys: [{set: material.density, at: [0, 1], to: [1, 2], between: jump}]}\n") ==
-        "error: e.yaml:15:20: \"set\" in keys is now called \"parameter\"\n"
-        "error: e.yaml:15:43: \"at\" in keys is now called \"times\"\n"
-        "error: e.yaml:15:55: \"to\" in keys is now called \"values\"\n"
-        "error: e.yaml:15:67: \"between\" in keys is now called \"interpolation\"\n");
+TEST_CASE("what all contact models share is refused in the section of one") {
   CHECK(said_of_edit("levels: 2", "contact: {type: ipc, friction: 0.1}") ==
-        "error: e.yaml:3:22: \"friction\" in ipc is now at the top of the experiment: \"friction\", once for "
-        "all "
-        "contact models\n");
-  CHECK(
-      said_of_edit("levels: 2", "contact: {type: ipc, obstacles: [{file: a.ply}]}") ==
-      "error: e.yaml:3:22: \"obstacles\" in ipc is now at the top of the experiment: \"obstacles\", once for "
-      "all contact models\n");
-  CHECK(said_of_edit("levels: 2", "contact: {type: shapes, shapes: [{shape: sphere}]}") ==
-        "error: e.yaml:3:25: \"shapes\" in shapes is now \"obstacles\"\n");
-  CHECK(said_of_edit("levels: 2", "contact: shapes\nobstacles: [{shape: sphere, centre: [0, 0, 1]}]") ==
-        "error: e.yaml:4:29: \"centre\" in obstacles is now called \"translate\"\n");
-  CHECK(said_of_edit("levels: 2", "contact: ipc\nobstacles: [{name: ball, file: ball.ply}]") ==
-        "error: e.yaml:4:26: \"file\" in obstacles is now called \"mesh\"\n");
+        "error: e.yaml:3:22: \"friction\" in ipc belongs at the top of the experiment, once for all contact "
+        "models\n");
+  CHECK(said_of_edit("levels: 2", "contact: {type: ipc, obstacles: [{file: a.ply}]}") ==
+        "error: e.yaml:3:22: \"obstacles\" in ipc belongs at the top of the experiment, once for all contact "
+        "models\n");
   CHECK(
       said_of_edit("levels: 2",
                    "contact: shapes\nobstacles: [{name: ball, shape: sphere}]\nschedule: {keys: [{parameter: "

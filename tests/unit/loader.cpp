@@ -52,9 +52,9 @@ constexpr DrapePluginDescriptor ours = DRAPE_ABI_DESCRIPTOR(nullptr);
 
 TEST_CASE("whoever changes a class that plugins see is told to raise the ABI number") {
   // If a size differs: raise DRAPE_ABI_NUMBER, then write the new number and the new size here.
-  CHECK(DRAPE_ABI_NUMBER == 15);
+  CHECK(DRAPE_ABI_NUMBER == 16);
   CHECK(sizeof(ConfigNode) == 192);
-  CHECK(sizeof(Parameter) == 488);
+  CHECK(sizeof(Parameter) == 464);
   CHECK(sizeof(TriangleMesh) == 48);
   CHECK(sizeof(Topology) == 168);
   CHECK(sizeof(Level) == 408);

@@ -151,43 +151,6 @@ TEST_CASE("unknown keys are reported with the nearest known one") {
         std::vector<std::string>{"f:1:1: unknown key \"a\" in air; it takes no keys"});
 }
 
-TEST_CASE("keys of an earlier version are refused with their new names") {
-  struct Renamed {
-    double dhat = 1e-3;
-    int steps = 1;
-    Ball ball;
-    static void declare(Declaration<Renamed>& d) {
-      d.add("dhat", &Renamed::dhat).formerly("range").formerly("reach").required();
-      d.add("steps", &Renamed::steps);
-      d.add_section("ball", &Renamed::ball).formerly("sphere");
-      d.moved("radius", "ball.radius");
-    }
-  } object;
-  const Schema schema = schema_of<Renamed>("ipc");
-  using Texts = std::vector<std::string>;
-  CHECK(faults(schema, &object, "range: 1") == Texts{"f:1:1: \"range\" in ipc is now called \"dhat\""});
-  CHECK(faults(schema, &object, "{steps: 2, reach: 1}") ==
-        Texts{"f:1:12: \"reach\" in ipc is now called \"dhat\""});
-  CHECK(faults(schema, &object, "dhat: 1\nsphere: {radius: 1}") ==
-        Texts{"f:2:1: \"sphere\" in ipc is now called \"ball\""});
-  CHECK(faults(schema, &object, "dhat: 1\nradius: 1") ==
-        Texts{"f:2:1: \"radius\" in ipc is now \"ball.radius\""});
-  CHECK(faults(schema, &object, "dhat: 2\nrange: 1") ==
-        Texts{"f:2:1: \"range\" in ipc is now called \"dhat\""});
-  CHECK(object.dhat == 2);
-}
-
-TEST_CASE("a declaration cannot use a former name for another parameter") {
-  struct Twice {
-    double a = 0, b = 0;
-    static void declare(Declaration<Twice>& d) {
-      d.add("a", &Twice::a).formerly("b");
-      d.add("b", &Twice::b);
-    }
-  };
-  CHECK_THROWS_WITH(schema_of<Twice>(), "\"b\" is declared, and as a former name of \"a\"");
-}
-
 TEST_CASE("wrong types are reported with the written value") {
   CHECK(fault("step_size: abc") == "f:1:12: \"step_size\" must be a number, not \"abc\"");
   CHECK(fault("step_size: 1s") == "f:1:12: \"step_size\" must be a number, not \"1s\"");

@@ -25,17 +25,12 @@ const Parameter* obstacles_of(const RegistryEntry& model) {
   return nullptr;
 }
 
-/// The first key of an obstacle, in its present or a former name, by which the model knows it; "" without
-/// one.
+/// The first key of an obstacle by which the model knows it; "" without one.
 std::string known_key(const RegistryEntry& model, const ConfigNode& obstacle) {
   const Parameter* list = obstacles_of(model);
   if (!list) return "";
-  for (const Parameter& p : list->section->parameters) {
-    if (!p.identifies_item) continue;
-    if (obstacle.find(p.name)) return p.name;
-    for (const std::string& former : p.former_names)
-      if (obstacle.find(former)) return former;
-  }
+  for (const Parameter& p : list->section->parameters)
+    if (p.identifies_item && obstacle.find(p.name)) return p.name;
   return "";
 }
 
@@ -71,8 +66,8 @@ ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, Co
     const Parameter* parameter = parameter_named(model.schema, key);
     if (parameter && parameter->from_experiment) {
       errors.push_back({written.key_locations[i], "\"" + key + "\" in " + model.name +
-                                                      " is now at the top of the experiment: \"" + key +
-                                                      "\", once for all contact models"});
+                                                      " belongs at the top of the experiment, once for all "
+                                                      "contact models"});
       continue;
     }
     own.add(key, value);

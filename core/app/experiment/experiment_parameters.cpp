@@ -154,7 +154,6 @@ void declare_selection(Declaration<Condition>& d) {
       .only_with("region", {"vertices"})
       .description("indices on the coarsest level, from 0");
   d.add("translate", member(&VertexSelection::translate))
-      .formerly("move")
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
@@ -162,13 +161,11 @@ void declare_selection(Declaration<Condition>& d) {
           "translation from the rest position to the target, applied after `rotate`; without both, the "
           "target is the position at the start, without its noise");
   d.add("rotate", member(&VertexSelection::rotate))
-      .formerly("turn")
       .unit("degree")
       .at_least(-bounds::largest_angle)
       .at_most(bounds::largest_angle)
       .description("rotation of the rest position about x, then y, then z through `centre`");
   d.add("centre", member(&VertexSelection::centre))
-      .formerly("about")
       .unit("m")
       .at_least(-bounds::largest_coordinate)
       .at_most(bounds::largest_coordinate)
@@ -275,14 +272,12 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
           "state that errors are measured against, beside each method's own finest one; the name of a method "
           "or `lowest` is a shorthand");
   d.add("snapshots", &ExperimentParameters::snapshots)
-      .formerly("frames")
       .at_least(0)
       .at_most(1000)
       .description("largest number of intermediate states per level to record and to measure errors of");
   d.add_choice(
        "check_intersections", &ExperimentParameters::check_intersections,
        {{"every_level", IntersectionCheck::every_level}, {"every_step", IntersectionCheck::every_step}})
-      .formerly("verify")
       .description("when to count intersections, by exact predicates between meshes");
 }
 

@@ -147,26 +147,22 @@ std::vector<std::string> indexed_path(const ConfigNode& config, const std::strin
 
 void KeyParameters::declare(Declaration<KeyParameters>& d) {
   d.add("parameter", &KeyParameters::parameter)
-      .formerly("set")
       .required()
       .description(
           "path of the parameter, as for --set, in material, energies, contact, obstacles, friction, pins or "
           "handles; an index or a name selects an item of a list, as in energies.gravity.acceleration");
   d.add("times", &KeyParameters::times)
-      .formerly("at")
       .at_least(0)
       .at_most(1e9)
       .required()
       .description("pseudo-times, ascending; the scene begins at 0");
   d.add_node("values", &KeyParameters::values)
-      .formerly("to")
       .required()
       .description("one value per time, each a number or a list of numbers");
   d.add_choice("interpolation", &KeyParameters::interpolation,
                {{"linear", KeyInterpolation::linear},
                 {"log", KeyInterpolation::log},
                 {"step", KeyInterpolation::step}})
-      .formerly("between")
       .description("interpolation between two times; constant before the first and after the last");
 }
 
@@ -181,7 +177,6 @@ void ScheduleParameters::declare(Declaration<ScheduleParameters>& d) {
       .description("number of equal load increments")
       .source("supplement, section 4");
   d.add("equilibrate", &ScheduleParameters::equilibrate)
-      .formerly("settle")
       .description(
           "solve for equilibrium after every increment; otherwise take one implicit step, and equilibrate "
           "only after the last increment");

@@ -45,7 +45,6 @@ void declare_contact_parameters(Declaration<Derived>& d) {
       .at_least(bounds::smallest_length)
       .at_most(1e3)
       .description("barrier activation distance d̂: the barrier acts on smaller gaps")
-      .formerly("range")
       .source("Li et al. 2020, eq. 6");
   d.add("stiffness", &Derived::stiffness)
       .unit("Pa")
@@ -60,14 +59,12 @@ void declare_contact_parameters(Declaration<Derived>& d) {
       .at_least(1e-12)
       .at_most(1e3)
       .description("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
-      .formerly("slip_distance")
       .source("Li et al. 2020, eq. 14");
   d.add("min_gap_fraction", &Derived::min_gap_fraction)
       .unit("1")
       .at_least(1e-6)
       .at_most(0.99)
       .description("fraction of every gap that a step must leave: s of additive CCD")
-      .formerly("keep")
       .source("Li et al. 2021");
 }
 

@@ -25,7 +25,7 @@ struct DrapePluginDescriptor {
 
 #define DRAPE_ABI_MAGIC 0x50415244u  // "DRAP"
 /// Increment with every change to a class that crosses the library boundary.
-#define DRAPE_ABI_NUMBER 15u
+#define DRAPE_ABI_NUMBER 16u
 
 #define DRAPE_TEXT_(x) #x
 #define DRAPE_TEXT(x) DRAPE_TEXT_(x)

@@ -238,30 +238,9 @@ ConfigNode to_node(const NamedConstants& values) {
   return map;
 }
 
-void check_former_names(const Schema& schema) {
-  for (const Parameter& p : schema.parameters)
-    for (const Parameter& other : schema.parameters)
-      if (std::find(p.former_names.begin(), p.former_names.end(), other.name) != p.former_names.end())
-        throw std::runtime_error("\"" + other.name + "\" is declared, and as a former name of \"" + p.name +
-                                 "\"");
-}
-
 }  // namespace parameter_detail
 
 namespace {
-
-/// `"old" in newton is now called "new"` for a key of an earlier version, else "". `renamed` receives the
-/// parameter that has the new name, if it is of the same section.
-std::string renaming_of(const std::string& key, const std::string& in, const Schema& schema,
-                        const Parameter** renamed) {
-  for (const Parameter& p : schema.parameters)
-    if (std::find(p.former_names.begin(), p.former_names.end(), key) != p.former_names.end()) {
-      *renamed = &p;
-      return "\"" + key + "\"" + in + " is now called \"" + p.name + "\"";
-    }
-  const auto moved = schema.moved.find(key);
-  return moved == schema.moved.end() ? "" : "\"" + key + "\"" + in + " is now \"" + moved->second + "\"";
-}
 
 /// A written key that the choice beside it makes meaningless, such as a mesh file for a square.
 void refuse_unread(const Schema& schema, const Parameter& p, const void* object, const ConfigNode& map,
@@ -301,7 +280,6 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     return;
   }
   std::map<std::string, size_t> first_of;
-  std::set<const Parameter*> renamed;  // written under a former name
   for (size_t i = 0; i < map.entries.size(); ++i) {
     const auto& [key, node] = map.entries[i];
     const size_t first = first_of.emplace(key, i).first->second;
@@ -311,12 +289,6 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
       errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
                                                   "; it is first set at " + map.key_locations[first].text()});
     } else if (known == parameters.end()) {
-      const Parameter* parameter = nullptr;
-      if (const std::string renaming = renaming_of(key, in, *this, &parameter); !renaming.empty()) {
-        errors.push_back({map.key_locations[i], renaming});
-        renamed.insert(parameter);
-        continue;
-      }
       errors.push_back(
           {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this)});
     } else {
@@ -324,7 +296,7 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
     }
   }
   for (const Parameter& p : parameters)
-    if (p.required && !map.find(p.name) && !renamed.count(&p))
+    if (p.required && !map.find(p.name))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
   for (const Parameter& p : parameters) refuse_unread(*this, p, object, map, errors);
 }

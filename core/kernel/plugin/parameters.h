@@ -18,7 +18,6 @@ namespace drape {
 /// and the saved config derive from it. Its default is the member's value in a default-constructed struct.
 struct Parameter {
   std::string name;
-  std::vector<std::string> former_names;  ///< refused with a message that gives `name`
   std::string type;         ///< "number", "integer", "boolean", "text", "section", "node", "list of …s",
                             ///< "map of numbers"
   std::string description;  ///< one phrase: what it sets
@@ -57,13 +56,11 @@ class Schema {
  public:
   std::string name;  ///< for messages ("in newton"); may be empty
   std::vector<Parameter> parameters;
-  std::map<std::string, std::string>
-      moved;  ///< former keys whose parameter is in another section now → its path
   std::function<std::shared_ptr<void>()> fresh;  ///< a default-constructed struct
   std::function<std::shared_ptr<void>(const void* object)> copy;
 
-  /// Reads a map into `object` (a struct with this schema). Appends an error for every unknown key (with its
-  /// new name or the nearest known one), wrong type, value out of range, missing required and repeated key.
+  /// Reads a map into `object` (a struct with this schema). Appends an error for every unknown key (with the
+  /// nearest known one), wrong type, value out of range, missing required and repeated key.
   void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
   /// The object as a map with every parameter.
   ConfigNode write(const void* object) const;
@@ -75,12 +72,6 @@ class ParameterHandle {
   explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
   ParameterHandle& description(std::string text) {
     p_.description = std::move(text);
-    return *this;
-  }
-  /// The parameter's (or section's) name in an earlier version: refused, with a message that gives the new
-  /// one.
-  ParameterHandle& formerly(std::string name) {
-    p_.former_names.push_back(std::move(name));
     return *this;
   }
   ParameterHandle& unit(std::string text) {

@@ -39,9 +39,6 @@ void convert(const ConfigNode& node, std::optional<T>& value) {
   if (node.kind != ConfigNode::Kind::null) convert(node, value.emplace());
 }
 
-/// Throws std::runtime_error if a former name is also a present one.
-void check_former_names(const Schema& schema);
-
 inline ConfigNode to_node(double value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(int value) { return ConfigNode::of(value); }
 inline ConfigNode to_node(bool value) { return ConfigNode::of(value); }
@@ -218,9 +215,6 @@ class Declaration {
     throw std::runtime_error("parameter \"" + name + "\" is not declared");
   }
 
-  /// A key of an earlier version whose parameter is now at `path`, counted from the top of the file.
-  void moved(const std::string& key, const std::string& path) { schema.moved[key] = path; }
-
  private:
   Parameter& append(const std::string& name, const std::string& type) {
     for (const Parameter& p : schema.parameters)
@@ -236,7 +230,6 @@ template <class Struct>
 Schema schema_of(const std::string& name) {
   Declaration<Struct> declaration;
   Struct::declare(declaration);
-  parameter_detail::check_former_names(declaration.schema);
   declaration.schema.name = name;
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
   declaration.schema.copy = [](const void* object) -> std::shared_ptr<void> {

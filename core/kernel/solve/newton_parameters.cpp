@@ -61,14 +61,12 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .source("Teran et al. 2005; Chen et al. 2024 for absolute");
   d.add_choice("psd_blend", &NewtonParameters::psd_blend,
                {{"full", PsdBlend::full}, {"adaptive", PsdBlend::adaptive}})
-      .formerly("projection_share")
       .description(
           "fraction of the projection in the matrix: full (projected Newton), or adaptive, which lowers it "
           "after full steps and raises it until the matrix is positive definite, and so approaches the exact "
           "Hessian near an equilibrium")
       .source("departure from the paper");
   d.add("hessian_update_interval", &NewtonParameters::hessian_update_interval)
-      .formerly("refresh")
       .at_least(1)
       .at_most(1e6)
       .description("iterations that share one Hessian and its factor")
@@ -80,7 +78,7 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
                 {"supernodal", LinearSolver::supernodal},
                 {"cholmod", LinearSolver::cholmod}})
       .description(
-          "automatic: multigrid on levels of 20,000 vertices and more below which there are coarser ones, "
+          "automatic: multigrid on levels of 50,000 vertices and more below which there are coarser ones, "
           "mixed on others. multigrid: conjugate "
           "gradients that are preconditioned by V-cycles over the hierarchy's meshes and end at a relative "
           "residual of 0.1; where that fails, mixed. mixed: drape's Cholesky factorisation in single "

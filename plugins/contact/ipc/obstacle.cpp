@@ -44,7 +44,6 @@ void ObstacleParameters::declare(Declaration<ObstacleParameters>& d) {
   using P = ObstacleParameters;
   declare_obstacle(d);
   d.add("mesh", &P::mesh)
-      .formerly("file")
       .path()
       .identifies_item()
       .description("a mesh file (.obj, .off, .ply or .stl), relative to this file");

@@ -51,7 +51,7 @@ std::string to_string(SolidKind kind) {
 }
 
 void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
-  declare_obstacle(d).formerly("centre");
+  declare_obstacle(d);
   d.add_choice("shape", &ShapeParameters::shape, kind_names)
       .required()
       .identifies_item()
@@ -91,7 +91,6 @@ void ShapeParameters::declare(Declaration<ShapeParameters>& d) {
 
 void Shapes::Parameters::declare(Declaration<Parameters>& d) {
   declare_obstacles(d).description("analytic shapes that the cloth collides with").source("this project");
-  d.moved("shapes", "obstacles");
   declare_contact_parameters(d);
 }
 
