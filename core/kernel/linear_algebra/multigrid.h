@@ -31,7 +31,8 @@ class Multigrid {
   bool is_set() const { return is_set_; }
 
   /// Solves to a relative residual of 0.1, with which Newton takes about as many iterations as with exact
-  /// directions. n×3 right-hand side and solution, whose fixed rows are zero.
+  /// directions. Does not converge if that takes more cycles than a factorisation takes time. n×3 right-hand
+  /// side and solution, whose fixed rows are zero.
   ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
 
   /// Floating-point operations since the last call.
