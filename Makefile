@@ -110,7 +110,7 @@ figures:
 
 FROM ?= $(patsubst %sphere,%,$(shell ls -td results/studies/*/sphere 2>/dev/null | head -1))
 # The start whose PCS preview has the median distance from its final state.
-SPHERE = $(FROM)sphere/runs/base/seed_3
+SPHERE = $(FROM)sphere/runs/base/seed_1
 DRAW = configs/sphere.yaml --levels 3 --method pcs,pcs_loop,unrelaxed,cascadic --set 'methods.unrelaxed={type: pcs, relaxation: none}'
 pictures: benchmarks data
 	@[ -e $(SPHERE)/results.json ] || { echo "pictures: no run of the study sphere; make results STUDIES=sphere" >&2; exit 1; }
