@@ -13,14 +13,15 @@
 /// one triangle.
 template <template <class> class Law>
 class BucklingCheck {
-  using Kernel = drape::StretchKernel<drape::BucklingLaw<Law>>;
+  using Buckling = drape::BucklingLaw<drape::PrincipalLaw<Law>>;
+  using Kernel = drape::StretchKernel<Buckling>;
   using Plain = drape::MembraneKernel<Law>;
   using Check = KernelCheck<Kernel>;
   using PlainCheck = KernelCheck<Plain>;
   using State = typename Check::State;
 
-  static constexpr double kappa = drape::BucklingLaw<Law>::largest_shortening,
-                          remainder = drape::BucklingLaw<Law>::remainder;
+  static constexpr double kappa = drape::Buckling<double>::largest_shortening,
+                          remainder = drape::Buckling<double>::remainder;
   const Eigen::Vector3d rest1_{0.9, 0.2, 0.1}, rest2_{0.1, 1.1, -0.3};
   drape::Material material_;
   typename Plain::Rest plain_;
@@ -48,7 +49,7 @@ class BucklingCheck {
 
   typename Kernel::Rest rest(double s) const {
     typename Kernel::Rest r;
-    r << plain_.template head<3>(), drape::BucklingLaw<Law>::constants_of(plain_[3], plain_[4], s);
+    r << plain_.template head<3>(), Buckling().constants_of(plain_.data() + 3, s);
     return r;
   }
 
@@ -141,9 +142,9 @@ class BucklingCheck {
     const double s = 0.01 * stiffness();
     const typename Kernel::Rest r = rest(s);
     const double t1 = 1.05, t2 = 0.8, c[] = {plain_[3], plain_[4], s, r[6]};
-    const auto slopes = drape::BucklingLaw<Law>::slopes(t1, t2, c);
-    const auto plain = drape::BucklingLaw<Law>::slopes(
-        t1, t2, std::vector<double>{plain_[3], plain_[4], 1e9 * stiffness(), 0.0}.data());
+    const auto slopes = Buckling().slopes(t1, t2, c);
+    const auto plain =
+        Buckling().slopes(t1, t2, std::vector<double>{plain_[3], plain_[4], 1e9 * stiffness(), 0.0}.data());
     CHECK((slopes.first2 - remainder * plain.first2) / (1 - remainder) == Approx(-s * t2).epsilon(1e-12));
     CHECK(std::abs(plain.first2) > 10 * std::abs(slopes.first2));
     CHECK(slopes.first1 > 0);

@@ -130,61 +130,87 @@ class Buckling {
   PrincipalDerivatives<T> plain, at;
 };
 
-/// A membrane Law (core/kernel/elements/membrane_kernel.h) that buckles below the mesh, as a law of
-/// StretchKernel.
-template <template <class> class Law>
+/// A law that buckles below the mesh, for StretchKernel. Plain has `constants` (how many numbers each
+/// triangle has) and is callable with two stretches and these numbers; it returns PrincipalDerivatives.
+template <class Plain>
 struct BucklingLaw {
-  static constexpr int constants = 4;  ///< A d μ, A d λ, s [J], and the stretch τ of both axes wrinkled [1]
+  /// Plain's, then s [J], and the stretch τ of both axes wrinkled [1].
+  static constexpr int constants = Plain::constants + 2;
   static constexpr bool convex = false;
-  static constexpr double largest_shortening = Buckling<double>::largest_shortening,
-                          remainder = Buckling<double>::remainder;
 
-  /// The constants that follow the rest triangle's, for a bound s [J].
-  static Eigen::Vector4d constants_of(double mu, double lambda, double s) {
-    const double c[] = {mu, lambda};
-    return {mu, lambda, s, Buckling<double>::both_wrinkled(Principal<double>{c}, s)};
+  [[no_unique_address]] Plain plain;
+
+  /// From Plain's constants and a bound s [J].
+  Eigen::Matrix<double, constants, 1> constants_of(const double* own, double s) const {
+    Eigen::Matrix<double, constants, 1> all;
+    for (int i = 0; i < Plain::constants; ++i) all[i] = own[i];
+    all[constants - 2] = s;
+    all[constants - 1] = Buckling<double>::both_wrinkled(at(own), s);
+    return all;
   }
 
   template <class T>
-  static T value(const T& s1, const T& s2, const T* c) {
-    return Buckling<T>(Principal<T>{c}, s1, s2, c[2], c[3]).value();
+  T value(const T& s1, const T& s2, const T* c) const {
+    return state(s1, s2, c).value();
   }
-
   template <class T>
-  static CoupledSlopes<T> slopes(const T& s1, const T& s2, const T* c) {
-    return Buckling<T>(Principal<T>{c}, s1, s2, c[2], c[3]).slopes();
+  CoupledSlopes<T> slopes(const T& s1, const T& s2, const T* c) const {
+    return state(s1, s2, c).slopes();
   }
 
  private:
-  /// The Law by principal stretches.
   template <class T>
-  struct Principal {
-    const T* c;
-
-    PrincipalDerivatives<T> operator()(const T& t1, const T& t2) const {
-      const T zero = 0.0;
-      const Law<T> law(Eigen::Matrix<T, 3, 1>(t1, zero, zero), Eigen::Matrix<T, 3, 1>(zero, t2, zero), c[0],
-                       c[1]);
-      Eigen::Matrix<T, 3, 1> p1, p2;
-      Eigen::Matrix<T, 3, 3> h11, h12, h22;
-      law.stress(p1, p2);
-      law.stiffness(h11, h12, h22);
-      return {law.energy(), p1[0], p2[1], h11(0, 0), h22(1, 1), h12(0, 1)};
-    }
-  };
+  auto at(const T* c) const {
+    return [this, c](const T& t1, const T& t2) { return plain(t1, t2, c); };
+  }
+  template <class T>
+  Buckling<T> state(const T& s1, const T& s2, const T* c) const {
+    return Buckling<T>(at(c), s1, s2, c[constants - 2], c[constants - 1]);
+  }
 };
 
-/// Binds the Law to all triangles of a level on which the cloth buckles below the mesh; s [J] as in
-/// Buckling, which is the same for all triangles. Throws std::runtime_error naming a triangle without area.
+/// A membrane Law (core/kernel/elements/membrane_kernel.h) by principal stretches.
 template <template <class> class Law>
-std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Level& level, const Material& material, double s) {
-  using Kernel = StretchKernel<BucklingLaw<Law>>;
+struct PrincipalLaw {
+  static constexpr int constants = 2;  ///< A d μ, A d λ [J]
+
+  template <class T>
+  PrincipalDerivatives<T> operator()(const T& t1, const T& t2, const T* c) const {
+    const T zero = 0.0;
+    const Law<T> law(Eigen::Matrix<T, 3, 1>(t1, zero, zero), Eigen::Matrix<T, 3, 1>(zero, t2, zero), c[0],
+                     c[1]);
+    Eigen::Matrix<T, 3, 1> p1, p2;
+    Eigen::Matrix<T, 3, 3> h11, h12, h22;
+    law.stress(p1, p2);
+    law.stiffness(h11, h12, h22);
+    return {law.energy(), p1[0], p2[1], h11(0, 0), h22(1, 1), h12(0, 1)};
+  }
+};
+
+/// Binds a law to all triangles of a level on which the cloth buckles below the mesh, with Plain's constants
+/// of each; s [J] as in Buckling, which is the same for all triangles. Throws std::runtime_error naming a
+/// triangle without area.
+template <class Plain>
+std::unique_ptr<BoundEnergy> bind_buckling_law(
+    const Plain& plain, const Level& level,
+    const std::vector<Eigen::Matrix<double, Plain::constants, 1>>& numbers, double s) {
+  using Kernel = StretchKernel<BucklingLaw<Plain>>;
+  const Kernel kernel{{plain}};
   std::vector<typename Kernel::Rest> rest;
   for (int t = 0; t < level.triangle_count(); ++t) {
-    const auto plain = MembraneKernel<Law>::rest(RestTriangle::of(level, t), material);
-    rest.emplace_back() << plain.template head<3>(), BucklingLaw<Law>::constants_of(plain[3], plain[4], s);
+    const RestTriangle triangle = RestTriangle::of(level, t);
+    rest.emplace_back() << triangle.a, triangle.b, triangle.c, kernel.law.constants_of(numbers[t].data(), s);
   }
-  return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order);
+  return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order, kernel);
+}
+
+/// The same for a membrane Law.
+template <template <class> class Law>
+std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Level& level, const Material& material, double s) {
+  std::vector<Eigen::Vector2d> numbers;
+  for (int t = 0; t < level.triangle_count(); ++t)
+    numbers.emplace_back(MembraneKernel<Law>::rest(RestTriangle::of(level, t), material).template tail<2>());
+  return bind_buckling_law(PrincipalLaw<Law>(), level, numbers, s);
 }
 
 }  // namespace drape

@@ -14,15 +14,15 @@ namespace drape {
 /// A kernel's projected Hessian at the differences d. The projection acts on the whole, or on each of the
 /// kernel's independent parts.
 template <class Kernel, int Size, class T>
-void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projection projection,
-                       SymmetricMatrix<Size, T>& h) {
+void projected_hessian(const Kernel& kernel, const Eigen::Matrix<T, 3, 1>* d, const T* rest,
+                       Projection projection, SymmetricMatrix<Size, T>& h) {
   Eigen::Matrix<T, Size, Size> full;
   const auto project = [&](auto& part) { project_part(part, projection); };
-  if constexpr (requires { Kernel::hessian(d, rest, full, project); }) {
-    Kernel::hessian(d, rest, full, project);
+  if constexpr (requires { kernel.hessian(d, rest, full, project); }) {
+    kernel.hessian(d, rest, full, project);
     h = SymmetricMatrix<Size, T>(full);
   } else {
-    Kernel::hessian(d, rest, full);
+    kernel.hessian(d, rest, full);
     h = SymmetricMatrix<Size, T>(full);
     if constexpr (!Kernel::convex) project_hessian(h, projection);
   }
@@ -45,13 +45,15 @@ void projected_hessian(const Eigen::Matrix<T, 3, 1>* d, const T* rest, Projectio
 /// which calls map(part) on each small symmetric part (upper triangle) and assembles the results. The
 /// projection then acts in those coordinates and is much cheaper.
 ///
-/// NaN values count as +∞.
+/// All are static, or const members of a kernel that holds numbers which all elements share. NaN values count
+/// as +∞.
 template <class Kernel, int W = native_pack_width>
 class ElementEnergy final : public BoundEnergy {
  public:
   /// Vertices m×k of the elements, their rest data, and an order of the elements.
-  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order)
-      : packs_(elements, rest, std::move(order)) {}
+  ElementEnergy(const Stencils& elements, const std::vector<typename Kernel::Rest>& rest, ElementOrder order,
+                Kernel kernel = {})
+      : packs_(elements, rest, std::move(order)), kernel_(std::move(kernel)) {}
 
   // A pack stays in registers only if everything is inlined, the kernel included: hence `flatten`.
   double value(const Positions& x) const override {
@@ -60,7 +62,7 @@ class ElementEnergy final : public BoundEnergy {
           first, end, [&](const Elements& pack) __attribute__((flatten)) {
             Vector d[k - 1];
             pack.gather(x, d);
-            return Kernel::value(d, pack.rest);
+            return kernel_.value(d, pack.rest);
           });
     });
   }
@@ -71,7 +73,7 @@ class ElementEnergy final : public BoundEnergy {
           first, end, [&](const Elements& pack) __attribute__((flatten)) {
             Vector d[k - 1], by_difference[k - 1];
             pack.gather(x, d);
-            const T energy = Kernel::gradient(d, pack.rest, by_difference);
+            const T energy = kernel_.gradient(d, pack.rest, by_difference);
             pack.scatter(by_difference, g);
             return energy;
           });
@@ -86,7 +88,7 @@ class ElementEnergy final : public BoundEnergy {
         Vector d[k - 1];
         Hessian h;
         packs_[p].gather(x, d);
-        projected_hessian<Kernel>(d, packs_[p].rest, projection, h);
+        projected_hessian(kernel_, d, packs_[p].rest, projection, h);
         packs_[p].scatter(h, sink);
       }
     });
@@ -108,6 +110,7 @@ class ElementEnergy final : public BoundEnergy {
   }
 
   Packs packs_;
+  [[no_unique_address]] Kernel kernel_;
 };
 
 }  // namespace drape

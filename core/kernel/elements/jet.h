@@ -1,15 +1,20 @@
 #pragma once
 
+#include <algorithm>
+#include <concepts>
 #include <type_traits>
+
+#include "core/kernel/linear_algebra/pack.h"
 
 namespace drape {
 
 /// A number that depends on N variables, with its first and second derivatives: exact, by the rules of
 /// calculus. T is double, a Pack, or anything with their arithmetic, such as the terms of a formula that is
-/// being compiled.
+/// being compiled. The value has the same bits for any N. core/kernel/elements/jet_functions.h has sqrt, log
+/// and so on.
 template <int N, class T>
 struct Jet {
-  static constexpr int pairs = N * (N + 1) / 2;
+  static constexpr int variables = N, pairs = N * (N + 1) / 2;
   static constexpr int index(int i, int j) { return i <= j ? j * (j + 1) / 2 + i : i * (i + 1) / 2 + j; }
 
   T value;
@@ -42,7 +47,7 @@ struct Jet {
   }
   friend Jet operator*(const Jet& a, const Jet& b) {
     Jet r;
-    r.value = a.value * b.value;
+    r.value = rounded(a.value * b.value);
     for (int i = 0; i < N; ++i) r.first[i] = a.value * b.first[i] + a.first[i] * b.value;
     for (int j = 0; j < N; ++j)
       for (int i = 0; i <= j; ++i) {
@@ -64,6 +69,69 @@ struct Jet {
             ((a.second[k] - r.value * b.second[k]) - (r.first[i] * b.first[j] + r.first[j] * b.first[i])) *
             inverse;
       }
+    return r;
+  }
+
+  // With a number that depends on no variable: the same without the terms of 0.
+  template <std::convertible_to<T> S>
+  friend Jet operator+(const Jet& a, const S& b) {
+    Jet r = a;
+    r.value = a.value + b;
+    return r;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator+(const S& a, const Jet& b) {
+    return b + a;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator-(const Jet& a, const S& b) {
+    return a + -b;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator-(const S& a, const Jet& b) {
+    return -b + a;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator*(const S& a, const Jet& b) {
+    const T factor(a);
+    return combined(b, b, rounded(factor * b.value), [&](const T& x, const T&) { return factor * x; });
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator*(const Jet& a, const S& b) {
+    return b * a;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator/(const Jet& a, const S& b) {
+    return (T(1.0) / T(b)) * a;
+  }
+  template <std::convertible_to<T> S>
+  friend Jet operator/(const S& a, const Jet& b) {
+    const T value = T(a) / b.value, first = -value / b.value;
+    return chain(b, value, first, -2.0 * first / b.value);
+  }
+
+  // Comparisons are those of the values; a number is compared as a constant.
+  friend auto operator<(const Jet& a, const Jet& b) { return a.value < b.value; }
+  friend auto operator<=(const Jet& a, const Jet& b) { return a.value <= b.value; }
+  friend auto operator>(const Jet& a, const Jet& b) { return a.value > b.value; }
+  friend auto operator>=(const Jet& a, const Jet& b) { return a.value >= b.value; }
+  /// a where the condition holds, else b, with its derivatives.
+  template <class Mask>
+  friend Jet select(const Mask& condition, const Jet& a, const Jet& b) {
+    const auto pick = [&](const T& x, const T& y) { return select(condition, x, y); };
+    return combined(a, b, pick(a.value, b.value), pick);
+  }
+  /// Derivatives are those of the argument that is chosen, the first at a tie.
+  friend Jet min(const Jet& a, const Jet& b) {
+    using std::min;
+    Jet r = select(b.value < a.value, b, a);
+    r.value = min(a.value, b.value);
+    return r;
+  }
+  friend Jet max(const Jet& a, const Jet& b) {
+    using std::max;
+    Jet r = select(a.value < b.value, b, a);
+    r.value = max(a.value, b.value);
     return r;
   }
 

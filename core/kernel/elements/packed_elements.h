@@ -11,7 +11,7 @@
 namespace drape {
 
 /// The elements of an energy in packs of W with their rest numbers, chunk by chunk of an order, and sums over
-/// them. NaN energies count as +∞.
+/// them. Energies that are NaN or -∞ count as +∞.
 template <int k, int rest_size, int W>
 class PackedElements {
  public:
@@ -46,7 +46,8 @@ class PackedElements {
   class Sum {
    public:
     void add(T energy, int active) {
-      energy = select(energy == energy, energy, std::numeric_limits<double>::infinity());
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      energy = select(energy > -infinity, energy, infinity);
       for (int lane = active; lane < W; ++lane) energy.v[lane] = 0;
       sum_ += energy;
     }

@@ -94,7 +94,8 @@ struct StretchDerivatives {
 ///     T value(const T& s1, const T& s2, const T* constants);
 ///     StretchSlopes<T> slopes(const T& s1, const T& s2, const T* constants);
 ///
-/// A symmetric function Φ(σ₁, σ₂) of both stretches has CoupledSlopes instead.
+/// A symmetric function Φ(σ₁, σ₂) of both stretches has CoupledSlopes instead. Both are static, or const
+/// members of a Law that holds numbers which all triangles share.
 template <class Law>
 struct StretchKernel {
   static constexpr int vertices = 3;
@@ -103,32 +104,34 @@ struct StretchKernel {
   template <class T>
   using Vector = Eigen::Matrix<T, 3, 1>;
 
+  [[no_unique_address]] Law law;
+
   template <class T>
-  static T value(const Vector<T>* e, const T* rest) {
+  T value(const Vector<T>* e, const T* rest) const {
     return energy<T>(e, rest);
   }
 
   /// g receives the derivatives by e₁ and e₂; returns the energy.
   template <class T>
-  static T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) {
+  T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) const {
     const auto s = stretch(e, rest);
-    StretchDerivatives<T>::gradient(s, Law::slopes(s.largest, s.smallest, rest + 3), rest, g);
+    StretchDerivatives<T>::gradient(s, law.slopes(s.largest, s.smallest, rest + 3), rest, g);
     return energy<T>(e, rest);
   }
 
   /// The upper blocks of the 6×6 Hessian by (e₁, e₂).
   template <class T>
-  static void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) {
+  void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) const {
     const auto s = stretch(e, rest);
-    StretchDerivatives<T>::hessian(s, Law::slopes(s.largest, s.smallest, rest + 3), rest, h);
+    StretchDerivatives<T>::hessian(s, law.slopes(s.largest, s.smallest, rest + 3), rest, h);
   }
 
  private:
   // Out of line: value and gradient must return the same bits.
   template <class T>
-  [[gnu::noinline]] static T energy(const Vector<T>* e, const T* rest) {
+  [[gnu::noinline]] T energy(const Vector<T>* e, const T* rest) const {
     const auto s = stretch(e, rest);
-    return Law::value(s.largest, s.smallest, rest + 3);
+    return law.value(s.largest, s.smallest, rest + 3);
   }
 
   template <class T>

@@ -113,6 +113,10 @@ template <int W>
 Pack<W> select(PackMask<W> m, double yes, Pack<W> no) {
   return select(m, Pack<W>(yes), no);
 }
+template <int W>
+Pack<W> select(PackMask<W> m, double yes, double no) {
+  return select(m, Pack<W>(yes), Pack<W>(no));
+}
 inline double select(bool m, double yes, double no) { return m ? yes : no; }
 
 template <int W>
@@ -128,6 +132,30 @@ bool any(PackMask<W> m) {
   return false;
 }
 inline bool any(bool m) { return m; }
+
+/// A product that a compiler must round before it is added: not to be fused with a sum, so that a sum of
+/// products has the same bits wherever it is compiled. Other types than double and Pack pass as they are.
+template <class T>
+T rounded(const T& product) {
+  return product;
+}
+#if defined(__x86_64__) || defined(__aarch64__)
+#ifdef __x86_64__
+#define DRAPE_VECTOR_REGISTER "+v"
+#else
+#define DRAPE_VECTOR_REGISTER "+w"
+#endif
+inline double rounded(double product) {
+  asm("" : DRAPE_VECTOR_REGISTER(product));
+  return product;
+}
+template <int W>
+Pack<W> rounded(Pack<W> product) {
+  asm("" : DRAPE_VECTOR_REGISTER(product.v));
+  return product;
+}
+#undef DRAPE_VECTOR_REGISTER
+#endif
 
 /// As std::min and std::max in each lane: the first argument if either is NaN.
 template <int W>

@@ -3,30 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/linear_algebra/pack.h"
+#include "core/kernel/linear_algebra/pack_functions.h"
 #include "plugins/energy/formula/term.h"
 
 namespace drape::formula {
-
-/// A function of the standard library in each lane.
-template <class Function>
-double in_lanes(double a, const Function& f) {
-  return f(a);
-}
-template <int W, class Function>
-Pack<W> in_lanes(Pack<W> a, const Function& f) {
-  for (int i = 0; i < W; ++i) a.v[i] = f(a.v[i]);
-  return a;
-}
-template <class Function>
-double in_lanes(double a, double b, const Function& f) {
-  return f(a, b);
-}
-template <int W, class Function>
-Pack<W> in_lanes(Pack<W> a, const Pack<W>& b, const Function& f) {
-  for (int i = 0; i < W; ++i) a.v[i] = f(a.v[i], b.v[i]);
-  return a;
-}
 
 /// 1 where the mask holds, else 0; NaN where a or b is.
 template <class T, class Mask>
@@ -38,7 +18,8 @@ T condition(const Mask& mask, const T& a, const T& b) {
 /// The operation of a term, other than an input, on double or Pack.
 template <class T>
 [[gnu::always_inline]] inline T evaluate(Op op, const T& a, const T& b, const T& c) {
-  using std::abs, std::atan2, std::log, std::sqrt;
+  using std::abs, std::acos, std::asin, std::atan, std::atan2, std::cos, std::cosh, std::exp, std::expm1,
+      std::log, std::log1p, std::pow, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
   switch (op) {
     case Op::add:
       return a + b;
@@ -53,41 +34,39 @@ template <class T>
     case Op::square_root:
       return sqrt(a);
     case Op::exp:
-      return in_lanes(a, [](double x) { return std::exp(x); });
+      return exp(a);
     case Op::expm1:
-      return in_lanes(a, [](double x) { return std::expm1(x); });
+      return expm1(a);
     case Op::log:
       return log(a);
     case Op::log1p:
-      return in_lanes(a, [](double x) { return std::log1p(x); });
+      return log1p(a);
     case Op::sin:
-      return in_lanes(a, [](double x) { return std::sin(x); });
+      return sin(a);
     case Op::cos:
-      return in_lanes(a, [](double x) { return std::cos(x); });
+      return cos(a);
     case Op::tan:
-      return in_lanes(a, [](double x) { return std::tan(x); });
+      return tan(a);
     case Op::asin:
-      return in_lanes(a, [](double x) { return std::asin(x); });
+      return asin(a);
     case Op::acos:
-      return in_lanes(a, [](double x) { return std::acos(x); });
+      return acos(a);
     case Op::atan:
-      return in_lanes(a, [](double x) { return std::atan(x); });
+      return atan(a);
     case Op::atan2:
       return atan2(a, b);
     case Op::sinh:
-      return in_lanes(a, [](double x) { return std::sinh(x); });
+      return sinh(a);
     case Op::cosh:
-      return in_lanes(a, [](double x) { return std::cosh(x); });
+      return cosh(a);
     case Op::tanh:
-      return in_lanes(a, [](double x) { return std::tanh(x); });
+      return tanh(a);
     case Op::pow:
-      return in_lanes(a, b, [](double x, double y) { return std::pow(x, y); });
+      return pow(a, b);
     case Op::abs:
       return abs(a);
-    case Op::sign: {
-      const T up = select(a > 0.0, T(1.0), a);  // zero and NaN stay
-      return select(a < 0.0, T(-1.0), up);
-    }
+    case Op::sign:
+      return sign(a);
     case Op::min: {
       const T least = select(b < a, b, a);
       return select(b == b, least, b);

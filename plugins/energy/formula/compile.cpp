@@ -2,7 +2,9 @@
 
 #include <map>
 #include <string>
+#include <type_traits>
 
+#include "core/kernel/elements/green_strain.h"
 #include "plugins/energy/formula/differentiate.h"
 
 namespace drape::formula {
@@ -76,25 +78,6 @@ class Compiler {
   std::map<std::string, J> names_;
 };
 
-/// J and its logarithm from det C and the strains, whose jets are the first three variables.
-template <int N>
-void define_area_ratio(Compiler<N>& c) {
-  using I = TriangleInput;
-  const Term g11 = c.read(I::g11), g22 = c.read(I::g22), g12 = c.read(I::g12);
-  Jet<N, Term> det(c.read(I::det));
-  det.first[0] = 2.0 * (1.0 + 2.0 * g22);
-  det.first[1] = 2.0 * (1.0 + 2.0 * g11);
-  det.first[2] = -8.0 * g12;
-  det.second[det.index(0, 1)] = 4.0;
-  det.second[det.index(2, 2)] = -8.0;
-  c.define("J", Differentiate<N>::square_root(det));
-  // det C - 1 to first order near 1, where det C itself has lost digits.
-  const Term inverse = 1.0 / det.value, minus_1 = 2.0 * (g11 + g22) + 4.0 * (g11 * g22 - g12 * g12),
-             lost = minus_1 - (det.value - 1.0);
-  const Term logarithm = 0.5 * (apply(Op::log, det.value) + lost * apply(Op::min, det.value, inverse));
-  c.define("log J", chain(det, logarithm, 0.5 * inverse, -0.5 * (inverse * inverse)));
-}
-
 template <int N>
 void define_rest(Compiler<N>& c) {
   using I = TriangleInput;
@@ -125,7 +108,11 @@ Programs compile_triangle(const Law& law, const Material& material, TriangleVari
     c.define("g11", c.variable(I::g11, 0));
     c.define("g22", c.variable(I::g22, 1));
     c.define("g12", c.variable(I::g12, 2));
-    define_area_ratio(c);
+    using J = typename std::remove_reference_t<decltype(c)>::J;
+    const auto ratio =
+        area_ratio<J::variables>(c.read(I::g11), c.read(I::g22), c.read(I::g12), c.read(I::det));
+    c.define("J", J(ratio));
+    c.define("log J", log(ratio));
   };
   if (variables == TriangleVariables::strains) {
     Compiler<3> c(law, material);

@@ -1,14 +1,7 @@
 #include "plugins/energy/formula/hinge.h"
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <string>
-
 #include "core/kernel/elements/batched_energy.h"
-#include "core/kernel/elements/dihedral_angle.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/kernel/elements/fold_formula.h"
 #include "plugins/energy/formula/compile.h"
 #include "plugins/energy/formula/strain_kernel.h"
 
@@ -19,22 +12,12 @@ namespace {
 class HingeFormulaKernel {
  public:
   static constexpr int vertices = 4, batch = batch_packs;
-  using Rest = Eigen::Matrix<double, 5, 1>;  ///< HingeInput from `rest` to `area`
+  using Rest = RestHinge;  ///< HingeInput from `rest` to `w`
   using T = Pack<native_pack_width>;
   using Batch = ElementBatch<4, native_pack_width, batch>;
   using Vector = Batch::Vector;
 
-  HingeFormulaKernel(Programs programs, Places<4, 2> places)
-      : programs_(std::move(programs)), places_(std::move(places)) {}
-
-  /// From the rest vectors e, u, v [m] of a hinge.
-  static Rest rest(const Eigen::Vector3d* x) {
-    const double length = x[0].norm(), area1 = x[0].cross(x[1]).norm() / 2,
-                 area2 = x[0].cross(x[2]).norm() / 2;
-    Rest r;
-    r << DihedralAngle<double>(x).angle(), length, 2 * area1 / length, 2 * area2 / length, area1 + area2;
-    return r;
-  }
+  explicit HingeFormulaKernel(Programs programs) : programs_(std::move(programs)) {}
 
   void value(const Batch& packs, T* energies) const {
     T registers[Program::slots * batch];
@@ -82,13 +65,11 @@ class HingeFormulaKernel {
       for (int v = 0; kept && v < 3; ++v) kept[i][v] = d[v];
       bend[i] = bend_from(rest[0], DihedralAngle<T>(d).angle());
       for (int r = 0; r < numbers; ++r) registers[of_rest[r] + i] = rest[r];
-      places_.fill(program, registers, i, *packs.elements[i], HingeInput::u);
     }
     program.run<T, batch>(registers);
   }
 
   Programs programs_;
-  Places<4, 2> places_;
 };
 
 /// The energy of a hinge at rest but for its bend.
@@ -106,63 +87,22 @@ double energy_at(const Program& p, double bend, double length, double h1, double
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
-  const Stencils& hinges = level.hinges;
-  std::vector<HingeFormulaKernel::Rest> rest;
-  for (Eigen::Index h = 0; h < hinges.rows(); ++h) {
-    rest.push_back(HingeFormulaKernel::rest(rest_vectors(level, h).data()));
-    if (!rest.back().allFinite() || !(rest.back()[2] > 0) || !(rest.back()[3] > 0))
-      throw std::runtime_error("a triangle at the edge of vertices " + std::to_string(hinges(h, 0)) +
-                               " and " + std::to_string(hinges(h, 1)) + " of level " +
-                               std::to_string(level.index) + " has no area at rest");
-  }
-  HingeFormulaKernel kernel(compile_hinge(law, material),
-                            law.depends_on_place() ? Places<4, 2>(level) : Places<4, 2>());
-  return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), hinges, rest,
+  std::vector<RestHinge> rest;
+  for (Eigen::Index h = 0; h < level.hinges.rows(); ++h) rest.push_back(rest_hinge(level, h));
+  HingeFormulaKernel kernel(compile_hinge(law, material));
+  return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), level.hinges, rest,
                                                              level.hinge_order);
 }
 
-// Of a hinge that is split at midpoints, both halves keep its angles, with half its lengths. The new hinges
-// inside a triangle are flat.
 std::optional<double> hinge_midpoint_factor(const Law& law, const Material& material) {
   if (law.depends_on_place()) return std::nullopt;
   const Program p = compile_hinge(law, material).value;
-  constexpr double lengths[][3] = {{0.01, 0.013, 0.007}, {0.2, 0.11, 0.14}};
-  std::optional<double> factor;
-  for (const auto& l : lengths) {
-    const double most = std::abs(energy_at(p, 1, l[0], l[1], l[2]));
-    if (!(std::abs(energy_at(p, 0, l[0] / 2, l[1] / 2, l[2] / 2)) <= 1e-14 * most)) return std::nullopt;
-    for (const double bend : {-2.0, -0.3, 0.1, 0.7, 1.9}) {
-      const double own =
-          2 * energy_at(p, bend, l[0] / 2, l[1] / 2, l[2] / 2) / energy_at(p, bend, l[0], l[1], l[2]);
-      if (!factor) factor = std::round(own * 1e9) / 1e9;
-      if (!(std::abs(own - *factor) <= 1e-9 * std::abs(own))) return std::nullopt;
-    }
-  }
-  return factor;
+  return fold_midpoint_factor(
+      [&](double bend, double length, double h1, double h2) { return energy_at(p, bend, length, h1, h2); });
 }
 
-// What the borders have cancels between four sheets. Bent to both sides, so that forces at rest cancel too.
 double hinge_plate_stiffness(const Law& law, const Material& material) {
-  constexpr double cell = 0.01, radius = 100 * cell;
-  constexpr int n = 3;
-  const auto excess = [&](int columns, int rows) {
-    const Level level =
-        Level::of(0, grid({columns * cell, rows * cell}, columns + 1, rows + 1, Diagonals::one_way));
-    const auto energy = bind_hinges(law, level, material);
-    const auto rolled = [&](double side) {
-      Positions x = level.rest.vertices;
-      for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const double angle = x(i, 0) / radius;
-        x(i, 0) = radius * std::sin(angle);
-        x(i, 2) = side * radius * (1 - std::cos(angle));
-      }
-      return energy->value(x);
-    };
-    return rolled(1) + rolled(-1) - 2 * energy->value(level.rest.vertices);
-  };
-  const double inner = excess(2 * n, 2 * n) - excess(n, 2 * n) - excess(2 * n, n) + excess(n, n);
-  const double stiffness = inner / std::pow(n * cell, 2) * (radius * radius);
-  return std::isfinite(stiffness) ? std::max(stiffness, 0.0) : 0;
+  return fold_plate_stiffness([&](const Level& level) { return bind_hinges(law, level, material); });
 }
 
 }  // namespace drape::formula

@@ -1,7 +1,5 @@
 #include "plugins/energy/formula/strain_kernel.h"
 
-#include <algorithm>
-
 namespace drape::formula {
 namespace {
 
@@ -30,26 +28,27 @@ CoupledSlopes<T> slopes_of(const PrincipalStretch<T>& s, const T& first1, const 
   using I = TriangleInput;
   const auto of = [&](I input) { return registers + program.register_of(input) * batch; };
   T *const g11 = of(I::g11), *const g22 = of(I::g22), *const g12 = of(I::g12), *const det = of(I::det),
-           *const s1 = of(I::s1), *const s2 = of(I::s2), *const area = of(I::area);
+           *const s1 = of(I::s1), *const s2 = of(I::s2);
+  T* const of_rest[] = {of(I::area), of(I::u), of(I::v), of(I::w)};
   const bool reads_det = program.reads(I::det),
              reads_stretches = with_stretches_ && (program.reads(I::s1) || program.reads(I::s2));
+  const int numbers = program.reads(I::u) || program.reads(I::v) || program.reads(I::w) ? 4 : 1;
   for (int i = 0; i < batch; ++i) {
     const T* m = packs.rest[i];
     Vector e[2];
     packs.gather(i, e);
-    const Deformation f = {e[0] * m[0] + e[1] * m[1], e[0] * m[2] + e[1] * m[3]};
-    if (kept) kept[i] = f;
-    g11[i] = 0.5 * (f.f1.squaredNorm() - 1.0);
-    g22[i] = 0.5 * (f.f2.squaredNorm() - 1.0);
-    g12[i] = 0.5 * f.f1.dot(f.f2);
-    if (reads_det) det[i] = f.f1.cross(f.f2).squaredNorm();
+    const GreenStrain<T> g(e, m);
+    if (kept) kept[i] = {g.f1, g.f2};
+    g11[i] = g.g11;
+    g22[i] = g.g22;
+    g12[i] = g.g12;
+    if (reads_det) det[i] = g.det();
     if (reads_stretches) {
-      const PrincipalStretch<T> s(f.f1, f.f2);
+      const PrincipalStretch<T> s(g.f1, g.f2);
       s1[i] = s.largest;
       s2[i] = s.smallest;
     }
-    area[i] = m[4];
-    places_.fill(program, registers, i, *packs.elements[i], I::u);
+    for (int r = 0; r < numbers; ++r) of_rest[r][i] = m[4 + r];
   }
 }
 
@@ -119,35 +118,15 @@ StrainKernel::ByStrains StrainKernel::by_strains(const Deformation& f, const T* 
   for (int i = 0; i < batch; ++i) {
     const Deformation& f = kept[i];
     const ByStrains w = first_by_strains(f, registers, program, i, 1);
-    const T shear = 0.5 * w.first[2];
-    const Vector p1 = f.f1 * w.first[0] + f.f2 * shear, p2 = f.f1 * shear + f.f2 * w.first[1];
-    const T* m = packs.rest[i];
-    g[i][0] = p1 * m[0] + p2 * m[2];
-    g[i][1] = p1 * m[1] + p2 * m[3];
+    StrainDerivatives<T>::gradient(f.f1, f.f2, w.first, packs.rest[i], g[i]);
   }
 }
 
 [[gnu::flatten]] void StrainKernel::exact_hessian(const Deformation& f, const T* m, const T* registers, int i,
                                                   Batch::Hessian& h) const {
-  using Block = Eigen::Matrix<T, 3, 3>;
   const ByStrains w = by_strains(f, registers, i);
-  const auto second = [&](int j, int k) { return w.second[Jet<3, T>::index(j, k)]; };
-  const T shear = 0.5 * w.first[2], c1 = 0.5 * second(0, 2), c2 = 0.5 * second(1, 2),
-          cc = 0.25 * second(2, 2);
-  // The matrix by (f₁, f₂): rows are f₁ or f₂ times what each column takes of f₁ and f₂.
-  const Vector u1 = f.f1 * second(0, 0) + f.f2 * c1, u2 = f.f1 * c1 + f.f2 * cc;
-  const Vector v1 = f.f2 * second(0, 1) + f.f1 * c1, v2 = f.f2 * c2 + f.f1 * cc;
-  const Vector w1 = f.f2 * second(1, 1) + f.f1 * c2;
-  Block h11 = f.f1 * u1.transpose() + f.f2 * u2.transpose();
-  Block h12 = f.f1 * v1.transpose() + f.f2 * v2.transpose();
-  Block h22 = f.f2 * w1.transpose() + f.f1 * v2.transpose();
-  for (int c = 0; c < 3; ++c) h11(c, c) += w.first[0], h22(c, c) += w.first[1], h12(c, c) += shear;
   Eigen::Matrix<T, 6, 6> full;
-  const Block symmetric = h12 + h12.transpose();
-  full.block<3, 3>(0, 0) = h11 * (m[0] * m[0]) + symmetric * (m[0] * m[2]) + h22 * (m[2] * m[2]);
-  full.block<3, 3>(0, 3) =
-      h11 * (m[0] * m[1]) + h12 * (m[0] * m[3]) + h12.transpose() * (m[2] * m[1]) + h22 * (m[2] * m[3]);
-  full.block<3, 3>(3, 3) = h11 * (m[1] * m[1]) + symmetric * (m[1] * m[3]) + h22 * (m[3] * m[3]);
+  StrainDerivatives<T>::hessian(f.f1, f.f2, w.first, w.second, m, full);
   h = Batch::Hessian(full);
 }
 
@@ -166,7 +145,9 @@ void StrainKernel::hessian(const Batch& packs, Projection projection, Batch::Hes
                                                                 T* registers, Deformation* kept) const {
   T* const s1 = registers + program.register_of(TriangleInput::s1) * batch;
   T* const s2 = registers + program.register_of(TriangleInput::s2) * batch;
-  T* const area = registers + program.register_of(TriangleInput::area) * batch;
+  T* of_rest[4];
+  for (int r = 0; r < 4; ++r)
+    of_rest[r] = registers + program.register_of(static_cast<int>(TriangleInput::area) + r) * batch;
   for (int i = 0; i < batch; ++i) {
     const T* rest = packs.rest[i];
     Vector e[2];
@@ -176,8 +157,7 @@ void StrainKernel::hessian(const Batch& packs, Projection projection, Batch::Hes
     const PrincipalStretch<T> s(f.f1, f.f2);
     s1[i] = s.largest;
     s2[i] = s.smallest;
-    area[i] = rest[3];
-    places_.fill(program, registers, i, *packs.elements[i], TriangleInput::u);
+    for (int r = 0; r < 4; ++r) of_rest[r][i] = rest[3 + r];
   }
 }
 

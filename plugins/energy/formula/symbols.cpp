@@ -1,10 +1,10 @@
 #include "plugins/energy/formula/symbols.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
+#include <utility>
 
-#include "core/kernel/elements/bending_stiffness.h"
+#include "core/kernel/elements/formula_law.h"
 #include "core/kernel/plugin/string_utils.h"
 #include "plugins/energy/formula/functions.h"
 
@@ -74,16 +74,12 @@ bool is_of_material(const std::string& symbol) {
 }
 
 double material_value(const std::string& symbol, const Material& m) {
-  const double nu = m.poisson_ratio;
-  if (symbol == "E") return m.membrane_modulus;
-  if (symbol == "E_bend") return m.bending_modulus;
-  if (symbol == "nu") return nu;
-  if (symbol == "mu") return m.membrane_modulus / (2 * (1 + nu));
-  if (symbol == "lambda") return m.membrane_modulus * nu / (1 - nu * nu);
-  if (symbol == "k") return bending_stiffness(m);
-  if (symbol == "rho") return m.density;
-  if (symbol == "thickness") return m.thickness;
-  if (symbol == "pi") return std::numbers::pi;
+  const MaterialSymbols s(m);
+  for (const auto& [name, value] :
+       {std::pair{"E", s.E}, std::pair{"E_bend", s.E_bend}, std::pair{"nu", s.nu}, std::pair{"mu", s.mu},
+        std::pair{"lambda", s.lambda}, std::pair{"k", s.k}, std::pair{"rho", s.rho},
+        std::pair{"thickness", s.thickness}, std::pair{"pi", s.pi}})
+    if (symbol == name) return value;
   throw std::logic_error("no material symbol " + symbol);
 }
 

@@ -57,6 +57,10 @@ enum class Op : std::uint8_t {
 int arguments_of(Op op);
 
 class TermGraph;
+struct Term;
+
+/// Any operation; literals are evaluated.
+Term apply(Op op, const Term& a, const Term& b, const Term& c);
 
 /// A number that a program computes: a literal, or a node of a graph. With its operators a Jet of terms
 /// derives the program of the derivatives.
@@ -69,6 +73,35 @@ struct Term {
   Term(double value) : literal(value) {}
   Term(TermGraph* graph_in, int node_in) : graph(graph_in), node(node_in) {}
   bool is(double value) const { return !graph && literal == value; }
+
+  // What jets of terms call (core/kernel/elements/jet_functions.h).
+#define DRAPE_OPERATION(name, op) \
+  friend Term name(const Term& a) { return apply(Op::op, a, {}, {}); }
+  DRAPE_OPERATION(sqrt, square_root)
+  DRAPE_OPERATION(exp, exp)
+  DRAPE_OPERATION(expm1, expm1)
+  DRAPE_OPERATION(log, log)
+  DRAPE_OPERATION(log1p, log1p)
+  DRAPE_OPERATION(sin, sin)
+  DRAPE_OPERATION(cos, cos)
+  DRAPE_OPERATION(tan, tan)
+  DRAPE_OPERATION(asin, asin)
+  DRAPE_OPERATION(acos, acos)
+  DRAPE_OPERATION(atan, atan)
+  DRAPE_OPERATION(sinh, sinh)
+  DRAPE_OPERATION(cosh, cosh)
+  DRAPE_OPERATION(tanh, tanh)
+  DRAPE_OPERATION(abs, abs)
+  DRAPE_OPERATION(sign, sign)
+#undef DRAPE_OPERATION
+  friend Term atan2(const Term& y, const Term& x) { return apply(Op::atan2, y, x, {}); }
+  friend Term pow(const Term& a, const Term& b) { return apply(Op::pow, a, b, {}); }
+  friend Term min(const Term& a, const Term& b) { return apply(Op::min, a, b, {}); }
+  friend Term max(const Term& a, const Term& b) { return apply(Op::max, a, b, {}); }
+  friend Term operator<(const Term& a, const Term& b) { return apply(Op::less, a, b, {}); }
+  friend Term select(const Term& condition, const Term& a, const Term& b) {
+    return apply(Op::choose, condition, a, b);
+  }
 };
 
 Term operator+(const Term& a, const Term& b);
@@ -76,8 +109,7 @@ Term operator-(const Term& a, const Term& b);
 Term operator*(const Term& a, const Term& b);
 Term operator/(const Term& a, const Term& b);
 Term operator-(const Term& a);
-/// Any operation; literals are evaluated.
-Term apply(Op op, const Term& a, const Term& b = {}, const Term& c = {});
+inline Term apply(Op op, const Term& a, const Term& b = {}) { return apply(op, a, b, {}); }
 
 /// The terms of a program. Equal terms are one node, so nothing is computed twice.
 class TermGraph {

@@ -209,7 +209,7 @@ void BoundMidedgeBending::add_hessian(const Positions& x, Projection projection,
           SymmetricMatrix<9, Pack<W>> h;
           pack.gather(x, d);
           const Pack<W> moment = moments(pack, numbers);
-          projected_hessian<MomentKernel>(d, &moment, projection, h);
+          projected_hessian(MomentKernel(), d, &moment, projection, h);
           pack.scatter(h, sink);
         });
   });

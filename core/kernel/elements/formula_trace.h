@@ -1,0 +1,69 @@
+#pragma once
+
+#include <algorithm>
+
+namespace drape {
+
+/// What a formula depends on: evaluated on traces in place of numbers, it returns one. A comparison is a
+/// trace too.
+struct Trace {
+  int degree = 0;      ///< in the variables: 0 constant, 1 linear, 2 anything else
+  bool place = false;  ///< whether it reads where the element is at rest
+  bool size = false;   ///< whether it reads how large the element is
+
+  Trace(double = 0) {}
+  Trace(int degree_in, bool place_in, bool size_in) : degree(degree_in), place(place_in), size(size_in) {}
+
+  friend Trace operator+(const Trace& a, const Trace& b) {
+    return joined(a, b, std::max(a.degree, b.degree));
+  }
+  friend Trace operator-(const Trace& a, const Trace& b) { return a + b; }
+  friend Trace operator-(const Trace& a) { return a; }
+  friend Trace operator*(const Trace& a, const Trace& b) { return joined(a, b, a.degree + b.degree); }
+  friend Trace operator/(const Trace& a, const Trace& b) { return a * of_function(b); }
+  friend Trace operator!(const Trace& a) { return a; }
+
+#define DRAPE_TRACE(function) \
+  friend Trace function(const Trace& a) { return of_function(a); }
+  DRAPE_TRACE(sqrt)
+  DRAPE_TRACE(exp)
+  DRAPE_TRACE(expm1)
+  DRAPE_TRACE(log)
+  DRAPE_TRACE(log1p)
+  DRAPE_TRACE(sin)
+  DRAPE_TRACE(cos)
+  DRAPE_TRACE(tan)
+  DRAPE_TRACE(asin)
+  DRAPE_TRACE(acos)
+  DRAPE_TRACE(atan)
+  DRAPE_TRACE(sinh)
+  DRAPE_TRACE(cosh)
+  DRAPE_TRACE(tanh)
+  DRAPE_TRACE(abs)
+  DRAPE_TRACE(sign)
+#undef DRAPE_TRACE
+#define DRAPE_TRACE(function) \
+  friend Trace function(const Trace& a, const Trace& b) { return of_function(a + b); }
+  DRAPE_TRACE(atan2)
+  DRAPE_TRACE(pow)
+  DRAPE_TRACE(min)
+  DRAPE_TRACE(max)
+  DRAPE_TRACE(operator<)
+  DRAPE_TRACE(operator<=)
+  DRAPE_TRACE(operator>)
+  DRAPE_TRACE(operator>=)
+  DRAPE_TRACE(operator&)
+  DRAPE_TRACE(operator|)
+#undef DRAPE_TRACE
+  friend Trace select(const Trace& condition, const Trace& a, const Trace& b) {
+    return of_function(condition) + a + b;
+  }
+
+ private:
+  static Trace joined(const Trace& a, const Trace& b, int degree) {
+    return {std::min(degree, 2), a.place || b.place, a.size || b.size};
+  }
+  static Trace of_function(const Trace& a) { return {a.degree ? 2 : 0, a.place, a.size}; }
+};
+
+}  // namespace drape

@@ -1,0 +1,148 @@
+#include "core/kernel/elements/energy_formula.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "core/kernel/mesh/generate.h"
+#include "core/kernel/model/derivative_check.h"
+#include "tests/support/evaluate.h"
+#include "tests/support/kernel_check.h"
+#include "tests/support/unregistered.h"
+
+namespace {
+
+struct Woven {
+  double warp = 2e3, weft = 5e2;
+  Eigen::Vector3d axis{1, 0, 0};
+  static void declare(drape::Declaration<Woven>& d) {
+    d.add("warp", &Woven::warp);
+    d.add("weft", &Woven::weft);
+    d.add("axis", &Woven::axis);
+  }
+};
+
+}  // namespace
+
+DRAPE_MEMBRANE(woven, "Stiff along warp.", Woven) {
+  return 0.5 * warp * g11 * g11 + 0.5 * weft * g22 * g22 + 60 * g12 * g12;
+}
+DRAPE_MEMBRANE(every_function, "Isotropic.") {
+  const S trace = g11 + g22, l = log(J), q = square(trace) / (1.0 + exp(trace));
+  const S odd = sin(trace) * tanh(l) + atan2(trace, 2.0 + l) * asin(0.1 * trace) - cos(l) * expm1(q);
+  const S kinks = max(trace, 0.3 * l) + select(l > 0.01, pow(l, 3), abs(l) * l) + min(q, 1 / (2 + trace));
+  return thickness * (mu * (trace - l) + lambda / 2 * l * l + mu * (odd + kinks) * pow(J, 1.5) * sqrt(1 + q));
+}
+DRAPE_MEMBRANE(seam, "Stiffer on one side.") { return select(u > 0.5, 2.0, 1.0) * g11 * g11; }
+DRAPE_MEMBRANE(sized, "Depends on the mesh.") { return sqrt(area) * g11 * g11; }
+DRAPE_FOLD(crease, "A plastic rest angle.") { return 3 * k * length * length / area * square(bend - 0.3); }
+DRAPE_FOLD(fold, "As hinge.") { return 3 * k * length * length / area * square(bend); }
+DRAPE_VERTEX(wind, "Constant forces.") { return -2.0 * area * x - 0.5 * mass * z + 1e-3 * area; }
+DRAPE_VERTEX(patch_wind, "On half of the cloth.") { return select(u > 0.5, -2.0 * area, 0.0 * area) * x; }
+DRAPE_VERTEX(gust, "Only above the ground.") { return select(z > 0.01, -2.0 * area * x, 0.0); }
+DRAPE_VERTEX(spring, "To the ground.") { return 200 * mass * z * z; }
+
+using namespace drape;
+
+namespace {
+
+Level sheet() { return Level::of(0, grid({1, 1}, 9, 8, Diagonals::criss_cross)); }
+
+Positions wrinkled(const Level& level, double size = 0.02) {
+  Positions x = level.rest.vertices;
+  const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), 3);
+  return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
+}
+
+/// Derivatives agree with differences of the value, and the gradient's value is the value.
+void check_derivatives(const Energy& energy) {
+  const Level level = sheet();
+  const auto bound = energy.bind(level, Material());
+  const Positions x = wrinkled(level), direction = wrinkled(level, 0.3) - level.rest.vertices;
+  Positions g = Positions::Zero(x.rows(), 3);
+  const double value = bound->value(x), h = 1e-5;
+  REQUIRE(value != 0);
+  CHECK(bound->add_gradient(x, g) == value);
+  const double slope = (bound->value(x + h * direction) - bound->value(x - h * direction)) / (2 * h);
+  CHECK(g.cwiseProduct(direction).sum() == Approx(slope).epsilon(1e-6));
+  if (bound->stencils().rows() == 0) return;
+  const Positions change =
+      (gradient_of(*bound, x + h * direction) - gradient_of(*bound, x - h * direction)) / (2 * h);
+  const auto hessian = hessian_of(*bound, x, Projection::none);
+  Positions product = Positions::Zero(x.rows(), 3);
+  hessian.multiply(direction, product);
+  CHECK((product - change).norm() <= 1e-6 * change.norm());
+}
+
+}  // namespace
+
+TEST_CASE("energy_formula: derivatives of membranes, folds and loads follow from the formula") {
+  check_derivatives(MembraneFormula<formulas::woven>({}));
+  check_derivatives(MembraneFormula<formulas::every_function>({}));
+  check_derivatives(MembraneFormula<formulas::seam>({}));
+  check_derivatives(FoldFormula<formulas::crease>({}));
+  check_derivatives(VertexFormula<formulas::wind>({}));
+  check_derivatives(VertexFormula<formulas::gust>({}));
+  check_derivatives(VertexFormula<formulas::spring>({}));
+}
+
+TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the symbols") {
+  CHECK(MembraneFormula<formulas::woven>({}).role() == EnergyRole::membrane);
+  CHECK(MembraneFormula<formulas::woven>({}).midpoint_factor() == 1);
+  CHECK_FALSE(MembraneFormula<formulas::seam>({}).midpoint_factor());
+  CHECK_FALSE(MembraneFormula<formulas::sized>({}).midpoint_factor());
+  CHECK(FoldFormula<formulas::fold>({}).role() == EnergyRole::bending);
+  CHECK(FoldFormula<formulas::fold>({}).midpoint_factor() == 2);
+  CHECK_FALSE(FoldFormula<formulas::crease>({}).midpoint_factor());
+  CHECK(VertexFormula<formulas::wind>({}).role() == EnergyRole::external);
+  CHECK(VertexFormula<formulas::wind>({}).midpoint_factor() == 1);
+  CHECK_FALSE(VertexFormula<formulas::patch_wind>({}).midpoint_factor());
+  CHECK_FALSE(VertexFormula<formulas::gust>({}).midpoint_factor());
+  CHECK_FALSE(VertexFormula<formulas::spring>({}).midpoint_factor());
+}
+
+TEST_CASE("energy_formula: a load that is linear in positions has no Hessian, another has") {
+  const Level level = sheet();
+  const auto rows = [&](const Energy& energy) { return energy.bind(level, Material())->stencils().rows(); };
+  CHECK(rows(VertexFormula<formulas::wind>({})) == 0);
+  CHECK(rows(VertexFormula<formulas::patch_wind>({})) == 0);
+  CHECK(rows(VertexFormula<formulas::gust>({})) == level.vertex_count());
+  CHECK(rows(VertexFormula<formulas::spring>({})) == level.vertex_count());
+  const Positions g =
+      gradient_of(*VertexFormula<formulas::patch_wind>({}).bind(level, Material()), wrinkled(level));
+  for (int i = 0; i < level.vertex_count(); ++i)
+    CHECK(g(i, 0) == (level.rest.vertices(i, 0) > 0.5 ? -2 * level.vertex_area[i] : 0));
+}
+
+TEST_CASE("energy_formula: an axis turns warp; only an isotropic membrane buckles below the mesh") {
+  const Level level = sheet();
+  Positions x = level.rest.vertices;
+  x.col(1) *= 1.1;
+  const auto energy_with = [&](const Eigen::Vector3d& axis) {
+    Woven parameters;
+    parameters.axis = axis;
+    return MembraneFormula<formulas::woven>(parameters).bind(level, Material())->value(x);
+  };
+  const double g = 0.5 * (1.1 * 1.1 - 1);
+  CHECK(energy_with({1, 0, 0}) == Approx(0.5 * 5e2 * g * g));
+  CHECK(energy_with({0, 2, 0}) == Approx(0.5 * 2e3 * g * g));
+
+  x = 0.9 * level.rest.vertices;
+  const auto plain_and_buckling = [&](const Energy& energy) {
+    return std::pair(energy.bind(level, Material())->value(x),
+                     energy.bind_buckling(level, Material(), 0)->value(x));
+  };
+  const auto [woven, woven_buckling] = plain_and_buckling(MembraneFormula<formulas::woven>({}));
+  CHECK(woven == woven_buckling);
+  const auto [own, buckling] = plain_and_buckling(MembraneFormula<formulas::every_function>({}));
+  CHECK(buckling < 0.5 * own);
+}
+
+TEST_CASE("energy_formula: log(J) keeps the digits of small strains") {
+  using J = Jet<1, double>;
+  for (const double strain : {1e-4, 1e-7, 1e-10}) {
+    const double g = strain + strain * strain / 2, det = (1 + 2 * g) * (1 + 2 * g);
+    CHECK(log(area_ratio<1>(g, g, 0.0, det)).value == Approx(2 * std::log1p(strain)).epsilon(1e-12));
+  }
+  CHECK(log(area_ratio<1>(0.5, 0.2, 0.1, 2 * 1.4 - 0.04)).value == Approx(std::log(2 * 1.4 - 0.04) / 2));
+  CHECK(J(area_ratio<1>(0.5, 0.2, 0.1, 2 * 1.4 - 0.04)).value == Approx(std::sqrt(2 * 1.4 - 0.04)));
+}
