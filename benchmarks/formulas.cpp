@@ -1,4 +1,4 @@
-// What energies by formula, in C++ and in the experiment, cost beside the compiled plugins:
+// What energies by formula cost beside the compiled plugins:
 //
 //     drape_bench_formulas
 //
@@ -14,8 +14,6 @@
 
 #include "benchmarks/measure.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/elements/fold_formula.h"
-#include "core/kernel/elements/membrane_formula.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/energy.h"
@@ -42,37 +40,10 @@ std::unique_ptr<BoundEnergy> bind(const Registry& registry, const std::string& y
   return energy->bind(level, Material());
 }
 
-// As DRAPE_MEMBRANE and DRAPE_FOLD define them.
-struct Stvk : FormulaLaw<> {
-  using FormulaLaw<>::FormulaLaw;
-  template <class S, class T>
-  S operator()(const S& g11, const S& g22, const S& g12, const AreaRatio<S>&, const T&, const T&, const T&,
-               const T&) const {
-    return thickness * (mu * (g11 * g11 + g22 * g22 + 2 * g12 * g12) + lambda / 2 * square(g11 + g22));
-  }
-};
-struct NeoHookean : FormulaLaw<> {
-  using FormulaLaw<>::FormulaLaw;
-  template <class S, class T>
-  S operator()(const S& g11, const S& g22, const S&, const AreaRatio<S>& J, const T&, const T&, const T&,
-               const T&) const {
-    const S l = log(J);
-    return thickness * (mu * (g11 + g22 - l) + lambda / 2 * l * l);
-  }
-};
-struct Hinge : FormulaLaw<> {
-  using FormulaLaw<>::FormulaLaw;
-  template <class S, class T>
-  S operator()(const S&, const S& bend, const T&, const T& length, const T&, const T&, const T& area,
-               const T&, const T&, const T&) const {
-    return 3 * k * length * length / area * bend * bend;
-  }
-};
-
-/// Medians of value, gradient and projected Hessian of the energies, in turns.
-void compare(const std::string& name, const BoundEnergy& plugin, const BoundEnergy& in_cpp,
-             const BoundEnergy& in_yaml, const Positions& x) {
-  const BoundEnergy* all[] = {&plugin, &in_cpp, &in_yaml};
+/// Medians of value, gradient and projected Hessian of both energies, in turns.
+void compare(const std::string& name, const BoundEnergy& plugin, const BoundEnergy& formula,
+             const Positions& x) {
+  const BoundEnergy* both[] = {&plugin, &formula};
   BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {plugin.stencils()}));
   const BlockSlots slots(*matrix.pattern, plugin.stencils());
   BlockSink sink(slots, matrix);
@@ -84,16 +55,16 @@ void compare(const std::string& name, const BoundEnergy& plugin, const BoundEner
       [&](const BoundEnergy& e) { e.add_hessian(x, Projection::clamp, sink); }};
   const char* words[] = {"value", "gradient", "projected Hessian"};
   for (int part = 0; part < 3; ++part) {
-    std::vector<double> seconds[3];
+    std::vector<double> seconds[2];
     for (int i = 0; i < repeats; ++i)
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < 2; ++k) {
         const double begin = processor_seconds();
-        parts[part](*all[k]);
+        parts[part](*both[k]);
         seconds[k].push_back(processor_seconds() - begin);
       }
-    const double own = median(seconds[0]), cpp = median(seconds[1]), yaml = median(seconds[2]);
-    std::printf("%-12s %-18s %8.3f ms   in C++ %8.3f ms, ratio %.2f   in YAML %8.3f ms, ratio %.2f\n",
-                name.c_str(), words[part], 1e3 * own, 1e3 * cpp, cpp / own, 1e3 * yaml, yaml / own);
+    const double a = median(seconds[0]), b = median(seconds[1]);
+    std::printf("%-12s %-18s %8.3f ms %8.3f ms   ratio %.2f\n", name.c_str(), words[part], 1e3 * a, 1e3 * b,
+                b / a);
   }
 }
 
@@ -110,18 +81,14 @@ int main() try {
   std::normal_distribution<double> noise(0, 0.15 / (n - 1));
   for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += noise(random);
   for (int i = 0; i < x.rows(); ++i) x(i, 2) += 0.05 * std::sin(8 * x(i, 0)) * std::cos(9 * x(i, 1));
-  const auto compare_all = [&](const char* name, const Energy& in_cpp, const char* in_yaml) {
-    compare(name, *bind(registry, name, level), *in_cpp.bind(level, Material()),
-            *bind(registry, in_yaml, level), x);
-  };
-  compare_all(
-      "stvk", MembraneFormula<Stvk>({}),
-      "{type: formula, density: \"thickness*(mu*(g11^2 + g22^2 + 2*g12^2) + lambda/2*(g11 + g22)^2)\"}");
-  compare_all(
-      "neo_hookean", MembraneFormula<NeoHookean>({}),
-      "{type: formula, where: {l: log(J)}, density: \"thickness*(mu*(g11 + g22 - l) + lambda/2*l^2)\"}");
-  compare_all("hinge", FoldFormula<Hinge>({}),
-              "{type: formula, per: hinge, energy: \"3*k*length^2/area*bend^2\"}");
+  const std::pair<const char*, const char*> formulas[] = {
+      {"stvk",
+       "{type: formula, density: \"thickness*(mu*(g11^2 + g22^2 + 2*g12^2) + lambda/2*(g11 + g22)^2)\"}"},
+      {"neo_hookean",
+       "{type: formula, where: {l: log(J)}, density: \"thickness*(mu*(g11 + g22 - l) + lambda/2*l^2)\"}"},
+      {"hinge", "{type: formula, per: hinge, energy: \"3*k*length^2/area*bend^2\"}"}};
+  for (const auto& [name, formula] : formulas)
+    compare(name, *bind(registry, name, level), *bind(registry, formula, level), x);
 } catch (const std::exception& error) {
   std::cerr << "error: " << error.what() << "\n";
   return 1;

@@ -1,16 +1,19 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <concepts>
 #include <random>
 
 #include "core/kernel/elements/element_energy.h"
 #include "core/kernel/mesh/generate.h"
 #include "core/kernel/model/level.h"
-#include "plugins/energy/hinge/hinge_kernel.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
-#include "plugins/energy/neo_hookean/neo_hookean_law.h"
-#include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
-#include "plugins/energy/stvk/stvk_law.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/energy/hinge/hinge.cpp"
+#include "plugins/energy/neo_hookean/neo_hookean.cpp"
+#include "plugins/energy/quadratic_bending/quadratic_bending.cpp"
+#include "plugins/energy/stvk/stvk.cpp"
 
 // Elements of a square of 313² vertices, 195K triangles and 293K hinges, wrinkled and noisy enough that most
 // of their Hessians are indefinite. Arguments: threads. "per_element" is wall time over elements.
@@ -18,6 +21,10 @@
 using namespace drape;
 
 namespace {
+
+using NeoHookean = MembraneFormula<formulas::neo_hookean>;
+using Stvk = MembraneFormula<formulas::stvk>;
+using Hinge = FoldFormula<formulas::hinge>;
 
 struct Cloth {
   Level level;
@@ -76,26 +83,10 @@ const BoundEnergy& energy() {
   return made;
 }
 
-template <class Kernel>
+template <std::derived_from<Energy> E>
 const BoundEnergy& energy() {
-  static const ElementEnergy<Kernel> made = [] {
-    const Positions& rest = cloth().level.rest.vertices;
-    const bool triangles = Kernel::vertices == 3;
-    const Level& level = cloth().level;
-    const Stencils elements = triangles ? Stencils(level.rest.triangles) : level.hinges;
-    std::vector<typename Kernel::Rest> numbers;
-    for (Eigen::Index e = 0; e < elements.rows(); ++e) {
-      Eigen::Vector3d d[3];
-      for (int k = 1; k < Kernel::vertices; ++k)
-        d[k - 1] = rest.row(elements(e, k)) - rest.row(elements(e, 0));
-      if constexpr (Kernel::vertices == 3)
-        numbers.push_back(Kernel::rest(RestTriangle::of(d[0], d[1]), Material()));
-      else
-        numbers.push_back(Kernel::rest(d, 1e-7));
-    }
-    return ElementEnergy<Kernel>(elements, numbers, triangles ? level.triangle_order : level.hinge_order);
-  }();
-  return made;
+  static const auto made = E({}).bind(cloth().level, Material());
+  return *made;
 }
 
 void finish(benchmark::State& state, double elements) {
@@ -137,7 +128,7 @@ void hessian(benchmark::State& state) {
 
 void shell_gradient(benchmark::State& state) {
   Positions g = Positions::Zero(cloth().x.rows(), 3);
-  const BoundEnergy &membrane = energy<NeoHookeanKernel>(), &bending = energy<HingeKernel>();
+  const BoundEnergy &membrane = energy<NeoHookean>(), &bending = energy<Hinge>();
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     g.setZero();
@@ -147,7 +138,7 @@ void shell_gradient(benchmark::State& state) {
 }
 
 void shell_hessian(benchmark::State& state) {
-  const BoundEnergy &membrane = energy<NeoHookeanKernel>(), &bending = energy<HingeKernel>();
+  const BoundEnergy &membrane = energy<NeoHookean>(), &bending = energy<Hinge>();
   BlockMatrix matrix(
       BlockPattern::of(cloth().level.vertex_count(), {membrane.stencils(), bending.stencils()}));
   const BlockSlots membrane_slots(*matrix.pattern, membrane.stencils());
@@ -164,16 +155,14 @@ void shell_hessian(benchmark::State& state) {
 }
 
 void block_pattern(benchmark::State& state) {
-  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(),
-                                          energy<HingeKernel>().stencils()};
+  const std::vector<Stencils> stencils = {energy<NeoHookean>().stencils(), energy<Hinge>().stencils()};
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) benchmark::DoNotOptimize(BlockPattern::of(cloth().level.vertex_count(), stencils));
   finish(state, cloth().level.vertex_count());
 }
 
 void block_slots(benchmark::State& state) {
-  const std::vector<Stencils> stencils = {energy<NeoHookeanKernel>().stencils(),
-                                          energy<HingeKernel>().stencils()};
+  const std::vector<Stencils> stencils = {energy<NeoHookean>().stencils(), energy<Hinge>().stencils()};
   const auto pattern = BlockPattern::of(cloth().level.vertex_count(), stencils);
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state)
@@ -199,10 +188,10 @@ BENCHMARK(shell_hessian)->DRAPE_THREADS;
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::none)->DRAPE_THREADS;  \
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::clamp)->DRAPE_THREADS; \
   BENCHMARK_TEMPLATE(hessian, Kernel, Projection::absolute)->DRAPE_THREADS
-DRAPE_KERNEL(NeoHookeanKernel);
-DRAPE_KERNEL(StvkKernel);
-DRAPE_KERNEL(HingeKernel);
-DRAPE_KERNEL(QuadraticBendingKernel);
+DRAPE_KERNEL(NeoHookean);
+DRAPE_KERNEL(Stvk);
+DRAPE_KERNEL(Hinge);
+DRAPE_KERNEL(QuadraticBending);
 DRAPE_KERNEL(MidedgeAlike);
 DRAPE_KERNEL(MidedgeIrregular);
 BENCHMARK(block_pattern)->DRAPE_THREADS;

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/elements/buckling_membrane.h"
+#include "core/kernel/elements/membrane_formula.h"
 #include "tests/support/kernel_check.h"
 
 /// Properties of every membrane that buckles below the mesh (core/kernel/elements/buckling_membrane.h), for
 /// one triangle.
-template <template <class> class Law>
+template <class Law>
 class BucklingCheck {
-  using Buckling = drape::BucklingLaw<drape::PrincipalLaw<Law>>;
+  using Buckling = drape::BucklingLaw<drape::PrincipalFormula<Law>>;
   using Kernel = drape::StretchKernel<Buckling>;
-  using Plain = drape::MembraneKernel<Law>;
+  using Plain = drape::MembraneFormulaKernel<Law, 5>;
   using Check = KernelCheck<Kernel>;
   using PlainCheck = KernelCheck<Plain>;
   using State = typename Check::State;
@@ -23,6 +23,7 @@ class BucklingCheck {
   static constexpr double kappa = drape::Buckling<double>::largest_shortening,
                           remainder = drape::Buckling<double>::remainder;
   const Eigen::Vector3d rest1_{0.9, 0.2, 0.1}, rest2_{0.1, 1.1, -0.3};
+  const drape::RestTriangle triangle_ = drape::RestTriangle::of(rest1_, rest2_);
   drape::Material material_;
   typename Plain::Rest plain_;
 
@@ -31,7 +32,11 @@ class BucklingCheck {
     material_.thickness = 3e-4;
     material_.membrane_modulus = 8e4;
     material_.poisson_ratio = 0.3;
-    plain_ = Plain::rest(drape::RestTriangle::of(rest1_, rest2_), material_);
+    // The material's first axis is the first edge.
+    plain_ << triangle_.a, 0, triangle_.b, triangle_.c, triangle_.area;
+    const Law law({}, material_);
+    PlainCheck::kernel() = {law};
+    Check::kernel() = {law_of(law)};
   }
 
   void run() const {
@@ -45,11 +50,16 @@ class BucklingCheck {
   }
 
  private:
-  double stiffness() const { return plain_[3]; }  // A d μ [J]
+  static Buckling law_of(const Law& law) { return {{law}}; }
+  const Buckling& law() const { return Check::kernel().law; }
+  double stiffness() const {
+    return triangle_.area * law().plain.law.thickness * law().plain.law.mu;
+  }  // A d μ [J]
 
   typename Kernel::Rest rest(double s) const {
     typename Kernel::Rest r;
-    r << plain_.template head<3>(), Buckling().constants_of(plain_.data() + 3, s);
+    const double own[] = {triangle_.area, 0, 0, 0};
+    r << triangle_.a, triangle_.b, triangle_.c, law().constants_of(own, s);
     return r;
   }
 
@@ -62,7 +72,7 @@ class BucklingCheck {
         v.toRotationMatrix() * Eigen::Vector2d(s1, s2).asDiagonal() * v.toRotationMatrix().transpose();
     const Eigen::Matrix<double, 3, 2> f = turn.leftCols<2>() * plane;
     State x;
-    x << f.col(0) / plain_[0], (f.col(1) - f.col(0) / plain_[0] * plain_[1]) / plain_[2];
+    x << f.col(0) / triangle_.a, (f.col(1) - f.col(0) / triangle_.a * triangle_.b) / triangle_.c;
     return x;
   }
 
@@ -141,10 +151,9 @@ class BucklingCheck {
   void bounded_stress() const {
     const double s = 0.01 * stiffness();
     const typename Kernel::Rest r = rest(s);
-    const double t1 = 1.05, t2 = 0.8, c[] = {plain_[3], plain_[4], s, r[6]};
-    const auto slopes = Buckling().slopes(t1, t2, c);
-    const auto plain =
-        Buckling().slopes(t1, t2, std::vector<double>{plain_[3], plain_[4], 1e9 * stiffness(), 0.0}.data());
+    const double t1 = 1.05, t2 = 0.8;
+    const auto slopes = law().slopes(t1, t2, r.data() + 3);
+    const auto plain = law().slopes(t1, t2, rest(1e9 * stiffness()).eval().data() + 3);
     CHECK((slopes.first2 - remainder * plain.first2) / (1 - remainder) == Approx(-s * t2).epsilon(1e-12));
     CHECK(std::abs(plain.first2) > 10 * std::abs(slopes.first2));
     CHECK(slopes.first1 > 0);

@@ -18,7 +18,11 @@ struct KernelCheck {
   static constexpr int n = 3 * (Kernel::vertices - 1);
   using Rest = typename Kernel::Rest;
   using State = Eigen::Matrix<double, n, 1>;
-  inline static Kernel kernel{};  ///< of a kernel with numbers of its own: to be set
+  /// To be set for a kernel that holds numbers of its own.
+  static Kernel& kernel() {
+    static Kernel own{};
+    return own;
+  }
   using Hessian = Eigen::Matrix<double, n, n>;
 
   /// Value, gradient and (mirrored) Hessian.
@@ -33,10 +37,10 @@ struct KernelCheck {
     Eigen::Matrix<T, 3, 1> d[n / 3], g[n / 3];
     for (int i = 0; i < n; ++i) d[i / 3][i % 3] = x[i];
     Result<T> r;
-    r.value = kernel.value(d, rest);
-    r.gradient_value = kernel.gradient(d, rest, g);
+    r.value = kernel().value(d, rest);
+    r.gradient_value = kernel().gradient(d, rest, g);
     for (int i = 0; i < n; ++i) r.gradient[i] = g[i / 3][i % 3];
-    kernel.hessian(d, rest, r.hessian);
+    kernel().hessian(d, rest, r.hessian);
     for (int j = 0; j < n; ++j)
       for (int i = j + 1; i < n; ++i) r.hessian(i, j) = r.hessian(j, i);
     return r;
@@ -147,7 +151,7 @@ struct KernelCheck {
   template <class T>
   [[gnu::noinline]] static void project(const Eigen::Matrix<T, 3, 1>* d, const T* rest,
                                         drape::Projection projection, drape::SymmetricMatrix<n, T>& a) {
-    drape::projected_hessian(kernel, d, rest, projection, a);
+    drape::projected_hessian(kernel(), d, rest, projection, a);
   }
   static double first_lane(double v) { return v; }
   template <int W>

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "core/kernel/elements/membrane_kernel.h"
+#include "core/kernel/elements/membrane_formula.h"
 #include "core/kernel/mesh/generate.h"
 #include "tests/support/kernel_check.h"
 
@@ -30,15 +30,14 @@ inline std::vector<Eigen::Matrix<double, 6, 1>> deformed_triangles() {
   return all;
 }
 
-/// What every membrane owes (core/kernel/elements/membrane_kernel.h). `density` is ψ(μ, λ, a, b) of a
+/// What every isotropic membrane by a formula owes. `density` is ψ(μ, λ, a, b) of a
 /// triangle stretched to 1 + a and 1 + b along its axes; `collapsed` says what the energy of one without area
 /// has to be.
-template <template <class> class Law>
-void check_membrane(const drape::Energy& energy,
-                    const std::function<long double(double, double, long double, long double)>& density,
+template <class Law>
+void check_membrane(const std::function<long double(double, double, long double, long double)>& density,
                     const std::function<bool(double)>& collapsed) {
   using namespace drape;
-  using Kernel = MembraneKernel<Law>;
+  using Kernel = MembraneFormulaKernel<Law, 5>;
   using Check = KernelCheck<Kernel>;
   Material material;
   material.thickness = 3e-4;
@@ -46,8 +45,15 @@ void check_membrane(const drape::Energy& energy,
   material.poisson_ratio = 0.3;
   const double modulus = material.membrane_modulus, nu = material.poisson_ratio;
   const double mu = modulus / (2 * (1 + nu)), lambda = modulus * nu / (1 - nu * nu);
-  const auto rest_of = [&](const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) {
-    return Kernel::rest(RestTriangle::of(e1, e2), material);
+  const MembraneFormula<Law> energy({});
+  Check::kernel() = {Law({}, material)};
+  const auto rest_of = [&](const Eigen::Vector3d& e1, const Eigen::Vector3d& e2) -> typename Kernel::Rest {
+    TriangleMesh mesh;
+    mesh.vertices.setZero(3, 3);
+    mesh.vertices.row(1) = e1, mesh.vertices.row(2) = e2;
+    mesh.triangles.resize(1, 3);
+    mesh.triangles << 0, 1, 2;
+    return material_triangle(Eigen::Vector3d::UnitX(), Level::of(0, mesh), 0).template head<5>();
   };
   const typename Kernel::Rest rest = rest_of(rest1, rest2);
 

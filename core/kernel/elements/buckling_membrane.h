@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/kernel/elements/membrane_kernel.h"
+#include "core/kernel/elements/element_energy.h"
 #include "core/kernel/elements/stretch_kernel.h"
 
 namespace drape {
@@ -169,29 +169,11 @@ struct BucklingLaw {
   }
 };
 
-/// A membrane Law (core/kernel/elements/membrane_kernel.h) by principal stretches.
-template <template <class> class Law>
-struct PrincipalLaw {
-  static constexpr int constants = 2;  ///< A d μ, A d λ [J]
-
-  template <class T>
-  PrincipalDerivatives<T> operator()(const T& t1, const T& t2, const T* c) const {
-    const T zero = 0.0;
-    const Law<T> law(Eigen::Matrix<T, 3, 1>(t1, zero, zero), Eigen::Matrix<T, 3, 1>(zero, t2, zero), c[0],
-                     c[1]);
-    Eigen::Matrix<T, 3, 1> p1, p2;
-    Eigen::Matrix<T, 3, 3> h11, h12, h22;
-    law.stress(p1, p2);
-    law.stiffness(h11, h12, h22);
-    return {law.energy(), p1[0], p2[1], h11(0, 0), h22(1, 1), h12(0, 1)};
-  }
-};
-
 /// Binds a law to all triangles of a level on which the cloth buckles below the mesh, with Plain's constants
 /// of each; s [J] as in Buckling, which is the same for all triangles. Throws std::runtime_error naming a
 /// triangle without area.
 template <class Plain>
-std::unique_ptr<BoundEnergy> bind_buckling_law(
+std::unique_ptr<BoundEnergy> bind_buckling_membrane(
     const Plain& plain, const Level& level,
     const std::vector<Eigen::Matrix<double, Plain::constants, 1>>& numbers, double s) {
   using Kernel = StretchKernel<BucklingLaw<Plain>>;
@@ -202,15 +184,6 @@ std::unique_ptr<BoundEnergy> bind_buckling_law(
     rest.emplace_back() << triangle.a, triangle.b, triangle.c, kernel.law.constants_of(numbers[t].data(), s);
   }
   return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order, kernel);
-}
-
-/// The same for a membrane Law.
-template <template <class> class Law>
-std::unique_ptr<BoundEnergy> bind_buckling_membrane(const Level& level, const Material& material, double s) {
-  std::vector<Eigen::Vector2d> numbers;
-  for (int t = 0; t < level.triangle_count(); ++t)
-    numbers.emplace_back(MembraneKernel<Law>::rest(RestTriangle::of(level, t), material).template tail<2>());
-  return bind_buckling_law(PrincipalLaw<Law>(), level, numbers, s);
 }
 
 }  // namespace drape

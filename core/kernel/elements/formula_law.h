@@ -41,7 +41,8 @@ struct NoParameters {
 template <class Own = NoParameters>
 struct FormulaLaw : Own, MaterialSymbols {
   using Parameters = Own;
-  FormulaLaw(const Own& own, const Material& material) : Own(own), MaterialSymbols(material) {}
+  explicit FormulaLaw(const Own& own = {}, const Material& material = Material())
+      : Own(own), MaterialSymbols(material) {}
 };
 
 }  // namespace drape

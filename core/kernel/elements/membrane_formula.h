@@ -103,7 +103,7 @@ class MembraneFormula final : public Energy {
       return bind(level, material);
     std::vector<Eigen::Vector4d> numbers;
     for (const MaterialTriangle& triangle : triangles(level)) numbers.emplace_back(triangle.tail<4>());
-    return bind_buckling_law(PrincipalFormula<Law>{law}, level, numbers, s);
+    return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers, s);
   }
 
  private:

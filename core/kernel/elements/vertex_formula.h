@@ -42,14 +42,18 @@ struct VertexFormulaKernel {
   }
 };
 
-/// The energy that DRAPE_VERTEX registers. One that is linear in the position is bound as constant forces.
+/// The energy that DRAPE_VERTEX registers: a load, unless its parameters have a static `role`. One that is
+/// linear in the position is bound as constant forces.
 template <class Law>
 class VertexFormula final : public Energy {
  public:
   using Parameters = typename Law::Parameters;
 
   explicit VertexFormula(const Parameters& parameters) : p_(parameters) {}
-  EnergyRole role() const override { return EnergyRole::external; }
+  EnergyRole role() const override {
+    if constexpr (requires { Parameters::role; }) return Parameters::role;
+    return EnergyRole::external;
+  }
 
   std::optional<double> midpoint_factor() const override {
     const VertexFormulaKernel<Law> kernel{Law(p_, Material())};

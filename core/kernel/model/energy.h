@@ -114,7 +114,7 @@ class Energy {
   virtual std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const = 0;
   /// Binds a membrane to a coarse level below whose mesh the cloth buckles: no compressive stress exceeds s /
   /// V by much, V rest area × thickness of the triangle and s [J] the same for all triangles
-  /// (docs/theory/locking.md; bind_buckling_membrane makes it of a membrane's law). By default bind(): its
+  /// (docs/theory/locking.md; bind_buckling_membrane makes it of an isotropic law). By default bind(): its
   /// triangles resist compression as they do on the finest mesh.
   virtual std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                                      double s) const {

@@ -97,7 +97,7 @@ std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, c
                                            double s) {
   std::vector<Eigen::Vector4d> numbers;
   for (int t = 0; t < level.triangle_count(); ++t) numbers.emplace_back(stretch_rest(level, t).tail<4>());
-  return bind_buckling_law(
+  return bind_buckling_membrane(
       PrincipalProgram{compile_triangle(law, material, TriangleVariables::stretches).all}, level, numbers, s);
 }
 

@@ -1,15 +1,17 @@
-#include "plugins/energy/gravity/gravity.h"
+#include "core/kernel/elements/energy_formula.h"
 
-#include "core/kernel/elements/linear_energy.h"
-#include "core/kernel/plugin/plugin.h"
+struct Gravity {
+  Eigen::Vector3d acceleration{0, 0, -9.81};
+  static void declare(drape::Declaration<Gravity>& d) {
+    d.add("acceleration", &Gravity::acceleration)
+        .unit("m/s²")
+        .at_least(-1e7)
+        .at_most(1e7)
+        .description("acceleration of free fall")
+        .source("standard gravity, rounded; z is up");
+  }
+};
 
-namespace drape {
-
-std::unique_ptr<BoundEnergy> Gravity::bind(const Level& level, const Material& material) const {
-  return std::make_unique<LinearEnergy>(material.area_density() * level.vertex_area *
-                                        p_.acceleration.transpose());
+DRAPE_VERTEX(gravity, "Weight of the cloth.", Gravity) {
+  return -mass * (acceleration.x() * x + acceleration.y() * y + acceleration.z() * z);
 }
-
-}  // namespace drape
-
-DRAPE_PLUGIN(registry) { registry.add<drape::Energy, drape::Gravity>("gravity", "Weight of the cloth."); }

@@ -2,16 +2,29 @@
 #include <catch2/catch.hpp>
 
 #include "core/kernel/mesh/generate.h"
-#include "plugins/energy/hinge/hinge.h"
-#include "plugins/energy/hinge/hinge_kernel.h"
 #include "tests/support/kernel_check.h"
+#include "tests/support/unregistered.h"
+// After it:
+#include "plugins/energy/hinge/hinge.cpp"
 
 using namespace drape;
 
 namespace {
 
-using Check = KernelCheck<HingeKernel>;
+using Hinge = FoldFormula<formulas::hinge>;
+using Kernel = FoldFormulaKernel<formulas::hinge, 5>;
+using Check = KernelCheck<Kernel>;
 constexpr double pi = 3.14159265358979323846, k = 0.7;
+
+/// Its k is the one above.
+Material stiff() {
+  Material material;
+  material.thickness = 1;
+  material.poisson_ratio = 0;
+  material.bending_modulus = 24 * k;
+  return material;
+}
+const bool set = (Check::kernel() = {formulas::hinge({}, stiff())}, true);
 
 /// Two triangles over an edge of length 1 along x, whose normals differ by `angle`.
 Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, double foot_v = 0.7,
@@ -21,16 +34,20 @@ Check::State folded(double angle, double foot_u = 0.4, double height_u = 0.8, do
   return x;
 }
 
-HingeKernel::Rest rest_of(const Check::State& x) {
-  const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
-  return HingeKernel::rest(d, k);
+Kernel::Rest rest_of(const Check::State& x) {
+  TriangleMesh mesh;
+  mesh.vertices.setZero(4, 3);
+  for (int i = 0; i < 3; ++i) mesh.vertices.row(i + 1) = x.segment<3>(3 * i);
+  mesh.triangles.resize(2, 3);
+  mesh.triangles << 0, 1, 2, 1, 0, 3;
+  return rest_hinge(Level::of(0, mesh), 0).head<5>();
 }
 
-const HingeKernel::Rest flat_rest = rest_of(folded(0)), bent_rest = rest_of(folded(0.6));
+const Kernel::Rest flat_rest = rest_of(folded(0)), bent_rest = rest_of(folded(0.6));
 
 double angle_of(const Check::State& x) {
   const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
-  return HingeKernel::angle(d);
+  return DihedralAngle<double>(d).angle();
 }
 
 /// Random, nearly flat, sharply folded to both sides, and with a nearly degenerate triangle.
@@ -56,11 +73,11 @@ double energy_over_smooth(const Level& level, const Positions& x, double curvatu
 
 TEST_CASE("hinge: one that is shut at rest opens to either side alike") {
   for (const double rest_angle : {pi, -pi, 3.0, -3.0}) {
-    const HingeKernel::Rest rest{k, rest_angle};
+    const double rest[] = {rest_angle, 1, 1, 1, 3};
     for (const double bend : {0.0, 0.1, -0.1, 0.5, -0.5, 3.0, -3.0}) {
       const Check::State x = folded(rest_angle + bend);
       const Eigen::Vector3d d[3] = {x.segment<3>(0), x.segment<3>(3), x.segment<3>(6)};
-      CHECK(HingeKernel::value(d, rest.data()) == Approx(k * bend * bend).margin(1e-14));
+      CHECK(Check::kernel().value(d, rest) == Approx(k * bend * bend).margin(1e-14));
     }
   }
 }
@@ -77,7 +94,7 @@ TEST_CASE("hinge: derivatives are those of the value") {
 
 TEST_CASE("hinge: lanes compute what double does") {
   for (const auto& rest : {flat_rest, bent_rest})
-    for (const auto& x : states()) Check::all_lanes(x, rest, rest[0]);
+    for (const auto& x : states()) Check::all_lanes(x, rest, 3 * k / rest[4]);
 }
 
 TEST_CASE("hinge: projection is that of the matrix by the axis and the points' distances from it") {
@@ -174,6 +191,7 @@ TEST_CASE("hinge: a single triangle has no hinge") {
 TEST_CASE("hinge: a triangle without area is refused") {
   Level level = Level::of(0, grid({1, 1}, 3, 3, Diagonals::one_way));
   level.rest.vertices.row(4) = level.rest.vertices.row(0);
-  CHECK_THROWS_WITH(Hinge({}).bind(level, Material()),
-                    Catch::Contains("hinge: ") && Catch::Contains("no area"));
+  CHECK_THROWS_WITH(
+      Hinge({}).bind(level, Material()),
+      Catch::Contains("a triangle at the edge of vertices ") && Catch::Contains(" has no area at rest"));
 }

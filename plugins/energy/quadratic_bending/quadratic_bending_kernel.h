@@ -9,7 +9,7 @@ namespace drape {
 /// Isometric quadratic bending c ‖a₁ e + a₂ u + a₃ v‖² of one hinge with vectors e = x₁ - x₀, u = x₂ - x₀,
 /// v = x₃ - x₀ (Bergou et al. 2006, "A quadratic bending model for inextensible surfaces", eq. 3 and 4: ‖ē‖ a
 /// are its sums of cotangents). For small angles of an isometric hinge the norm is θ, so that with the c of
-/// HingeKernel, 3 k ‖ē‖² / (Ā₁ + Ā₂), both energies agree. T is double or a Pack.
+/// the plugin hinge, 3 k ‖ē‖² / (Ā₁ + Ā₂), both energies agree. T is double or a Pack.
 struct QuadraticBendingKernel {
   static constexpr int vertices = 4;
   static constexpr bool convex = true;
