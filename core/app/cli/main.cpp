@@ -15,6 +15,7 @@
 #include "core/app/cli/export_command.h"
 #include "core/app/cli/help.h"
 #include "core/app/cli/new_command.h"
+#include "core/app/cli/plugin_files.h"
 #include "core/app/cli/run_command.h"
 #include "core/app/cli/sweep_command.h"
 #include "core/app/cli/view_command.h"
@@ -233,6 +234,10 @@ int main_checked(int argc, char** argv) {
                    "instead, write each plugin's parameters into FOLDER/KIND/NAME/README.md")
       ->type_name("FOLDER");
 
+  PluginFiles plugin_files;
+  for (const char* command : {"run", "check", "sweep", "list", "describe", "schema"})
+    plugin_files.add_to(*app.get_subcommand(command));
+
   std::vector<std::string> words = command_words(argc, argv);
   if (words.empty()) {
     std::cerr << app.help();
@@ -266,6 +271,7 @@ int main_checked(int argc, char** argv) {
     return table.all_pass() ? exit_done : exit_not_converged;
   }
   if (sweep.job_chosen()) return sweep.run_job();
+  plugin_files.compile();
   Registry registry;
   load_plugins(registry, plugin_directories());
   if (run.chosen()) return run.run(registry);

@@ -1,0 +1,89 @@
+// --plugin FILE.cpp: a plugin's source is compiled once and loaded.
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/command.h"
+
+using Catch::Contains;
+
+namespace {
+
+const std::string energy_file = R"(#include "core/kernel/elements/energy_formula.h"
+#include "stiffness.h"
+
+DRAPE_MEMBRANE(rubber, "Isotropic.") {
+  return stiffness * (g11 * g11 + g22 * g22 + 2 * g12 * g12);
+}
+)";
+
+/// A folder with a plugin's source, an experiment with it, and a cache.
+struct PluginFolder : Scratch {
+  PluginFolder() {
+    write("rubber.cpp", energy_file);
+    write("stiffness.h", "constexpr double stiffness = 20;\n");
+    write("drape.yaml",
+          "name: rubber\ncloth: {side: 0.2, vertices: 16}\nlevels: 2\npins: [{region: box, lower: [0, 0, 0], "
+          "upper: [0, 1, 0]}]\nenergies: [rubber, hinge, gravity]\nmethods: {pcs: {}}\n");
+  }
+  std::string environment() const { return "XDG_CACHE_HOME=" + (path / "cache").string(); }
+  Ended with(const std::string& arguments, const std::string& more = "") const {
+    return drape_with(arguments, path, environment() + " " + more);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next command") {
+  const PluginFolder folder;
+  const Ended first = folder.with("run drape.yaml --plugin rubber.cpp -q --no-report -o results");
+  INFO(first.err);
+  CHECK(first.exit_code == 0);
+  CHECK_THAT(first.err, Contains("compiling ") && Contains("rubber.cpp: "));
+  CHECK(std::filesystem::exists(folder / "results/results.json"));
+
+  for (const char* command : {"check drape.yaml", "describe rubber", "list energy", "schema"}) {
+    const Ended ended = folder.with(std::string(command) + " --plugin rubber.cpp");
+    INFO(command << ": " << ended.err);
+    CHECK(ended.exit_code == 0);
+    CHECK_THAT(ended.err, !Contains("compiling"));
+  }
+  CHECK_THAT(folder.with("list energy --plugin rubber.cpp").out, Contains("rubber"));
+
+  folder.write("sweep.yaml",
+               "name: sweep\nbase: drape.yaml\nablation: [{name: as it is}, {name: larger, set: {cloth.side: "
+               "0.3}}]\n");
+  const Ended sweep = folder.with("sweep sweep.yaml --plugin rubber.cpp -q -o swept");
+  INFO(sweep.err << sweep.out);
+  CHECK(sweep.exit_code == 0);
+
+  SECTION("a header of its own that changes is compiled again") {
+    folder.write("stiffness.h", "constexpr double stiffness = 21;\n");
+    CHECK_THAT(folder.with("list energy --plugin rubber.cpp").err, Contains("compiling"));
+    CHECK_THAT(folder.with("list energy --plugin rubber.cpp").err, !Contains("compiling"));
+  }
+}
+
+TEST_CASE("What the compiler refuses is shown with the file's lines, and nothing is run or kept") {
+  const PluginFolder folder;
+  folder.write("rubber.cpp", replaced(energy_file, "g22 * g22", "g23 * g22"));
+  for (int time = 0; time < 2; ++time) {
+    const std::string err =
+        refused_by("run drape.yaml --plugin rubber.cpp", folder.path, folder.environment());
+    CHECK_THAT(err, Contains("rubber.cpp:5:") && Contains("g23") &&
+                        Contains("return stiffness * (g11 * g11 + g23 * g22") &&
+                        Contains("error: --plugin ") && Contains("rubber.cpp: does not compile"));
+  }
+  CHECK_FALSE(std::filesystem::exists(folder / "results"));
+}
+
+TEST_CASE("A plugin's source without a compiler, or that is no plugin, is refused") {
+  const PluginFolder folder;
+  CHECK_THAT(
+      refused_by("list energy --plugin rubber.cpp", folder.path, folder.environment() + " CXX=/nowhere/c++"),
+      Contains("--plugin: there is no compiler /nowhere/c++; install it, or name one"));
+  CHECK_THAT(refused_by("list energy --plugin none.cpp", folder.path, folder.environment()),
+             Contains("none.cpp") && Contains("No such file"));
+  folder.write("empty.cpp", "int main() {}\n");
+  CHECK_THAT(refused_by("list energy --plugin empty.cpp", folder.path, folder.environment()),
+             Contains("is not a drape plugin"));
+}
