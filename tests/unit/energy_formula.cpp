@@ -9,8 +9,6 @@
 #include "tests/support/kernel_check.h"
 #include "tests/support/unregistered.h"
 
-namespace {
-
 struct Woven {
   double warp = 2e3, weft = 5e2;
   Eigen::Vector3d axis{1, 0, 0};
@@ -20,8 +18,6 @@ struct Woven {
     d.add("axis", &Woven::axis);
   }
 };
-
-}  // namespace
 
 DRAPE_MEMBRANE(woven, "Stiff along warp.", Woven) {
   return 0.5 * warp * g11 * g11 + 0.5 * weft * g22 * g22 + 60 * g12 * g12;
@@ -39,7 +35,11 @@ DRAPE_FOLD(fold, "As hinge.") { return 3 * k * length * length / area * square(b
 DRAPE_VERTEX(wind, "Constant forces.") { return -2.0 * area * x - 0.5 * mass * z + 1e-3 * area; }
 DRAPE_VERTEX(patch_wind, "On half of the cloth.") { return select(u > 0.5, -2.0 * area, 0.0 * area) * x; }
 DRAPE_VERTEX(gust, "Only above the ground.") { return select(z > 0.01, -2.0 * area * x, 0.0); }
-DRAPE_VERTEX(spring, "To the ground.") { return 200 * mass * z * z; }
+struct Spring {
+  static constexpr auto role = drape::EnergyRole::position;
+  static void declare(drape::Declaration<Spring>&) {}
+};
+DRAPE_VERTEX(spring, "To the ground.", Spring) { return 200 * mass * z * z; }
 
 using namespace drape;
 
@@ -95,6 +95,7 @@ TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the
   CHECK_FALSE(FoldFormula<formulas::crease>({}).midpoint_factor());
   CHECK(VertexFormula<formulas::wind>({}).role() == EnergyRole::external);
   CHECK(VertexFormula<formulas::wind>({}).midpoint_factor() == 1);
+  CHECK(VertexFormula<formulas::spring>({}).role() == EnergyRole::position);
   CHECK_FALSE(VertexFormula<formulas::patch_wind>({}).midpoint_factor());
   CHECK_FALSE(VertexFormula<formulas::gust>({}).midpoint_factor());
   CHECK_FALSE(VertexFormula<formulas::spring>({}).midpoint_factor());

@@ -11,97 +11,35 @@
 
 namespace drape {
 
-template <int N, class T>
-Jet<N, T> sqrt(const Jet<N, T>& a) {
-  using std::sqrt;
-  const T f = sqrt(a.value), f1 = 0.5 / f;
-  return chain(a, f, f1, -0.5 * (f1 / a.value));
-}
-template <int N, class T>
-Jet<N, T> log(const Jet<N, T>& a) {
-  using std::log;
-  const T inverse = 1.0 / a.value;
-  return chain(a, log(a.value), inverse, -(inverse * inverse));
-}
-template <int N, class T>
-Jet<N, T> log1p(const Jet<N, T>& a) {
-  using std::log1p;
-  const T inverse = 1.0 / (1.0 + a.value);
-  return chain(a, log1p(a.value), inverse, -(inverse * inverse));
-}
-template <int N, class T>
-Jet<N, T> exp(const Jet<N, T>& a) {
-  using std::exp;
-  const T f = exp(a.value);
-  return chain(a, f, f, f);
-}
-template <int N, class T>
-Jet<N, T> expm1(const Jet<N, T>& a) {
-  using std::exp, std::expm1;
-  const T f1 = exp(a.value);
-  return chain(a, expm1(a.value), f1, f1);
-}
-template <int N, class T>
-Jet<N, T> sin(const Jet<N, T>& a) {
-  using std::cos, std::sin;
-  const T f = sin(a.value);
-  return chain(a, f, cos(a.value), -f);
-}
-template <int N, class T>
-Jet<N, T> cos(const Jet<N, T>& a) {
-  using std::cos, std::sin;
-  const T f = cos(a.value);
-  return chain(a, f, -sin(a.value), -f);
-}
-template <int N, class T>
-Jet<N, T> tan(const Jet<N, T>& a) {
-  using std::tan;
-  const T f = tan(a.value), slope = 1.0 + f * f;
-  return chain(a, f, slope, 2.0 * (f * slope));
-}
-template <int N, class T>
-Jet<N, T> asin(const Jet<N, T>& a) {
-  using std::asin, std::sqrt;
-  const T slope = 1.0 / sqrt(1.0 - a.value * a.value);
-  return chain(a, asin(a.value), slope, a.value * (slope * (slope * slope)));
-}
-template <int N, class T>
-Jet<N, T> acos(const Jet<N, T>& a) {
-  using std::acos, std::sqrt;
-  const T slope = -1.0 / sqrt(1.0 - a.value * a.value);
-  return chain(a, acos(a.value), slope, a.value * (slope * (slope * slope)));
-}
-template <int N, class T>
-Jet<N, T> atan(const Jet<N, T>& a) {
-  using std::atan;
-  const T slope = 1.0 / (1.0 + a.value * a.value);
-  return chain(a, atan(a.value), slope, -2.0 * (a.value * (slope * slope)));
-}
-template <int N, class T>
-Jet<N, T> sinh(const Jet<N, T>& a) {
-  using std::cosh, std::sinh;
-  const T f = sinh(a.value);
-  return chain(a, f, cosh(a.value), f);
-}
-template <int N, class T>
-Jet<N, T> cosh(const Jet<N, T>& a) {
-  using std::cosh, std::sinh;
-  const T f = cosh(a.value);
-  return chain(a, f, sinh(a.value), f);
-}
-template <int N, class T>
-Jet<N, T> tanh(const Jet<N, T>& a) {
-  using std::tanh;
-  const T f = tanh(a.value), slope = 1.0 + -1.0 * (f * f);
-  return chain(a, f, slope, -2.0 * (f * slope));
-}
+/// A function of x by its derivatives: f1 may use f, the value, and f2 both.
+#define DRAPE_JET_FUNCTION(name, f1_at_x, f2_at_x)                                  \
+  template <int N, class T>                                                         \
+  Jet<N, T> name(const Jet<N, T>& a) {                                              \
+    using std::name, std::cos, std::cosh, std::exp, std::sin, std::sinh, std::sqrt; \
+    [[maybe_unused]] const T& x = a.value;                                          \
+    const T f = name(x), f1 = f1_at_x;                                              \
+    return chain(a, f, f1, f2_at_x);                                                \
+  }
+// It takes these products for pointers.
+// clang-format off
+DRAPE_JET_FUNCTION(sqrt, 0.5 / f, -0.5 * (f1 / x))
+DRAPE_JET_FUNCTION(log, 1.0 / x, -(f1 * f1))
+DRAPE_JET_FUNCTION(log1p, 1.0 / (1.0 + x), -(f1 * f1))
+DRAPE_JET_FUNCTION(exp, f, f)
+DRAPE_JET_FUNCTION(expm1, exp(x), f1)
+DRAPE_JET_FUNCTION(sin, cos(x), -f)
+DRAPE_JET_FUNCTION(cos, -sin(x), -f)
+DRAPE_JET_FUNCTION(tan, 1.0 + f * f, 2.0 * (f * f1))
+DRAPE_JET_FUNCTION(asin, 1.0 / sqrt(1.0 - x * x), x * (f1 * (f1 * f1)))
+DRAPE_JET_FUNCTION(acos, -1.0 / sqrt(1.0 - x * x), x * (f1 * (f1 * f1)))
+DRAPE_JET_FUNCTION(atan, 1.0 / (1.0 + x * x), -2.0 * (x * (f1 * f1)))
+DRAPE_JET_FUNCTION(sinh, cosh(x), f)
+DRAPE_JET_FUNCTION(cosh, sinh(x), f)
+DRAPE_JET_FUNCTION(tanh, 1.0 - f * f, -2.0 * (f * f1))
+DRAPE_JET_FUNCTION(abs, sign(x), T(0.0))  // slope 0 at 0
+// clang-format on
+#undef DRAPE_JET_FUNCTION
 
-/// Has slope 0 at 0.
-template <int N, class T>
-Jet<N, T> abs(const Jet<N, T>& a) {
-  using std::abs;
-  return chain(a, abs(a.value), sign(a.value), T(0.0));
-}
 template <int N, class T>
 Jet<N, T> sign(const Jet<N, T>& a) {
   return Jet<N, T>(sign(a.value));
