@@ -235,7 +235,7 @@ TEST_CASE("values out of range or of the wrong type") {
 
 TEST_CASE("unknown plugins of every kind") {
   const std::string
-      own = "; a plugin of your own is found by DRAPE_PLUGIN_PATH\n",
+      own = "; a plugin of your own is given by --plugin or found by DRAPE_PLUGIN_PATH\n",
       energies =
           "known: constant_load, formula, gravity, hinge, midedge_bending, neo_hookean, pressure, "
           "quadratic_bending, strain_limit, stvk";
