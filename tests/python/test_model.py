@@ -184,3 +184,21 @@ def test_a_level_of_ones_own():
         drape.Level([[0, 0, 0]], [0, 1, 2])
     with pytest.raises(TypeError, match="integers"):
         drape.Level([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0.0, 1.0, 2.0]])
+
+
+def test_an_energy_is_a_formula(small):
+    spring = {"type": "formula", "name": "spring", "per": "vertex", "role": "position",
+              "constants": {"stiffness": {"value": 400, "unit": "1/s^2"}, "height": {"value": 0.1, "unit": "m"}},
+              "energy": "stiffness/2*mass*(z - height)^2"}
+    assert drape.check_energy(spring)
+    experiment = drape.Experiment({**small, "energies": [*small["energies"], spring]})
+    level = experiment.scene().levels[0]
+    bound = drape.bind_energy(spring, level)
+    gradient = bound.gradient(level.rest)
+    mass = experiment.scene()[0].material.area_density * level.vertex_area
+    assert numpy.allclose(gradient[:, 2], 400 * mass * (level.rest[:, 2] - 0.1))
+    before = experiment.scene()[0].energy(level.rest)
+    experiment.set("energies.spring.stiffness", 800)
+    assert experiment.scene()[0].energy(level.rest) > before
+    with pytest.raises(drape.ConfigError, match=r'unknown name "q"'):
+        drape.Experiment({**small, "energies": [{**spring, "energy": "mass*q"}]}).check()
