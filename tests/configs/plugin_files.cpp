@@ -41,7 +41,8 @@ TEST_CASE("A plugin's source is compiled, loaded and run, and kept for the next 
   CHECK_THAT(first.err, Contains("compiling ") && Contains("rubber.cpp: "));
   CHECK(std::filesystem::exists(folder / "results/results.json"));
 
-  for (const char* command : {"check drape.yaml", "describe rubber", "list energy", "schema"}) {
+  for (const char* command :
+       {"check drape.yaml", "check-energy rubber", "describe rubber", "list energy", "schema"}) {
     const Ended ended = folder.with(std::string(command) + " --plugin rubber.cpp");
     INFO(command << ": " << ended.err);
     CHECK(ended.exit_code == 0);

@@ -18,7 +18,8 @@ const bool with_examples = [] {
 TEST_CASE("The documents' examples are among the plugins of the conformance tests", "[conformance]") {
   REQUIRE(with_examples);
   for (const auto& [kind, name] :
-       std::initializer_list<std::pair<const char*, const char*>>{{"energy", "spring_to_plane"},
+       std::initializer_list<std::pair<const char*, const char*>>{{"energy", "orthotropic"},
+                                                                  {"energy", "spring_to_plane"},
                                                                   {"refiner", "smooth_midpoint"},
                                                                   {"contact", "floor"},
                                                                   {"solver", "finest_only"},

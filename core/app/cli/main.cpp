@@ -235,7 +235,7 @@ int main_checked(int argc, char** argv) {
       ->type_name("FOLDER");
 
   PluginFiles plugin_files;
-  for (const char* command : {"run", "check", "sweep", "list", "describe", "schema"})
+  for (const char* command : {"run", "check", "check-energy", "sweep", "list", "describe", "schema"})
     plugin_files.add_to(*app.get_subcommand(command));
 
   std::vector<std::string> words = command_words(argc, argv);
