@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/model/smallest_gap.h"
+#include "core/kernel/model/gaps.h"
 #include "tests/support/solve.h"
 
 using namespace drape;
@@ -55,17 +55,16 @@ TEST_CASE("A suitable barrier is not named, however small a gap is") {
       const Solved s = solve_yaml(over_a_ball((*contact)(stiffness), 1000));
       CAPTURE(stiffness, s.levels.back().message);
       REQUIRE(s.levels.back().outcome == Outcome::converged);
-      const auto* provider = dynamic_cast<const SmallestGapProvider*>(s.model().contacts()[0].get());
-      REQUIRE(provider);
-      CHECK(provider->smallest_gap(s.x()).gap == Approx(*s.levels.back().smallest_gap));
+      const BoundContact& bound = *s.model().contacts()[0];
+      CHECK(bound.smallest_gap(s.x()).gap == Approx(*s.levels.back().smallest_gap));
       CHECK(weak_barrier(s.model(), s.x()).empty());
       // Something other than the load presses the cloth onto the ball.
       Positions x = s.x();
       double step = 1e-4;
-      while (provider->smallest_gap(x).gap > 1e-7) {
+      while (bound.smallest_gap(x).gap > 1e-7) {
         Positions lower = x;
         lower.col(2).array() -= step;
-        if (provider->smallest_gap(lower).gap > 0 && s.model().contacts()[0]->intersections(lower).empty())
+        if (bound.smallest_gap(lower).gap > 0 && s.model().contacts()[0]->intersections(lower).empty())
           x = lower;
         else
           step /= 2;

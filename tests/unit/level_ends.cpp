@@ -158,7 +158,7 @@ TEST_CASE("Friction whose normal forces answer it more than they change it comes
 TEST_CASE("A level whose friction was damped is resumed bit for bit") {
   Solved s = scene_from(dragged_strip("step_growth: 1.5"));
   Keeping whole;
-  const auto& solver = dynamic_cast<const ResumableSolver&>(*s.experiment.methods[0].second);
+  const Solver& solver = *s.experiment.methods[0].second;
   const LevelResult expected = solver.solve(s.scene->problem(), whole)[0];
   REQUIRE(expected.outcome == Outcome::converged);
   int damped = 0;

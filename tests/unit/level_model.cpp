@@ -77,7 +77,7 @@ struct Shell : OriginSprings {
 };
 
 /// Nothing to collide with; knows what it was bound from.
-class Traced : public ContactModel, public Rebindable {
+class Traced : public ContactModel {
  public:
   struct Bound : BoundContact {
     const BoundContact* from = nullptr;

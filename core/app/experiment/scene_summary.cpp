@@ -5,7 +5,7 @@
 
 #include "core/kernel/elements/bending_stiffness.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/model/smallest_gap.h"
+#include "core/kernel/model/gaps.h"
 
 namespace drape {
 
@@ -46,11 +46,10 @@ void add_edges(const Level& level, SceneSummary& summary) {
 
 void add_contacts(const LevelModel& model, const Positions& start, SceneSummary& summary) {
   for (const auto& contact : model.contacts()) {
-    if (const auto* gaps = dynamic_cast<const SmallestGapProvider*>(contact.get()))
-      summary.dhat = std::max(summary.dhat, gaps->smallest_gap(start).dhat);
-    const auto* obstacles = dynamic_cast<const ObstacleGapProvider*>(contact.get());
-    if (!obstacles) continue;
-    for (ObstacleGap& gap : obstacles->obstacle_gaps(start)) summary.obstacles.push_back(std::move(gap));
+    summary.dhat = std::max(summary.dhat, contact->smallest_gap(start).dhat);
+    std::vector<ObstacleGap> gaps = contact->obstacle_gaps(start);
+    if (gaps.empty()) continue;
+    for (ObstacleGap& gap : gaps) summary.obstacles.push_back(std::move(gap));
     for (const TriangleMesh& mesh : contact->obstacles())
       summary.obstacle_sizes.push_back(extents(mesh.vertices));
   }

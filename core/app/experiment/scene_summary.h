@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/app/experiment/experiment.h"
-#include "core/kernel/model/obstacle_gap.h"
+#include "core/kernel/model/gaps.h"
 
 namespace drape {
 

@@ -17,12 +17,8 @@ StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, cons
   StepLimit limit;
   for (std::size_t k = 0; k < to.contacts().size(); ++k) {
     if (to.contacts()[k] == from.contacts()[k]) continue;
-    if (const auto* kinematic = dynamic_cast<const KinematicObstacles*>(to.contacts()[k].get())) {
-      StepLimit own = kinematic->max_step(*from.contacts()[k], x);
-      if (own.fraction < limit.fraction) limit = std::move(own);
-    } else if (const auto found = to.contacts()[k]->intersections(x); !found.empty()) {
-      return {0.5, to_string(found[0])};  // a model that moves nothing itself gives no fraction: try half
-    }
+    StepLimit own = to.contacts()[k]->max_step(*from.contacts()[k], x);
+    if (own.fraction < limit.fraction) limit = std::move(own);
   }
   return limit;
 }

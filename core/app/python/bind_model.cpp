@@ -70,11 +70,10 @@ py::list contacts(const ModelHandle& m, const py::handle& values) {
     one["smallest_gap"] = collisions->smallest_gap();
     one["energy"] = energy;
     one["vertices"] = array_of(collisions->stencils());
-    if (const auto* known = dynamic_cast<const ElementGaps*>(collisions.get())) {
-      std::vector<double> gaps;
-      known->append_gaps(gaps);
+    std::vector<double> gaps;
+    collisions->append_gaps(gaps);
+    if (static_cast<Eigen::Index>(gaps.size()) == collisions->stencils().rows())
       one["gaps"] = py::array_t<double>(static_cast<py::ssize_t>(gaps.size()), gaps.data());
-    }
     one["forces"] = array_of(Positions(-g));
     all.append(one);
   }

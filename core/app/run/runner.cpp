@@ -16,7 +16,6 @@
 #include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/string_utils.h"
-#include "core/kernel/solve/resumable_solver.h"
 
 namespace drape {
 
@@ -194,12 +193,11 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
   for (int m = begun.method; m < static_cast<int>(begun.methods.size()) && !cancelled; ++m) {
     const std::string& name = begun.methods[m];
     const Solver& solver = experiment.solver_of(name);
-    const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver);
     MethodState state;
     state.level = begun.first_level;
     const bool under_way = resumed && m == begun.method;
     if (under_way) state = begun.state;
-    observer.method_started(name, resumable != nullptr, state);
+    observer.method_started(name, solver.can_resume(), state);
     if (under_way) {
       observer.catch_up(state);
     } else {
@@ -209,7 +207,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
     try {
-      results = resumable ? resumable->resume(problem, state, observer) : solver.solve(problem, observer);
+      results = solver.resume(problem, state, observer);
     } catch (const WriteError&) {
       throw;  // concerns the whole run
     } catch (...) {

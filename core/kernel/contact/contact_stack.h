@@ -13,7 +13,7 @@ namespace drape {
 
 /// The sum of several collisions of one contact model, with their elements concatenated. All stencils must
 /// have four columns, all friction contacts one smoothing distance.
-class CollisionStack final : public Collisions, public FrictionalCollisions, public ElementGaps {
+class CollisionStack final : public Collisions {
  public:
   explicit CollisionStack(std::vector<std::unique_ptr<Collisions>> parts) : parts_(std::move(parts)) {}
 
@@ -66,21 +66,17 @@ class CollisionStack final : public Collisions, public FrictionalCollisions, pub
     return forces;
   }
 
-  /// For parts that all know their gaps, as those of core/kernel/contact do.
   void append_gaps(std::vector<double>& gaps) const override {
-    for (const auto& part : parts_) dynamic_cast<const ElementGaps&>(*part).append_gaps(gaps);
+    for (const auto& part : parts_) part->append_gaps(gaps);
   }
 
   void append_friction_contacts(FrictionContacts& groups) const override {
-    for (const auto& part : parts_)
-      if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(part.get()))
-        frictional->append_friction_contacts(groups);
+    for (const auto& part : parts_) part->append_friction_contacts(groups);
   }
   double friction_smoothing_distance() const override {
-    for (const auto& part : parts_)
-      if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(part.get()))
-        return frictional->friction_smoothing_distance();
-    return 0;
+    double distance = 0;
+    for (const auto& part : parts_) distance = std::max(distance, part->friction_smoothing_distance());
+    return distance;
   }
 
  private:

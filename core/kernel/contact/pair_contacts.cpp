@@ -14,7 +14,7 @@ namespace {
 constexpr int contacts_per_task = 128;
 constexpr int run = 1024;  // contacts whose blocks are computed before they are added
 
-class PairCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
+class PairCollisions final : public Collisions {
  public:
   PairCollisions(std::unique_ptr<Contact[]> contacts, int count, int cloth_count,
                  const BarrierParameters& parameters)

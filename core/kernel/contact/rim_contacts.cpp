@@ -44,7 +44,7 @@ struct RimContact {
   }
 };
 
-class RimCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
+class RimCollisions final : public Collisions {
  public:
   RimCollisions(std::vector<RimContact> contacts, int cloth_count, const BarrierParameters& parameters)
       : contacts_(std::move(contacts)), cloth_count_(cloth_count), p_(parameters) {

@@ -15,7 +15,7 @@ using Eigen::Matrix3d, Eigen::Vector3d;
 
 constexpr int features_per_task = 1024;
 
-class SurfaceCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
+class SurfaceCollisions final : public Collisions {
  public:
   SurfaceCollisions(SurfaceContacts all, const BarrierParameters& parameters)
       : all_(std::move(all)), p_(parameters), barriers_(all_.features.size()) {

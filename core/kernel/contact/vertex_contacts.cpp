@@ -15,7 +15,7 @@ namespace {
 using Eigen::Matrix3d, Eigen::Vector3d;
 constexpr int vertex_contacts_per_task = 1024;
 
-class VertexCollisions final : public Collisions, public FrictionalCollisions, public ElementGaps {
+class VertexCollisions final : public Collisions {
  public:
   VertexCollisions(std::vector<VertexContact> contacts, const BarrierParameters& parameters)
       : contacts_(std::move(contacts)), barriers_(contacts_.size()), p_(parameters) {

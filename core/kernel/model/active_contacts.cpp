@@ -93,11 +93,9 @@ void ActiveContacts::reset() {
 }
 
 ObstacleMotion ActiveContacts::motion_since(const BoundContacts& before, std::size_t model) const {
-  const auto* kinematic = dynamic_cast<const KinematicObstacles*>(models_[model].get());
-  if (!kinematic || models_[model] == before[model])
-    return [](const ObstaclePoint&) { return Eigen::Vector3d(0, 0, 0); };
-  return [kinematic, &from = *before[model]](const ObstaclePoint& point) {
-    return kinematic->displacement(from, point);
+  if (models_[model] == before[model]) return [](const ObstaclePoint&) { return Eigen::Vector3d(0, 0, 0); };
+  return [now = models_[model].get(), &from = *before[model]](const ObstaclePoint& point) {
+    return now->displacement(from, point);
   };
 }
 

@@ -10,6 +10,11 @@ std::string to_string(const Intersection& intersection) {
          general_text(at.y(), 4) + ", " + general_text(at.z(), 4) + ")";
 }
 
+StepLimit BoundContact::max_step([[maybe_unused]] const BoundContact& before, const Positions& x) const {
+  const auto found = intersections(x);
+  return found.empty() ? StepLimit{} : StepLimit{0.5, to_string(found.front())};
+}
+
 std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts) {
   std::vector<TriangleMesh> all;
   for (const auto& contact : contacts)

@@ -7,6 +7,7 @@
 
 #include "core/kernel/model/energy.h"
 #include "core/kernel/model/friction.h"
+#include "core/kernel/model/gaps.h"
 #include "core/kernel/model/level.h"
 #include "core/kernel/model/material.h"
 
@@ -41,23 +42,21 @@ struct NormalForces {
 
 /// The collisions closer than d̂ at one state, immutable (`Collisions` of ipc-toolkit). As an energy it is
 /// their barrier potential B, and every x passed to it must be the state that it was built for. A stencil's
-/// columns without a cloth vertex are -1. Collisions with friction are FrictionalCollisions too
-/// (core/kernel/model/friction.h). Collisions may refer to the BoundContact, which outlives them, but not to
-/// the candidates that built them: other candidates replace those while the collisions are in use.
+/// columns without a cloth vertex are -1. Collisions may refer to the BoundContact, which outlives them, but
+/// not to the candidates that built them: other candidates replace those while the collisions are in use.
 class Collisions : public BoundEnergy {
  public:
   virtual int contact_count() const = 0;
   virtual double smallest_gap() const = 0;  ///< [m]; +∞ without a contact
   /// None for collisions without a barrier.
   virtual NormalForces normal_forces() const { return {}; }
-};
-
-/// Optional interface of Collisions that knows the gap of each element, for programs that look at contacts.
-class ElementGaps {
- public:
-  virtual ~ElementGaps() = default;
-  /// Appends the smallest gap [m] of every element, in the order of stencils().
-  virtual void append_gaps(std::vector<double>& gaps) const = 0;
+  /// Appends the contacts with friction, in groups. By default none.
+  virtual void append_friction_contacts([[maybe_unused]] FrictionContacts& groups) const {}
+  /// ε_v h, below which friction is smoothed [m].
+  virtual double friction_smoothing_distance() const { return 0; }
+  /// Appends the smallest gap [m] of every element, in the order of stencils(), for programs that look at
+  /// contacts. By default nothing.
+  virtual void append_gaps([[maybe_unused]] std::vector<double>& gaps) const {}
 };
 
 /// Candidate pairs of the linear motion from x0 to x1, as the broad phase finds them. They may refer to the
@@ -92,22 +91,26 @@ class BoundContact {
   }
   /// One line on pairs of primitives that the barrier leaves out, for messages; empty if there are none.
   virtual std::string remark() const { return ""; }
-};
 
-/// Optional interface of a BoundContact whose obstacles move between load states (kinematic obstacles of
-/// IPC).
-class KinematicObstacles {
- public:
-  virtual ~KinematicObstacles() = default;
-  /// The largest collision-free step of the obstacles from their placement in `before` to their placement
-  /// here, with the cloth fixed at x. `before` must be of the same contact model and level. Obstacle
-  /// parameters are interpolated linearly, so obstacles rotate along arcs. Returns 1 for obstacles that have
-  /// not changed, and for obstacles whose parameters a caller has interpolated by a fraction that an earlier
-  /// call returned. Throws std::runtime_error naming an obstacle whose topology changed.
-  virtual StepLimit max_step(const BoundContact& before, const Positions& x) const = 0;
+  /// The smallest gap at x, for a barrier with a d̂ and a stiffness.
+  virtual SmallestGap smallest_gap([[maybe_unused]] const Positions& x) const { return {}; }
+  /// The gap of each obstacle at x (n×3), which must be free of intersections, however far it is, in the
+  /// order of obstacles(). None by default.
+  virtual std::vector<ObstacleGap> obstacle_gaps([[maybe_unused]] const Positions& x) const { return {}; }
+
+  /// The largest collision-free step of the obstacles (kinematic obstacles of IPC) from their placement in
+  /// `before` to their placement here, with the cloth fixed at x. `before` must be of the same contact model
+  /// and level. Obstacle parameters are interpolated linearly, so obstacles rotate along arcs. Returns 1 for
+  /// obstacles that have not changed, and for obstacles whose parameters a caller has interpolated by a
+  /// fraction that an earlier call returned. Throws std::runtime_error naming an obstacle whose topology
+  /// changed. By default a half if the cloth intersects something here.
+  virtual StepLimit max_step(const BoundContact& before, const Positions& x) const;
   /// The displacement of an obstacle's material point from `before`, whose contacts touch it there, to here
-  /// [m].
-  virtual Eigen::Vector3d displacement(const BoundContact& before, const ObstaclePoint& point) const = 0;
+  /// [m]. By default obstacles do not move.
+  virtual Eigen::Vector3d displacement([[maybe_unused]] const BoundContact& before,
+                                       [[maybe_unused]] const ObstaclePoint& point) const {
+    return {0, 0, 0};
+  }
 };
 
 /// The contacts of one level. Models of the level under different loads may share them.
@@ -130,18 +133,14 @@ class ContactModel {
   virtual ~ContactModel() = default;
   /// Null when there is nothing to collide with: no contact code runs then.
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;
+  /// The same under another load. A model whose binding is costly shares what did not change with `before`,
+  /// which a model of the same plugin was bound to on this level.
+  virtual std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
+                                               [[maybe_unused]] const BoundContact& before) const {
+    return bind(level, material);
+  }
   /// How the model changed its input, a line each, such as "obstacle scan: dropped 3 loose vertices".
   virtual std::vector<std::string> input_remarks() const { return {}; }
-};
-
-/// Optional interface of a ContactModel whose binding is costly, for load stepping.
-class Rebindable {
- public:
-  virtual ~Rebindable() = default;
-  /// The same as bind(level, material). Shares what did not change with `before`, which a model of the same
-  /// plugin was bound to on this level under another load.
-  virtual std::unique_ptr<BoundContact> rebind(const Level& level, const Material& material,
-                                               const BoundContact& before) const = 0;
 };
 
 }  // namespace drape

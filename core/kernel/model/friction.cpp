@@ -206,8 +206,7 @@ Eigen::Matrix3d LaggedFriction::stiffness(int i, const Vector3d& u) const {
 
 FrictionContacts friction_contacts(const Collisions& collisions) {
   FrictionContacts groups;
-  if (const auto* frictional = dynamic_cast<const FrictionalCollisions*>(&collisions))
-    frictional->append_friction_contacts(groups);
+  collisions.append_friction_contacts(groups);
   std::erase_if(groups, [](const auto& group) { return group.empty(); });
   return groups;
 }
@@ -216,9 +215,8 @@ std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisio
                                                       const Positions& reference,
                                                       const TangentialDisplacements& displacements) {
   if (contacts.empty()) return nullptr;
-  const auto& frictional = dynamic_cast<const FrictionalCollisions&>(collisions);
   return std::make_unique<const LaggedFriction>(std::move(contacts), reference, displacements,
-                                                frictional.friction_smoothing_distance());
+                                                collisions.friction_smoothing_distance());
 }
 
 }  // namespace drape

@@ -55,17 +55,6 @@ using FrictionContacts = std::vector<std::vector<FrictionContact>>;
 /// a fraction of 1 keeps them with no force.
 FrictionContacts under_relaxed(const FrictionContacts& before, FrictionContacts now, double fraction);
 
-/// Optional interface of Collisions (core/kernel/model/contact_model.h) with normal forces that friction acts
-/// on.
-class FrictionalCollisions {
- public:
-  virtual ~FrictionalCollisions() = default;
-  /// Appends the contacts with friction, in groups.
-  virtual void append_friction_contacts(FrictionContacts& groups) const = 0;
-  /// ε_v h, below which friction is smoothed [m].
-  virtual double friction_smoothing_distance() const = 0;
-};
-
 /// The lagged friction potential D = Σ force f₀(|u|) (Li et al. 2020, eq. 14 and 15), a value. u is the
 /// tangential part of s + Σ c_k (x_k - reference_k), with s the contact's stored displacement, 0 for a new
 /// contact. f₀(0) = 0 and f₀' = f₁, f₁(y) = 2y/ε - (y/ε)² below ε, 1 above. The Hessian is positive

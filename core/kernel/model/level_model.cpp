@@ -129,14 +129,13 @@ void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>&
   contact_kinds_ = contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     const BoundContact* old = before ? before->bound_.at(k).get() : nullptr;
-    const auto* rebindable = old ? dynamic_cast<const Rebindable*>(contacts[k].get()) : nullptr;
     const std::string name = "contact model " + std::to_string(k);
     if (before && before->contact_kinds_[k] == contacts[k] && before->material_ == material_)
       bound_.push_back(before->bound_[k]);
-    else if (rebindable)
-      bound_.push_back(bound(name, [&] { return rebindable->rebind(*level_, material_, *old); }));
     else
-      bound_.push_back(bound(name, [&] { return contacts[k]->bind(*level_, material_); }));
+      bound_.push_back(bound(name, [&] {
+        return old ? contacts[k]->rebind(*level_, material_, *old) : contacts[k]->bind(*level_, material_);
+      }));
     if (before && (old == nullptr) != (bound_.back() == nullptr))
       throw std::runtime_error(name +
                                " has contacts under one load of the schedule and none under another; it "

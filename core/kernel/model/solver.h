@@ -90,6 +90,7 @@ struct LevelResult {
 };
 
 struct NewtonState;
+struct MethodState;
 
 /// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
 class Observer {
@@ -114,6 +115,15 @@ class Solver {
   virtual ~Solver() = default;
   /// Results of the levels reached, in order. Only misuse throws.
   virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
+  /// Whether the solver can resume an interrupted solve of the same problem (ResumableSolver).
+  virtual bool can_resume() const { return false; }
+  /// Continues from a state, with the results of finished levels at the front; bit for bit as if `solve` had
+  /// not been interrupted. A state without a finished level or one under way begins its level from the start.
+  /// By default begins anew.
+  virtual std::vector<LevelResult> resume(const Problem& problem, [[maybe_unused]] const MethodState& from,
+                                          Observer& observer) const {
+    return solve(problem, observer);
+  }
   /// The prolongations, [l]: n_{l+1} × n_l, for measuring or showing the method's states on finer meshes. By
   /// default linear interpolation over the rest shape, which does not move the surface.
   virtual std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const;

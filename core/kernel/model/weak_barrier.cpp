@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/model/smallest_gap.h"
+#include "core/kernel/model/gaps.h"
 
 namespace drape {
 
@@ -19,9 +19,7 @@ constexpr double suitable_ratio = 10;
 
 std::string weak_barrier(const LevelModel& model, const Positions& x) {
   for (const auto& contact : model.contacts()) {
-    const auto* provider = dynamic_cast<const SmallestGapProvider*>(contact.get());
-    if (!provider) continue;
-    const SmallestGap smallest = provider->smallest_gap(x);
+    const SmallestGap smallest = contact->smallest_gap(x);
     if (!(smallest.gap < weak_gap_fraction * smallest.dhat)) continue;
     const double pressure = model.load_pressure(x);
     if (smallest.stiffness >= pressure) continue;

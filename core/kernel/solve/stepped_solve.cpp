@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernel/solve/resumable_solver.h"
-
 namespace drape {
 
 SteppedSolve::SteppedSolve(const Solver& solver, Problem problem, MethodState from)
@@ -15,7 +13,7 @@ SteppedSolve::SteppedSolve(const Solver& solver, Problem problem, MethodState fr
       finished_(from_.finished),
       checkpoint_(from_) {
   const bool from_beginning = from_.finished.empty() && from_.level == 0 && !from_.under_way;
-  if (!from_beginning && !dynamic_cast<const ResumableSolver*>(&solver))
+  if (!from_beginning && !solver.can_resume())
     throw std::runtime_error("the solver cannot go on from a state; start it at the beginning");
 }
 
@@ -46,11 +44,7 @@ bool SteppedSolve::advance() {
 void SteppedSolve::run() {
   std::exception_ptr error;
   try {
-    const auto* resumable = dynamic_cast<const ResumableSolver*>(&solver_);
-    if (resumable)
-      resumable->resume(problem_, from_, *this);
-    else
-      solver_.solve(problem_, *this);
+    solver_.resume(problem_, from_, *this);
   } catch (...) {
     error = std::current_exception();
   }

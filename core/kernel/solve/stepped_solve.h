@@ -20,7 +20,7 @@ namespace drape {
 class SteppedSolve : private Observer {
  public:
   /// The solver and what the problem refers to must outlive the object. `from` is a state to resume from.
-  /// Throws std::runtime_error if the solver is no ResumableSolver and `from` is not the beginning.
+  /// Throws std::runtime_error if the solver cannot resume and `from` is not the beginning.
   SteppedSolve(const Solver& solver, Problem problem, MethodState from = {});
   /// Stops the solve at its next step and waits for that.
   ~SteppedSolve() override;
@@ -36,7 +36,7 @@ class SteppedSolve : private Observer {
   bool ended() const { return turn_ == Turn::ended; }
   const std::vector<LevelResult>& finished() const { return finished_; }  ///< levels, in order
   /// The state at the beginning of the step of the last iteration. Resuming from it repeats that step. Of a
-  /// solver that is no ResumableSolver, only its finished levels.
+  /// solver that cannot resume, only its finished levels.
   const MethodState& checkpoint() const { return checkpoint_; }
 
   /// Ends the level at the beginning of the next step. Without effect on the finest level.

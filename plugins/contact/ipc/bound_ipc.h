@@ -6,8 +6,7 @@
 
 #include "core/kernel/contact/broad_phase.h"
 #include "core/kernel/contact/self_pairs.h"
-#include "core/kernel/model/obstacle_gap.h"
-#include "core/kernel/model/smallest_gap.h"
+#include "core/kernel/model/gaps.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 
@@ -44,10 +43,7 @@ struct ObstacleTree {
 };
 
 /// The contact model `ipc` bound to one level.
-class BoundIpc final : public BoundContact,
-                       public KinematicObstacles,
-                       public SmallestGapProvider,
-                       public ObstacleGapProvider {
+class BoundIpc final : public BoundContact {
  public:
   BoundIpc(const Ipc::Parameters& parameters, std::shared_ptr<const ObstacleTree> obstacles,
            std::shared_ptr<const RestCloth> rest, const Material& material);

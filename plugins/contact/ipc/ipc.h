@@ -14,7 +14,7 @@ struct ObstacleTree;
 struct RestCloth;
 
 /// Incremental potential contact (Li et al. 2020, 2021) of a cloth with itself and with triangle meshes.
-class Ipc final : public ContactModel, public Rebindable {
+class Ipc final : public ContactModel {
  public:
   struct Parameters : ContactParameters {
     bool self_contact = true;

@@ -58,7 +58,7 @@ std::unique_ptr<BoundContact> bound(const Bodies& bodies, const Level& level, do
 }
 
 StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return dynamic_cast<const KinematicObstacles&>(after).max_step(before, x);
+  return after.max_step(before, x);
 }
 
 /// Interpolates as load stepping does after a shortened obstacle step.
@@ -334,7 +334,7 @@ TEST_CASE("ipc: touched points move with their obstacle") {
   const Eigen::Matrix3d turn = obstacle_of(to[0]).geometry.pose.linear();
   const auto collisions = before->build_candidates(x, x)->build_collisions(x);
   FrictionContacts groups;
-  dynamic_cast<const FrictionalCollisions&>(*collisions).append_friction_contacts(groups);
+  collisions->append_friction_contacts(groups);
   int above = 0;
   for (const auto& group : groups)
     for (const FrictionContact& contact : group) {
@@ -345,8 +345,7 @@ TEST_CASE("ipc: touched points move with their obstacle") {
       const Vector moved = turn * own + to[0].translate - (own + from[0].translate);
       CAPTURE(v);
       CHECK(contact.touched.obstacle == 0);
-      CHECK((dynamic_cast<const KinematicObstacles&>(*after).displacement(*before, contact.touched) - moved)
-                .norm() < 1e-12);
+      CHECK((after->displacement(*before, contact.touched) - moved).norm() < 1e-12);
     }
   CHECK(above >= 10);
 }

@@ -9,8 +9,7 @@
 #include "core/kernel/contact/nonlinear_ccd.h"
 #include "core/kernel/contact/vertex_contacts.h"
 #include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/model/obstacle_gap.h"
-#include "core/kernel/model/smallest_gap.h"
+#include "core/kernel/model/gaps.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
 #include "plugins/contact/shapes/solid_trajectory.h"
@@ -93,10 +92,7 @@ class ShapesCandidates final : public CollisionCandidates {
   CandidatePairs candidates_;
 };
 
-class BoundShapes final : public BoundContact,
-                          public KinematicObstacles,
-                          public SmallestGapProvider,
-                          public ObstacleGapProvider {
+class BoundShapes final : public BoundContact {
  public:
   explicit BoundShapes(ShapeScene scene) : scene_(std::make_shared<const ShapeScene>(std::move(scene))) {}
 

@@ -36,7 +36,7 @@ std::unique_ptr<BoundContact> bound(const ShapeParameters& shape, const Level& l
 }
 
 StepLimit max_step(const BoundContact& before, const BoundContact& after, const Positions& x) {
-  return dynamic_cast<const KinematicObstacles&>(after).max_step(before, x);
+  return after.max_step(before, x);
 }
 
 ShapeParameters blended(const ShapeParameters& from, const ShapeParameters& to, double part) {
@@ -189,14 +189,14 @@ namespace {
 std::vector<FrictionContact> friction_contacts(const BoundContact& contact, const Positions& x) {
   const auto collisions = contact.build_candidates(x, x)->build_collisions(x);
   FrictionContacts groups;
-  dynamic_cast<const FrictionalCollisions&>(*collisions).append_friction_contacts(groups);
+  collisions->append_friction_contacts(groups);
   std::vector<FrictionContact> all;
   for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
   return all;
 }
 
 Vector3d displacement(const BoundContact& from, const BoundContact& to, const ObstaclePoint& point) {
-  return dynamic_cast<const KinematicObstacles&>(to).displacement(from, point);
+  return to.displacement(from, point);
 }
 
 }  // namespace

@@ -26,8 +26,9 @@ class NewtonSolver : public ResumableSolver {
       if (!state) observer.level_started(l);
       if (problem.load_stepping && !state) problem.load_stepping->begin(l, true);
       PlainObjective objective(problem.model(l));
-      results.push_back(minimise(objective, problem.starts[l], p_.newton,
-                                 {clock, observer, l < problem.finest(), {}, state, problem.load_stepping}));
+      LevelRun run{clock, observer, l < problem.finest(), {}, state, problem.load_stepping};
+      run.hierarchy = &problem.hierarchy;
+      results.push_back(minimise(objective, problem.starts[l], p_.newton, run));
       results.back().from_initial_state = true;
       observer.level_finished(results.back());
       if (results.back().outcome == Outcome::cancelled) break;

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <string>
-
-#include "core/kernel/mesh/triangle_mesh.h"
 
 namespace drape {
 
@@ -15,11 +14,11 @@ struct SmallestGap {
   double stiffness = 0;                                  ///< κ of the barrier [Pa]
 };
 
-/// Optional interface of a BoundContact whose barrier has a d̂ and a stiffness.
-class SmallestGapProvider {
- public:
-  virtual ~SmallestGapProvider() = default;
-  virtual SmallestGap smallest_gap(const Positions& x) const = 0;
+/// How far the cloth is from an obstacle.
+struct ObstacleGap {
+  std::string obstacle;       ///< its name in messages
+  double gap = 0;             ///< the shortest distance [m]
+  Eigen::Vector3d direction;  ///< unit, from the obstacle towards the cloth there
 };
 
 }  // namespace drape
