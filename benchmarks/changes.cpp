@@ -129,7 +129,7 @@ int run(const char* result_file, const std::string& side) {
       const double middle = median(seconds), ms = 1e3 * middle / std::max(r.steps, 1);
       std::printf("%-28s %-9s %8d %12.2f %10.3f %14.8f\n", what, methods[m], r.steps, ms, middle, r.energy);
       rows[k][methods[m]] = {
-          {"steps", r.steps},          {"iterations", r.iterations}, {"seconds", middle},
+          {"steps", r.steps},          {"iterations", r.iterations},        {"seconds", middle},
           {"seconds_lowest", *lowest}, {"seconds_highest", *highest},       {"milliseconds_a_step", ms},
           {"energy", r.energy},        {"force_residual", r.force_residual}};
     }

@@ -393,7 +393,8 @@ TEST_CASE("a report has plots of load increments if there is a schedule") {
   Json& increments = run.results["methods"]["pcs"]["increments"];
   for (const int level : {1, 0})
     for (const double time : {0.5, 1.0})
-      increments.push_back({{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy_released", time}});
+      increments.push_back(
+          {{"level", level}, {"time", time}, {"steps", 10 * time}, {"energy_released", time}});
   const std::string page = run.page();
   CHECK(contains(page, "id=\"load-stepping\""));
   CHECK(contains(page, "id=\"increment-energy\""));
@@ -494,8 +495,7 @@ TEST_CASE("every method has a verdict beside the others that converged") {
   CHECK(contains(outcome_sentence(run), "2 of 3 methods converged (force residual below 0.001); <b>pcs</b>"));
 
   run.methods[2].status = "converged_to_rounding";
-  CHECK(method_verdict(run, run.methods[2]) ==
-        "3.00× the fastest's time; released 16.7&nbsp;% less energy");
+  CHECK(method_verdict(run, run.methods[2]) == "3.00× the fastest's time; released 16.7&nbsp;% less energy");
   CHECK(contains(outcome_sentence(run),
                  "3 of 3 methods converged (force residual below 0.001, or as low as rounding allows)"));
 }

@@ -119,7 +119,8 @@ void fields(A& a, HessianModification::State& s) {
 
 template <class A>
 void fields(A& a, FactorCache::State& s) {
-  a(s.modification, s.pattern, s.analysis, s.age, s.fallback, s.fallback_updates, s.solver, s.shift, s.values);
+  a(s.modification, s.pattern, s.analysis, s.age, s.fallback, s.fallback_updates, s.solver, s.shift,
+    s.values);
 }
 
 template <class A>
