@@ -89,8 +89,8 @@ fs::path compiled(const fs::path& source) {
   key += std::to_string(fs::last_write_time(kernel).time_since_epoch().count());
   std::ostringstream name;
   name << source.stem().string() << '-' << std::hex << std::hash<std::string>()(key);
-  const fs::path folder = cache_folder() / name.str(), library = folder / (source.stem().string() + ".so"),
-                 stamps = folder / "headers";
+  fs::path folder = cache_folder() / name.str();
+  const fs::path library = folder / (source.stem().string() + ".so"), stamps = folder / "headers";
   if (fs::exists(library) && same_headers(stamps)) return folder;
 
   make_folder(folder);
