@@ -237,7 +237,7 @@ methods: {pcs: {}}
   CHECK(increments.intersections == 0);
   REQUIRE(increments.rows.size() == 8);  // of level 0, and the last ones of level 1
   CHECK(s.model().material().density == 100);
-  const auto& limit = dynamic_cast<const StretchLimited&>(*s.model().limits()[0]);
+  const auto& limit = *s.model().limits()[0]->stretch_limit();
   CHECK(limit.limit() == 1.05);
   CHECK(limit.violations(s.x()).empty());
 }

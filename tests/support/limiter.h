@@ -3,7 +3,7 @@
 #include "core/kernel/model/energy.h"
 
 /// A strain limit without an energy, which allows a fixed fraction of every step.
-class Limiter : public drape::Energy, public drape::BoundEnergy, public drape::StepFilter {
+class Limiter : public drape::Energy, public drape::BoundEnergy {
  public:
   explicit Limiter(double fraction) : fraction_(fraction) {}
 

@@ -64,6 +64,8 @@ struct StepLimit {
   std::string by;       ///< name of the limiting element or pair; empty at 1
 };
 
+class StretchLimited;
+
 /// An energy bound to one level: E(x), ∂E/∂x, ∂²E/∂x². Immutable; evaluation is const, stateless and bitwise
 /// reproducible with any number of threads.
 class BoundEnergy {
@@ -84,14 +86,14 @@ class BoundEnergy {
   /// Adds ∂²E/∂x² [N/m], projected per element, to the sink: element e of stencils() adds its
   /// 3×3 blocks (a, b), a ≤ b, a and b being columns of stencils().
   virtual void add_hessian(const Positions& x, Projection projection, BlockSink& sink) const = 0;
-};
 
-/// Optional interface of a BoundEnergy with a bounded domain.
-class StepFilter {
- public:
-  virtual ~StepFilter() = default;
-  /// Largest step from x0, which is in the domain, straight towards x1 that stays in the domain.
-  virtual StepLimit max_step(const Positions& x0, const Positions& x1) const = 0;
+  /// For a bounded domain: the largest step from x0, which is in it, straight towards x1 that stays in it.
+  virtual StepLimit max_step([[maybe_unused]] const Positions& x0,
+                             [[maybe_unused]] const Positions& x1) const {
+    return {};
+  }
+  /// Itself as a limit of stretches; null for other energies.
+  virtual const StretchLimited* stretch_limit() const { return nullptr; }
 };
 
 /// A kind of energy, made by name from its parameters. It makes one BoundEnergy for each level.

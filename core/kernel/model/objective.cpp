@@ -65,11 +65,10 @@ std::shared_ptr<const BlockPattern> Objective::restore(PatternState state, const
 
 StepLimit Objective::max_step(const Positions& x0, const Positions& x1) {
   StepLimit limit;
-  for (const BoundEnergy* energy : limits_)
-    if (const auto* filter = dynamic_cast<const StepFilter*>(energy)) {
-      StepLimit own = filter->max_step(x0, x1);
-      if (own.fraction < limit.fraction) limit = std::move(own);
-    }
+  for (const BoundEnergy* energy : limits_) {
+    StepLimit own = energy->max_step(x0, x1);
+    if (own.fraction < limit.fraction) limit = std::move(own);
+  }
   if (!contacts_.any()) return limit;
   const StepLimit contact = contacts_.max_step(x0, x0 + limit.fraction * (x1 - x0));
   if (contact.fraction < 1) limit = {limit.fraction * contact.fraction, contact.by};

@@ -15,7 +15,7 @@ std::string strain_limit_violations(const std::vector<const BoundEnergy*>& energ
                                     std::size_t most_named) {
   std::string text;
   for (const BoundEnergy* energy : energies)
-    if (const auto* limit = dynamic_cast<const StretchLimited*>(energy)) {
+    if (const StretchLimited* limit = energy->stretch_limit()) {
       const std::vector<StretchedTriangle> violations = limit->violations(x);
       for (std::size_t k = 0; k < std::min(violations.size(), most_named); ++k)
         text += (text.empty() ? "" : ", ") + to_string(violations[k], limit->limit());

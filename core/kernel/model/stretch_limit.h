@@ -17,15 +17,15 @@ struct StretchedTriangle {
 /// "triangle 12, stretched to 1.0712 (limit 1.0608)"
 std::string to_string(const StretchedTriangle& stretched, double limit);
 
-/// Optional interface of a BoundEnergy that keeps the stretch of triangles below a limit.
+/// What BoundEnergy::stretch_limit gives for an energy that keeps the stretch of triangles below a limit.
 class StretchLimited {
  public:
   virtual ~StretchLimited() = default;
   virtual double limit() const = 0;  ///< s [1]
   /// Triangles that violate the limit at x (σ₁ ≥ s, or NaN), by rising index.
   virtual std::vector<StretchedTriangle> violations(const Positions& x) const = 0;
-  /// The same limit, also a StretchLimited and StepFilter, restricted to the triangles that `excluded` does
-  /// not flag (one entry a triangle of the level). Safe refinement uses it as long as some triangles
+  /// The same limit, with its own stretch_limit and max_step, restricted to the triangles that `excluded`
+  /// does not flag (one entry a triangle of the level). Safe refinement uses it as long as some triangles
   /// violate the limit.
   virtual std::unique_ptr<BoundEnergy> restricted(const std::vector<char>& excluded) const = 0;
 };

@@ -47,13 +47,13 @@ class TargetObjective : public Objective {
   int partition_by_strain_limit(const Positions& y) {
     violating_.assign(model().level().triangle_count(), 0);
     for (const BoundEnergy* energy : model().limits())
-      if (const auto* limit = dynamic_cast<const StretchLimited*>(energy))
+      if (const StretchLimited* limit = energy->stretch_limit())
         for (const StretchedTriangle& t : limit->violations(y)) violating_[t.triangle] = 1;
     const int count = static_cast<int>(std::count(violating_.begin(), violating_.end(), 1));
     restricted_limits_.clear();
     std::vector<const BoundEnergy*> limits;
     for (const BoundEnergy* energy : model().limits()) {
-      const auto* limit = dynamic_cast<const StretchLimited*>(energy);
+      const StretchLimited* limit = energy->stretch_limit();
       if (limit && count > 0) {
         restricted_limits_.push_back(limit->restricted(violating_));
         limits.push_back(restricted_limits_.back().get());

@@ -25,7 +25,7 @@ struct Limited {
   std::shared_ptr<const Positions> rest_positions;
 };
 
-class BoundStrainLimit final : public BoundEnergy, public StepFilter, public StretchLimited {
+class BoundStrainLimit final : public BoundEnergy, public StretchLimited {
  public:
   /// `order` orders limited.corners.
   BoundStrainLimit(double limit, Limited limited, ElementOrder order)
@@ -40,6 +40,7 @@ class BoundStrainLimit final : public BoundEnergy, public StepFilter, public Str
     energy_.add_hessian(x, projection, sink);
   }
 
+  const StretchLimited* stretch_limit() const override { return this; }
   StepLimit max_step(const Positions& x0, const Positions& x1) const override {
     struct Shortest {
       double fraction = 1;

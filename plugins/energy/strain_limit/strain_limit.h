@@ -7,7 +7,7 @@
 namespace drape {
 
 /// Strain limit of C-IPC (docs/theory/method.md, section 5): a barrier on principal stretches above 1, +∞ at
-/// the limit. Its bound energy is also a StepFilter and StretchLimited.
+/// the limit. Its bound energy has a max_step and a stretch_limit.
 class StrainLimit final : public Energy {
  public:
   struct Parameters {
