@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cfenv>
 #include <cstdint>
 #include <exception>
 #include <mutex>
@@ -43,7 +44,10 @@ class Pool {
     std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
     if (!lock) return false;
     while (static_cast<int>(started_) < threads - 1) {
-      std::thread([this, index = started_] { help(index); }).detach();
+      std::thread([this, index = started_] {
+        std::fesetenv(FE_DFL_ENV);  // not that of the caller, who may flush denormals just now
+        help(index);
+      }).detach();
       ++started_;
     }
     task_ = &task;
