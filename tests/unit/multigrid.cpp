@@ -1,5 +1,6 @@
 #include "core/kernel/linear_algebra/multigrid.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "core/kernel/linear_algebra/parallel.h"
@@ -44,6 +45,34 @@ methods: {newton: {}}
       of += b.row(i).squaredNorm();
     }
     return std::sqrt(sum / of);
+  }
+};
+
+/// A cache of the cloth at rest, and what it solved last.
+struct Cache {
+  PlainObjective objective;
+  LevelResult result;
+  Iterate iterate;
+  FactorCache cache;
+  Positions solution;
+  static LevelResult at_rest(const Hanging& h) {
+    LevelResult r;
+    r.x = h.s.rest();
+    return r;
+  }
+  Cache(const Hanging& h, const NewtonParameters& p)
+      : objective(h.s.model()),
+        result(at_rest(h)),
+        iterate(objective, result),
+        cache(iterate, p, &h.s.scene->hierarchy) {
+    iterate.set_constraints(h.s.model().fixed(), nullptr);
+    iterate.evaluate();
+  }
+  int factorisations(const Hanging& h) {
+    const int before = result.factorisations;
+    REQUIRE(cache.solve(h.s.model().fixed(), 1e6, 1, h.b, solution));
+    cache.end_iteration(1);
+    return result.factorisations - before;
   }
 };
 
@@ -98,42 +127,70 @@ TEST_CASE("Multigrid keeps its matrix for later iterations, also across a checkp
   NewtonParameters p;
   p.linear_solver = LinearSolver::multigrid;
   p.hessian_update_interval = 2;
-  const Hierarchy& hierarchy = h.s.scene->hierarchy;
-  struct Cache {
-    PlainObjective objective;
-    LevelResult result;
-    Iterate iterate;
-    FactorCache cache;
-    Positions solution;
-    static LevelResult at_rest(const Hanging& h) {
-      LevelResult r;
-      r.x = h.s.rest();
-      return r;
-    }
-    Cache(const Hanging& h, const NewtonParameters& p, const Hierarchy& hierarchy)
-        : objective(h.s.model()),
-          result(at_rest(h)),
-          iterate(objective, result),
-          cache(iterate, p, &hierarchy) {
-      iterate.set_constraints(h.s.model().fixed(), nullptr);
-      iterate.evaluate();
-    }
-    int factorisations(const Hanging& h) {
-      const int before = result.factorisations;
-      REQUIRE(cache.solve(h.s.model().fixed(), 1e6, 1, h.b, solution));
-      cache.end_iteration(1);
-      return result.factorisations - before;
-    }
-  };
-  Cache first(h, p, hierarchy), second(h, p, hierarchy);
+  Cache first(h, p), second(h, p);
   REQUIRE(first.factorisations(h) == 1);
   REQUIRE(first.cache.state().solver == LinearSolver::multigrid);
   CHECK(first.cache.analyses() == 0);  // of the whole matrix
+  const double flops = first.result.flops;
   second.cache.restore(first.cache.state());
   CHECK(first.factorisations(h) == 0);
   CHECK(second.factorisations(h) == 0);
   CHECK(second.solution == first.solution);
+  CHECK(second.result.flops == first.result.flops - flops);
   CHECK(first.factorisations(h) == 1);
+}
+
+TEST_CASE("What multigrid falls back on is forgotten, and a checkpoint keeps the count of it") {
+  const Hanging h;
+  NewtonParameters p;
+  p.linear_solver = LinearSolver::multigrid;
+  Cache first(h, p), second(h, p);
+  REQUIRE(first.cache.update(h.s.model().fixed(), 1e6, 1));
+  CHECK_FALSE(first.cache.state().analysis.fixed.empty());
+  first.cache.invalidate();
+  REQUIRE(first.factorisations(h) == 1);
+  CHECK(first.cache.state().analysis.fixed.empty());
+  second.cache.restore(first.cache.state());
+  for (Cache* c : {&first, &second}) {
+    REQUIRE(c->cache.update(h.s.model().fixed(), 1e6, 1));
+    CHECK(c->cache.analyses() == 2);
+  }
+  CHECK(second.cache.state().analysis.ordering == first.cache.state().analysis.ordering);
+}
+
+TEST_CASE("Multigrid has the same bits whatever it solved before") {
+  // A resumed run knows nothing of the contacts of earlier iterations.
+  Hanging h;
+  h.shift *= 1e-4;  // soft modes show the last bits of the coarsest mesh's solution
+  const std::vector<char>& fixed = h.s.model().fixed();
+  const BlockPattern& elastic = *h.matrix.pattern;
+  const auto for_each_block = [&](const auto& visit) {
+    for (int i = 0; i < elastic.rows(); ++i)
+      for (int k = elastic.row_start[i]; k < elastic.row_start[i + 1]; ++k) visit(i, elastic.columns[k], k);
+  };
+  Stencils blocks(elastic.blocks(), 2), contacts(5, 2);
+  for_each_block([&](int i, int j, int k) { blocks.row(k) << i, i == j ? -1 : j; });
+  for (int i = 0; i < 5; ++i) contacts.row(i) << 1 + i, 3000 + 300 * i;
+  const auto pattern = BlockPattern::of(elastic.rows(), {blocks, contacts});
+  BlockMatrix touching(pattern);
+  for_each_block(
+      [&](int i, int j, int k) { std::copy_n(h.matrix.block(k), 9, touching.block(pattern->find(i, j))); });
+  for (int c = 0; c < 5; ++c)
+    for (int a = 0; a < 2; ++a)
+      for (int b = a; b < 2; ++b)
+        for (int e = 0; e < 9; e += 4)
+          touching.block(pattern->find(contacts(c, a), contacts(c, b)))[e] += a == b ? 1 : -1;
+
+  Multigrid used = h.multigrid(), fresh = h.multigrid();
+  REQUIRE(used.set(h.matrix, h.shift, fixed));
+  used.take_flops();
+  REQUIRE(used.set(touching, h.shift, fixed));
+  REQUIRE(fresh.set(touching, h.shift, fixed));
+  Positions x, expected;
+  CHECK(used.solve(h.b, x) == fresh.solve(h.b, expected));
+  CHECK(used.take_flops() == fresh.take_flops());
+  REQUIRE(expected.norm() > 0);
+  CHECK(x == expected);
 }
 
 TEST_CASE("By itself multigrid is for large levels of a hierarchy") {

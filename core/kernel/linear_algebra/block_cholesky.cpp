@@ -125,7 +125,7 @@ void BlockCholesky::analyse(std::shared_ptr<const BlockPattern> pattern, const s
 }
 
 void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis) {
-  pattern_ = std::move(pattern);
+  pattern_ = analysis.fixed.empty() ? nullptr : std::move(pattern);
   fixed_ = std::move(analysis.fixed);
   analyses_ = analysis.count;
   ordering_ = std::move(analysis.ordering);
@@ -133,6 +133,16 @@ void BlockCholesky::restore(std::shared_ptr<const BlockPattern> pattern, Analysi
   if (pattern_)
     order_and_analyse(std::move(analysis.reused_ordering), std::numeric_limits<double>::infinity());
   ordering_flops_ = analysis.ordering_flops;
+}
+
+void BlockCholesky::forget() {
+  pattern_.reset();
+  fixed_.clear();
+  ordering_.clear();
+  reused_ordering_.clear();
+  factor_ = make_factor(solver_);
+  flops_ = entries_ = ordering_flops_ = 0;
+  has_factor_ = false;
 }
 
 void BlockCholesky::order_and_analyse(std::vector<int> ordering, double max_flops) {

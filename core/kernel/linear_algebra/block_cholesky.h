@@ -54,8 +54,14 @@ class BlockCholesky {
 
   Analysis analysis() const { return {fixed_, reused_ordering_, ordering_, ordering_flops_, analyses_}; }
   /// Restores the layout that this analysis of the pattern gave, without a factor. If the pattern is null,
-  /// since it was invalidated, restores only the ordering for the next analysis.
+  /// since it was invalidated, restores only the ordering for the next analysis; if the analysis was
+  /// forgotten, only the count.
   void restore(std::shared_ptr<const BlockPattern> pattern, Analysis analysis);
+
+  /// Drops the factor and the ordering: the next analysis does not depend on the ones before.
+  void forget();
+  /// Whether there is an ordering that the next analysis may reuse.
+  bool is_analysed() const { return !fixed_.empty(); }
 
   bool has_factor() const { return has_factor_; }
   int unknowns() const { return 3 * static_cast<int>(ordering_.size()); }

@@ -37,7 +37,8 @@ bool Multigrid::set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, con
     flops_ += 18 * meshes_[k]->make_product(*meshes_[k + 1]);
   }
   MultigridMesh& coarsest = *meshes_.back();
-  coarsest.copy_to(coarsest_matrix_);
+  // An ordering from former contacts would change last bits, and a resumed run has none.
+  if (coarsest.copy_to(coarsest_matrix_)) coarsest_.forget();
   coarsest_.analyse(coarsest_matrix_.pattern, std::vector<char>(coarsest.order.size(), 0));
   flops_ += coarsest_.flops();
   return is_set_ = coarsest_.factorise(coarsest_matrix_, Eigen::VectorXd::Zero(coarsest.size()));

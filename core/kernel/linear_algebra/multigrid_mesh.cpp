@@ -245,7 +245,7 @@ double MultigridMesh::make_product(MultigridMesh& coarse) const {
   return terms;
 }
 
-void MultigridMesh::copy_to(BlockMatrix& to) const {
+bool MultigridMesh::copy_to(BlockMatrix& to) const {
   std::vector<int> start = {0}, columns;
   std::vector<double> upper;
   for (int i = 0; i < size(); ++i) {
@@ -257,9 +257,10 @@ void MultigridMesh::copy_to(BlockMatrix& to) const {
     }
     start.push_back(static_cast<int>(columns.size()));
   }
-  if (!to.pattern || to.pattern->columns != columns || to.pattern->row_start != start)
-    to = BlockMatrix(std::make_shared<const BlockPattern>(std::move(start), std::move(columns)));
+  const bool is_new = !to.pattern || to.pattern->columns != columns || to.pattern->row_start != start;
+  if (is_new) to = BlockMatrix(std::make_shared<const BlockPattern>(std::move(start), std::move(columns)));
   to.values = std::move(upper);
+  return is_new;
 }
 
 }  // namespace drape

@@ -39,8 +39,9 @@ struct MultigridMesh {
   void fill(const BlockMatrix& given, const Eigen::VectorXd& shift, const std::vector<char>& fixed);
   /// Makes the coarser mesh' matrix Pᵀ A P. Returns the number of multiplications of blocks.
   double make_product(MultigridMesh& coarse) const;
-  /// The matrix by vertices; keeps its pattern object while the pattern is the same.
-  void copy_to(BlockMatrix& matrix) const;
+  /// The matrix by vertices. Keeps its pattern object while the pattern is the same; returns whether it is
+  /// not.
+  bool copy_to(BlockMatrix& matrix) const;
 
   std::vector<int> order, position;  ///< order[p] is the vertex at position p
   Weights parents, children;         ///< to and from the next coarser mesh

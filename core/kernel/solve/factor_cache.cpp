@@ -27,9 +27,8 @@ LinearSolver direct_solver(const NewtonParameters& p) {
 }
 
 LinearSolver factorising_solver(const NewtonParameters& p) {
-  const bool is_direct = p.form == NewtonForm::statics || p.linear_solver == LinearSolver::supernodal ||
-                         p.linear_solver == LinearSolver::cholmod;
-  return is_direct ? direct_solver(p) : LinearSolver::mixed;
+  const LinearSolver direct = direct_solver(p);
+  return p.form == NewtonForm::statics || p.linear_solver == direct ? direct : LinearSolver::mixed;
 }
 
 }  // namespace
@@ -46,7 +45,11 @@ FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters, c
 
 void FactorCache::use(LinearSolver solver) {
   solver_ = solver;
-  if (solver != LinearSolver::multigrid) cholesky_.use(solver);
+  // What multigrid fell back on does not follow the pattern any more: a resumed run could not restore it.
+  if (solver == LinearSolver::multigrid)
+    cholesky_.forget();
+  else
+    cholesky_.use(solver);
 }
 
 bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
@@ -100,19 +103,20 @@ bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, doub
 bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
   LevelResult& result = iterate_.result();
   too_slow_ = false;
-  factored_ = &matrix;
-  shift_ = shift;
   ++result.factorisations;
   if (solver_ != LinearSolver::multigrid) analyse(matrix, fixed);
   PhaseTimer t(result.seconds_by_phase, "factorise");
-  const Eigen::VectorXd shifts = shift_ * iterate_.model().masses();
-  if (solver_ == LinearSolver::multigrid) {
-    const bool is_definite = multigrid_->set(matrix, shifts, fixed);
-    result.flops += multigrid_->take_flops();
-    return is_definite;
-  }
-  result.flops += cholesky_.flops();
-  return cholesky_.factorise(matrix, shifts);
+  const bool is_definite = set_matrix(matrix, fixed, shift);
+  result.flops += solver_ == LinearSolver::multigrid ? multigrid_->take_flops() : cholesky_.flops();
+  return is_definite;
+}
+
+bool FactorCache::set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
+  factored_ = &matrix;
+  shift_ = shift;
+  const Eigen::VectorXd shifts = shift * iterate_.model().masses();
+  return solver_ == LinearSolver::multigrid ? multigrid_->set(matrix, shifts, fixed)
+                                            : cholesky_.factorise(matrix, shifts);
 }
 
 void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fixed) {
@@ -125,7 +129,7 @@ const BlockMatrix& FactorCache::plain_hessian() {
   // New contacts may have added blocks. They are analysed now and not with the next factorisation: a
   // checkpoint stores the pattern of the last matrix, and a resumed run takes that for the one that was
   // analysed.
-  if (cholesky_.analyses() > 0) analyse(matrix, iterate_.fixed());
+  if (cholesky_.is_analysed()) analyse(matrix, iterate_.fixed());
   invalidate();
   return matrix;
 }
@@ -164,14 +168,9 @@ void FactorCache::restore(const State& s) {
     throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
   matrix.values = s.values;
   restored_ = std::move(matrix);
-  factored_ = &restored_;
   use(s.solver);
-  shift_ = s.shift;
-  const Eigen::VectorXd shifts = shift_ * iterate_.model().masses();
-  if (solver_ == LinearSolver::multigrid)
-    multigrid_->set(restored_, shifts, iterate_.fixed());
-  else
-    cholesky_.factorise(restored_, shifts);
+  set_matrix(restored_, iterate_.fixed(), s.shift);
+  if (multigrid_) multigrid_->take_flops();  // they were counted when the factor was made
 }
 
 }  // namespace drape

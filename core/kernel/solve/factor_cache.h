@@ -81,7 +81,8 @@ class FactorCache {
     return has_factor && age_ < interval_;
   }
   void use(LinearSolver solver);
-  void set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
+  /// Makes the factor, or the meshes' matrices, of the analysed matrix plus the shift.
+  bool set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
   void analyse(const BlockMatrix& matrix, const std::vector<char>& fixed);
   bool factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift);
   bool solve_with_factor(const Positions& right_hand_side, Positions& solution);
