@@ -20,7 +20,7 @@ int most_cycles(double vertices) { return std::max(10, static_cast<int>(0.15 * s
 
 }  // namespace
 
-Multigrid::Multigrid(const std::vector<ProlongationMatrix>& prolongations) {
+Multigrid::Multigrid(std::span<const ProlongationMatrix> prolongations) {
   std::size_t first = prolongations.size() - 1;
   while (first > 0 && prolongations[first].cols() > small_mesh) --first;
   meshes_.push_back(std::make_unique<MultigridMesh>(static_cast<int>(prolongations[first].cols())));
@@ -58,11 +58,11 @@ void Multigrid::cycle(int mesh) {
   MultigridMesh& c = *meshes_[static_cast<std::size_t>(mesh) + 1];
   f.matrix.presmooth(f.b, f.x, f.r);
   parallel_for(c.size(), SmoothedMatrix::piece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) c.b[i] = f.children.sum(i, f.r);
+    for (int i = begin; i < end; ++i) c.b[i] = weighted_sum(f.children, i, f.r);
   });
   cycle(mesh + 1);
   parallel_for(f.size(), SmoothedMatrix::piece, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) f.x[i] += f.parents.sum(i, c.x);
+    for (int i = begin; i < end; ++i) f.x[i] += weighted_sum(f.parents, i, c.x);
   });
   f.matrix.postsmooth(f.b, f.x, f.old);
   flops_ += 2 * f.matrix.flops_of_product();

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/kernel/linear_algebra/block_cholesky.h"
@@ -20,8 +21,9 @@ namespace drape {
 /// grow with their power of 1.5. Gives the same bits with any number of threads.
 class Multigrid {
  public:
-  /// `prolongations` lead from the coarsest mesh to the matrix' own, at least one. Copies them.
-  explicit Multigrid(const std::vector<ProlongationMatrix>& prolongations);
+  /// `prolongations` lead from the coarsest mesh to the matrix's own, at least one. Need not outlive the
+  /// object.
+  explicit Multigrid(std::span<const ProlongationMatrix> prolongations);
 
   /// Forms the coarse matrices of A + diag(shift_i I₃); `fixed` has one flag a vertex. Refers to the matrix
   /// until the next call. Returns false if a block of a vertex or the coarsest matrix is not positive
@@ -31,8 +33,8 @@ class Multigrid {
   bool is_set() const { return is_set_; }
 
   /// Solves to a relative residual of 0.1, with which Newton takes about as many iterations as with exact
-  /// directions. Does not converge if that takes more cycles than a factorisation takes time. n×3 right-hand
-  /// side and solution, whose fixed rows are zero.
+  /// directions. Gives up, as not converged, where the cycles would take longer than a factorisation. n×3
+  /// right-hand side and solution, whose fixed rows are zero.
   ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
 
   /// Floating-point operations since the last call.

@@ -69,23 +69,6 @@ void round_to(float* block, const double* row_major) {
 
 }  // namespace
 
-Weights Weights::transposed(int columns_of_all) const {
-  Weights t;
-  t.start.assign(static_cast<std::size_t>(columns_of_all) + 1, 0);
-  for (const int c : columns) ++t.start[c + 1];
-  std::partial_sum(t.start.begin(), t.start.end(), t.start.begin());
-  t.columns.resize(columns.size());
-  t.values.resize(columns.size());
-  std::vector<int> next(t.start.begin(), t.start.end() - 1);
-  for (int i = 0; i < rows(); ++i)
-    for (int k = start[i]; k < start[i + 1]; ++k) {
-      const int to = next[columns[k]]++;
-      t.columns[to] = i;
-      t.values[to] = values[k];
-    }
-  return t;
-}
-
 MultigridMesh::MultigridMesh(int vertices) : order(static_cast<std::size_t>(vertices)) {
   std::iota(order.begin(), order.end(), 0);
   position = order;
@@ -104,14 +87,13 @@ MultigridMesh::MultigridMesh(const ProlongationMatrix& p, const MultigridMesh& c
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
   for (int q = 0; q < n; ++q) position[order[q]] = q;
-  for (const int vertex : order) {
-    for (ProlongationMatrix::InnerIterator it(p, vertex); it; ++it) {
-      parents.columns.push_back(coarse.position[it.col()]);
-      parents.values.push_back(static_cast<float>(it.value()));
-    }
-    parents.start.push_back(static_cast<int>(parents.columns.size()));
-  }
-  children = parents.transposed(coarse.size());
+  std::vector<Eigen::Triplet<float>> weights;
+  for (int i = 0; i < n; ++i)
+    for (ProlongationMatrix::InnerIterator it(p, i); it; ++it)
+      weights.emplace_back(position[i], coarse.position[it.col()], static_cast<float>(it.value()));
+  parents.resize(n, coarse.size());
+  parents.setFromTriplets(weights.begin(), weights.end());
+  children = parents.transpose();
   resize();
 }
 
@@ -191,17 +173,15 @@ double MultigridMesh::make_product(MultigridMesh& coarse) const {
     double count = 0;
     for (int i = begin; i < end; ++i) {
       part.row_start.push_back(static_cast<int>(part.columns.size()));
-      for (int q = children.start[i]; q < children.start[i + 1]; ++q) {
-        const int child = children.columns[q];
-        for (int k = matrix.row_start[child]; k < matrix.row_start[child + 1]; ++k)
-          half.add<3>(matrix.columns[k], children.values[q], &values_[9 * static_cast<std::size_t>(k)]);
-        count += matrix.row_start[child + 1] - matrix.row_start[child];
+      for (Weights::InnerIterator child(children, i); child; ++child) {
+        const int first = matrix.row_start[child.col()], last = matrix.row_start[child.col() + 1];
+        for (int k = first; k < last; ++k)
+          half.add<3>(matrix.columns[k], child.value(), &values_[9 * static_cast<std::size_t>(k)]);
+        count += last - first;
       }
-      for (const int j : half.touched) {
-        for (int q = parents.start[j]; q < parents.start[j + 1]; ++q)
-          sums.add<4>(parents.columns[q], parents.values[q], half[j]);
-        count += parents.start[j + 1] - parents.start[j];
-      }
+      for (const int j : half.touched)
+        for (Weights::InnerIterator parent(parents, j); parent; ++parent, ++count)
+          sums.add<4>(static_cast<int>(parent.col()), parent.value(), half[j]);
       sums.add<4>(i, 0, no_block);  // the diagonal, also of a vertex whose children are all fixed
       std::sort(sums.touched.begin(), sums.touched.end());
       for (const int j : sums.touched) {

@@ -9,21 +9,15 @@
 
 namespace drape {
 
-/// Sparse weights by row.
-struct Weights {
-  std::vector<int> start = {0}, columns;
-  std::vector<float> values;
+/// Weights between two meshes, a row for each vertex that they give a value.
+using Weights = Eigen::SparseMatrix<float, Eigen::RowMajor>;
 
-  int rows() const { return static_cast<int>(start.size()) - 1; }
-  /// With so many rows.
-  Weights transposed(int columns_of_all) const;
-  /// Σ_k w_ik x_k.
-  Float4 sum(int i, const std::vector<Float4>& x) const {
-    Float4 s = {};
-    for (int k = start[i]; k < start[i + 1]; ++k) s += x[columns[k]] * values[k];
-    return s;
-  }
-};
+/// Σ_k w_ik x_k.
+inline Float4 weighted_sum(const Weights& w, int i, const std::vector<Float4>& x) {
+  Float4 sum = {};
+  for (Weights::InnerIterator it(w, i); it; ++it) sum += x[it.col()] * it.value();
+  return sum;
+}
 
 /// One mesh of Multigrid, with its matrix and the vectors of a cycle. Rows are by position: vertices are
 /// sorted by their parents, so that neighbours are near each other in memory.
@@ -37,7 +31,7 @@ struct MultigridMesh {
 
   /// Takes over a given matrix plus diag(shift_i I₃), with identities for fixed vertices (one flag a vertex).
   void fill(const BlockMatrix& given, const Eigen::VectorXd& shift, const std::vector<char>& fixed);
-  /// Makes the coarser mesh' matrix Pᵀ A P. Returns the number of multiplications of blocks.
+  /// Makes the coarser mesh's matrix Pᵀ A P. Returns the number of multiplications of blocks.
   double make_product(MultigridMesh& coarse) const;
   /// The matrix by vertices. Keeps its pattern object while the pattern is the same; returns whether it is
   /// not.
@@ -52,7 +46,7 @@ struct MultigridMesh {
   void resize();
   void set_pattern(const std::shared_ptr<const BlockPattern>& given);
 
-  std::vector<double> values_;  // of the matrix' blocks, row-major, and one of padding
+  std::vector<double> values_;  // of the matrix's blocks, row-major, and one of padding
   // The block of a given matrix that each block is, complemented if transposed; of this pattern.
   std::vector<int> source_;
   std::shared_ptr<const BlockPattern> pattern_;

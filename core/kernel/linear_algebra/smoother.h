@@ -7,7 +7,7 @@
 
 namespace drape {
 
-/// Four numbers in single precision: a vertex' three and one of padding.
+/// Four numbers in single precision: a vertex's three and one of padding.
 using Float4 = float __attribute__((vector_size(16)));
 
 /// A symmetric matrix of 3×3 blocks in single precision, all of it stored by rows, with block Gauss–Seidel

@@ -18,8 +18,8 @@ std::unique_ptr<Multigrid> multigrid_for(const Level& level, const NewtonParamet
       (p.linear_solver == LinearSolver::multigrid ||
        (p.linear_solver == LinearSolver::automatic && level.vertex_count() >= multigrid_from));
   if (!wanted || !hierarchy || level.index == 0) return nullptr;
-  const auto& all = hierarchy->prolongations;
-  return std::make_unique<Multigrid>(std::vector<ProlongationMatrix>(all.begin(), all.begin() + level.index));
+  return std::make_unique<Multigrid>(
+      std::span(hierarchy->prolongations).first(static_cast<std::size_t>(level.index)));
 }
 
 LinearSolver direct_solver(const NewtonParameters& p) {
