@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 namespace drape {
+namespace {
 
 RestHinge rest_hinge(const Level& level, Eigen::Index h) {
   const auto vertices = level.hinges.row(h);
@@ -18,6 +19,14 @@ RestHinge rest_hinge(const Level& level, Eigen::Index h) {
                              std::to_string(vertices[1]) + " of level " + std::to_string(level.index) +
                              " has no area at rest");
   return rest;
+}
+
+}  // namespace
+
+std::vector<RestHinge> rest_hinges(const Level& level) {
+  std::vector<RestHinge> hinges;
+  for (Eigen::Index h = 0; h < level.hinges.rows(); ++h) hinges.push_back(rest_hinge(level, h));
+  return hinges;
 }
 
 }  // namespace drape

@@ -18,8 +18,8 @@ namespace drape {
 /// the edge's midpoint [m].
 using RestHinge = Eigen::Matrix<double, 8, 1>;
 
-/// Hinge h of the level. Throws std::runtime_error if one of its triangles has no area.
-RestHinge rest_hinge(const Level& level, Eigen::Index h);
+/// The hinges of the level. Throws std::runtime_error for one whose triangle has no area.
+std::vector<RestHinge> rest_hinges(const Level& level);
 
 /// A hinge's energy [J] that a Law returns, for ElementEnergy. `rest` has the first five numbers of a
 /// RestHinge, or all eight for a law that depends on its place.
@@ -105,8 +105,7 @@ class FoldFormula final : public Energy {
   static std::unique_ptr<BoundEnergy> bind_with(const Law& law, const Level& level) {
     using Kernel = FoldFormulaKernel<Law, numbers>;
     std::vector<typename Kernel::Rest> rest;
-    for (Eigen::Index h = 0; h < level.hinges.rows(); ++h)
-      rest.emplace_back(rest_hinge(level, h).template head<numbers>());
+    for (const RestHinge& hinge : rest_hinges(level)) rest.emplace_back(hinge.template head<numbers>());
     return std::make_unique<ElementEnergy<Kernel>>(level.hinges, rest, level.hinge_order, Kernel{law});
   }
 

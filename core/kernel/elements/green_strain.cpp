@@ -14,8 +14,6 @@ Eigen::Vector3d projected(Eigen::Vector3d axis, const Eigen::Vector3d& normal) {
   }
 }
 
-}  // namespace
-
 MaterialTriangle material_triangle(const Eigen::Vector3d& axis, const Level& level, int t) {
   const double area = RestTriangle::of(level, t).area;  // refuses one without area
   const auto v = level.rest.triangles.row(t);
@@ -30,6 +28,14 @@ MaterialTriangle material_triangle(const Eigen::Vector3d& axis, const Level& lev
   MaterialTriangle triangle;
   triangle << edges(1, 1) / det, -edges(1, 0) / det, -edges(0, 1) / det, edges(0, 0) / det, area, centroid;
   return triangle;
+}
+
+}  // namespace
+
+std::vector<MaterialTriangle> material_triangles(const Eigen::Vector3d& axis, const Level& level) {
+  std::vector<MaterialTriangle> triangles;
+  for (int t = 0; t < level.triangle_count(); ++t) triangles.push_back(material_triangle(axis, level, t));
+  return triangles;
 }
 
 }  // namespace drape

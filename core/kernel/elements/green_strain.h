@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <vector>
 
 #include "core/kernel/elements/jet_functions.h"
 #include "core/kernel/model/level.h"
@@ -13,9 +14,9 @@ namespace drape {
 /// [m²] and the rest position of the centroid [m].
 using MaterialTriangle = Eigen::Matrix<double, 8, 1>;
 
-/// Triangle t of the level; the material's first axis is `axis`, projected into the triangle. Throws
-/// std::runtime_error if it has no area.
-MaterialTriangle material_triangle(const Eigen::Vector3d& axis, const Level& level, int t);
+/// The triangles of the level; the material's first axis is `axis`, projected into each. Throws
+/// std::runtime_error for one without area.
+std::vector<MaterialTriangle> material_triangles(const Eigen::Vector3d& axis, const Level& level);
 
 /// Columns of the deformation gradient F, and the Green strains G = (FᵀF - I)/2. T is double or a Pack.
 template <class T>

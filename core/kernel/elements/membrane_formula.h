@@ -132,9 +132,7 @@ class MembraneFormula final : public Energy {
   std::vector<MaterialTriangle> triangles(const Level& level) const {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
     if constexpr (requires { p_.axis; }) axis = p_.axis;
-    std::vector<MaterialTriangle> all;
-    for (int t = 0; t < level.triangle_count(); ++t) all.push_back(material_triangle(axis, level, t));
-    return all;
+    return material_triangles(axis, level);
   }
 
   Parameters p_;

@@ -87,11 +87,9 @@ double energy_at(const Program& p, double bend, double length, double h1, double
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
-  std::vector<RestHinge> rest;
-  for (Eigen::Index h = 0; h < level.hinges.rows(); ++h) rest.push_back(rest_hinge(level, h));
   HingeFormulaKernel kernel(compile_hinge(law, material));
-  return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), level.hinges, rest,
-                                                             level.hinge_order);
+  return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), level.hinges,
+                                                             rest_hinges(level), level.hinge_order);
 }
 
 std::optional<double> hinge_midpoint_factor(const Law& law, const Material& material) {

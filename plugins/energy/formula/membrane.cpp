@@ -12,14 +12,6 @@ namespace {
 bool uses_stretches(const Law& law) { return law.uses("s1") || law.uses("s2"); }
 bool uses_strains(const Law& law) { return law.uses("g11") || law.uses("g22") || law.uses("g12"); }
 
-/// The numbers of StretchFormulaKernel; the area and the centroid are the last four.
-StretchFormulaKernel::Rest stretch_rest(const Level& level, int t) {
-  const RestTriangle triangle = RestTriangle::of(level, t);
-  StretchFormulaKernel::Rest rest;
-  rest << triangle.a, triangle.b, triangle.c, material_triangle(Eigen::Vector3d::UnitX(), level, t).tail<4>();
-  return rest;
-}
-
 /// A triangle's energy by its principal stretches, for BucklingLaw. The constants are its area and the
 /// centroid at rest.
 struct PrincipalProgram {
@@ -57,20 +49,21 @@ double energy_at(const Programs& programs, const Eigen::Vector3d& g, double area
 
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
                                            const Material& material) {
-  const Stencils& triangles = level.rest.triangles;
+  const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
   if (uses_stretches(law) && !uses_strains(law)) {
-    std::vector<StretchFormulaKernel::Rest> rest;
-    for (int t = 0; t < level.triangle_count(); ++t) rest.push_back(stretch_rest(level, t));
+    std::vector<StretchFormulaKernel::Rest> rest(static_cast<std::size_t>(level.triangle_count()));
+    for (int t = 0; t < level.triangle_count(); ++t) {
+      const RestTriangle triangle = RestTriangle::of(level, t);
+      rest[t] << triangle.a, triangle.b, triangle.c, triangles[t].tail<4>();
+    }
     StretchFormulaKernel kernel(compile_triangle(law, material, TriangleVariables::stretches));
-    return std::make_unique<BatchedEnergy<StretchFormulaKernel>>(std::move(kernel), triangles, rest,
-                                                                 level.triangle_order);
+    return std::make_unique<BatchedEnergy<StretchFormulaKernel>>(std::move(kernel), level.rest.triangles,
+                                                                 rest, level.triangle_order);
   }
   const bool both = uses_stretches(law);
-  std::vector<MaterialTriangle> rest;
-  for (int t = 0; t < level.triangle_count(); ++t) rest.push_back(material_triangle(axis, level, t));
   StrainKernel kernel(
       compile_triangle(law, material, both ? TriangleVariables::both : TriangleVariables::strains), both);
-  return std::make_unique<BatchedEnergy<StrainKernel>>(std::move(kernel), triangles, rest,
+  return std::make_unique<BatchedEnergy<StrainKernel>>(std::move(kernel), level.rest.triangles, triangles,
                                                        level.triangle_order);
 }
 
@@ -96,7 +89,8 @@ bool is_isotropic(const Law& law, const Material& material) {
 std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
                                            double s) {
   std::vector<Eigen::Vector4d> numbers;
-  for (int t = 0; t < level.triangle_count(); ++t) numbers.emplace_back(stretch_rest(level, t).tail<4>());
+  for (const MaterialTriangle& triangle : material_triangles(Eigen::Vector3d::UnitX(), level))
+    numbers.emplace_back(triangle.tail<4>());
   return bind_buckling_membrane(
       PrincipalProgram{compile_triangle(law, material, TriangleVariables::stretches).all}, level, numbers, s);
 }

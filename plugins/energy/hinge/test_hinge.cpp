@@ -40,7 +40,7 @@ Kernel::Rest rest_of(const Check::State& x) {
   for (int i = 0; i < 3; ++i) mesh.vertices.row(i + 1) = x.segment<3>(3 * i);
   mesh.triangles.resize(2, 3);
   mesh.triangles << 0, 1, 2, 1, 0, 3;
-  return rest_hinge(Level::of(0, mesh), 0).head<5>();
+  return rest_hinges(Level::of(0, mesh))[0].head<5>();
 }
 
 const Kernel::Rest flat_rest = rest_of(folded(0)), bent_rest = rest_of(folded(0.6));
