@@ -39,7 +39,7 @@ Checkpoint full() {
   s.check = {{1, 2, 3}, {7, 8, 9}, {3, -0.5, 1e-6}, {6, {1, 2, 3, 4, 5}, {6, 7, 8, 9, 10}, {1, 0, 2}}};
   s.iterate = {2, "ball"};
   s.step.implicit_step.max_iterations = 30;
-  s.step.controller = {0.25, -4, true, 0.5};
+  s.step.controller = {0.25, -4, 3e3, true, 0.5};
   s.step.line_search.step_length = 0.125;
   s.switched_to_plain = true;
   s.dirichlet = {{3}, 1e4, 0.5, 2, false, true, "post"};
@@ -131,6 +131,7 @@ TEST_CASE("A checkpoint is read as it was written") {
   CHECK(s.step.implicit_step.max_iterations == 30);
   CHECK(s.step.controller.step_size == 0.25);
   CHECK(s.step.controller.stall_count == -4);
+  CHECK(s.step.controller.stall_residual == 3e3);
   CHECK(s.step.controller.backed_off);
   CHECK(s.step.controller.cycle_limit == 0.5);
   CHECK(s.step.line_search.step_length == 0.125);

@@ -131,6 +131,16 @@ TEST_CASE(
   CHECK(c.step_size() == 1.0 / 8);
 }
 
+TEST_CASE("Steps whose large forces fall by half in twenty steps are no stall") {
+  const NewtonParameters p = doubling();
+  StepController c(p);
+  double residual = 1e5;
+  for (int k = 0; k < 60; ++k) step(c, 0.5, residual *= 0.96);
+  CHECK(c.step_size() == 1);
+  for (int k = 0; k < 20; ++k) step(c, 0.5, residual *= 0.97);
+  CHECK(c.step_size() == 1.0 / 16);
+}
+
 TEST_CASE("A restored step controller continues the same") {
   const NewtonParameters p = doubling();
   StepController c(p), other(p);

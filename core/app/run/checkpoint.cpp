@@ -104,7 +104,7 @@ void fields(A& a, ImplicitStep::State& s) {
 
 template <class A>
 void fields(A& a, StepController::State& s) {
-  a(s.step_size, s.stall_count, s.backed_off, s.cycle_limit);
+  a(s.step_size, s.stall_count, s.stall_residual, s.backed_off, s.cycle_limit);
 }
 
 template <class A>
@@ -193,7 +193,7 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 16;
+constexpr std::uint32_t format = 17;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

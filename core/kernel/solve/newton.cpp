@@ -69,7 +69,7 @@ class Newton {
       if (observer_.checkpoint_due()) observer_.checkpoint(state());
       if (const std::optional<End> end = requested_end()) return finish(*end);
       if (!step_.solve()) {
-        stuck_ = step_.factor().fault().empty() && is_at_rounding_floor();
+        stuck_ = step_.factor().fault().empty() && (dirichlet_.active() || is_at_rounding_floor());
         if (!stuck_) return finish({Outcome::stalled, step_.failure()});
         step_.abandon();
       }
@@ -139,6 +139,8 @@ class Newton {
     while (true) {
       bool at_floor = stuck_ || (check_.is_idle() && is_at_rounding_floor());
       stuck_ = false;
+      // Pins that contact blocks can squeeze gaps until no step descends: they end at their targets or are
+      // found out of reach, before the level may end.
       if (at_floor && dirichlet_.active()) {
         increase_penalty();
         at_floor = false;
@@ -322,7 +324,7 @@ class Newton {
   DirichletPredictor predictor_;
   LoadStepper load_;
   bool switched_to_plain_ = false;  // the proxy was replaced by the plain energy
-  bool stuck_ = false;              // the last step found no descent, at the rounding floor
+  bool stuck_ = false;  // the last step found no descent, at the rounding floor or with pins under way
 };
 
 }  // namespace

@@ -12,13 +12,15 @@ namespace {
 constexpr double short_step = 0.25;
 /// Marks a step without a step length along the direction of an updated Hessian.
 constexpr double no_updated_direction = 2;
-/// Force residuals above this count as stalled …
+/// Steps that leave a force residual above this count as stalled.
 constexpr double stall_residual = 1e3;
-/// … and h is divided by this …
-constexpr double back_off = 16;
-/// … after so many stalled steps in a row. h grows again after as many without a stall, …
+/// After so many of them in a row …
 constexpr int max_stall_count = 20;
-/// … or once forces are of the load's size.
+/// … that have left more than this part of the residual, since steps that carry the cloth on are no stall, …
+constexpr double stall_remainder = 0.5;
+/// … h is divided by this.
+constexpr double back_off = 16;
+/// h grows again after max_stall_count steps without a stall, or once forces are of the load's size.
 constexpr double recovered_residual = 10;
 /// h is divided by this where steps repeat each other.
 constexpr double cycle_reduction = 4;
@@ -58,10 +60,13 @@ void StepController::end_step(double force_residual) {
   int& stalls = s_.stall_count;
   double& h = s_.step_size;
   stalls = force_residual > stall_residual ? std::max(stalls, 0) + 1 : std::min(stalls, 0) - 1;
+  if (stalls == 1) s_.stall_residual = force_residual;
   if (stalls == max_stall_count) {
-    s_.backed_off = true;
     stalls = 0;
-    h = std::max(h / back_off, min_step_size);
+    if (force_residual > stall_remainder * s_.stall_residual) {
+      s_.backed_off = true;
+      h = std::max(h / back_off, min_step_size);
+    }
   }
   if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;
   if (s_.backed_off) return;

@@ -10,17 +10,18 @@ namespace drape {
 /// that is added to the matrix.
 ///
 /// h grows after full steps and shrinks after short ones; without descent it is divided by four. Near a
-/// strain limit full steps gain no margin, and forces stay a thousand times the load: h is then divided by 16
-/// and does not grow until the forces have recovered. Where steps repeat each other, h is limited to a
-/// quarter, and the static form gets inertia.
+/// strain limit full steps gain no margin, and forces stay a thousand times the load: h is then divided by
+/// 16, unless the forces are falling, and does not grow until they have recovered. Where steps repeat each
+/// other, h is limited to a quarter, and the static form gets inertia.
 class StepController {
  public:
   static constexpr double min_step_size = 1e-8;  ///< damping has failed below this h [s]
 
   struct State {
-    double step_size = 0;     ///< h of the next step [s]
-    int stall_count = 0;      ///< consecutive steps with forces far beyond the load; negative: without
-    bool backed_off = false;  ///< h was reduced because of a stall and does not grow
+    double step_size = 0;       ///< h of the next step [s]
+    int stall_count = 0;        ///< consecutive steps with forces far beyond the load; negative: without
+    double stall_residual = 0;  ///< force residual of the first of these steps
+    bool backed_off = false;    ///< h was reduced because of a stall and does not grow
     /// The largest h since steps have repeated each other [s]; without it the static form has no inertia.
     double cycle_limit = std::numeric_limits<double>::infinity();
   };
