@@ -1,19 +1,12 @@
 #pragma once
 
 #include "core/kernel/model/midpoint.h"
-#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 /// Midpoint subdivision: splits every triangle into four and does not move the surface.
 class MidpointRefiner : public Refiner {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-
-  explicit MidpointRefiner(const Parameters&) {}
-
   Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
 };
 
