@@ -65,6 +65,20 @@ DRAPE_ELEMENT(springs, edges, "Along edges.", Rubber) {
   const T length = rest[0].norm();
   return alpha * square(d[0].norm() / length - 1) * length;
 }
+namespace drape::elements {
+/// Each vertex and the one after the next.
+struct every_second {
+  static constexpr int vertices = 2;
+  static constexpr EnergyRole role = EnergyRole::position;
+  static Stencils of(const Level& level) {
+    Stencils pairs(level.vertex_count() - 2, 2);
+    for (int i = 0; i < pairs.rows(); ++i) pairs.row(i) << i, i + 2;
+    return pairs;
+  }
+  static ElementOrder order(const Level& level) { return ElementOrder::of(of(level), level.rest.vertices); }
+};
+}  // namespace drape::elements
+DRAPE_ELEMENT(seams, every_second, "Pulled together.") { return 5 * d[0].squaredNorm(); }
 DRAPE_ELEMENT(stvk_by_edges, triangles, "As strains_of_stvk.") {
   const T a = rest[0].squaredNorm(), b = rest[0].dot(rest[1]), c = rest[1].squaredNorm(), det = a * c - b * b;
   const S p = 0.5 * (d[0].squaredNorm() - a), q = 0.5 * (d[0].dot(d[1]) - b),
@@ -125,6 +139,7 @@ TEST_CASE("energy_formula: derivatives of membranes, folds and loads follow from
   check_derivatives(MembraneFormula<formulas::seam>({}));
   check_derivatives(MembraneFormula<formulas::ogden>({}));
   check_derivatives(ElementFormula<formulas::springs, elements::edges>({}));
+  check_derivatives(ElementFormula<formulas::seams, elements::every_second>({}));
   check_derivatives(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}));
   check_derivatives(ElementFormula<formulas::quadratic, elements::hinges>({}));
   check_derivatives(ElementFormula<formulas::volume, elements::triangles>({}));
@@ -143,6 +158,7 @@ TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the
   CHECK(ElementFormula<formulas::springs, elements::edges>({}).role() == EnergyRole::membrane);
   CHECK_FALSE(ElementFormula<formulas::springs, elements::edges>({}).midpoint_factor());
   CHECK(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}).midpoint_factor() == 1);
+  CHECK(ElementFormula<formulas::seams, elements::every_second>({}).role() == EnergyRole::position);
   CHECK(ElementFormula<formulas::volume, elements::triangles>({}).role() == EnergyRole::external);
   CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).role() == EnergyRole::bending);
   CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).midpoint_factor() == 2);

@@ -12,7 +12,7 @@
 
 namespace drape {
 
-/// What the elements of DRAPE_ELEMENT may be.
+/// What the elements of DRAPE_ELEMENT may be. A struct like these, put into this namespace, is another shape.
 namespace elements {
 struct edges {
   static constexpr int vertices = 2;
@@ -137,22 +137,6 @@ struct ElementFormulaOf {
 
 }  // namespace drape
 
-template <int N, class T>
-struct Eigen::NumTraits<drape::Jet<N, T>> : Eigen::GenericNumTraits<drape::Jet<N, T>> {
-  using Real = drape::Jet<N, T>;
-  using NonInteger = drape::Jet<N, T>;
-  using Literal = double;
-  using Nested = const drape::Jet<N, T>&;
-  enum {
-    IsComplex = 0,
-    IsInteger = 0,
-    IsSigned = 1,
-    RequireInitialization = 0,
-    ReadCost = 1,
-    AddCost = 1,
-    MulCost = 1
-  };
-};
 template <int N, class T, class Op>
 struct Eigen::ScalarBinaryOpTraits<drape::Jet<N, T>, T, Op> {
   using ReturnType = drape::Jet<N, T>;
