@@ -50,19 +50,10 @@ double energy_at(const Programs& programs, const Eigen::Vector3d& g) {
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
                                            const Material& material) {
   const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
-  if (uses_stretches(law) && !uses_strains(law)) {
-    std::vector<StretchFormulaKernel::Rest> rest(static_cast<std::size_t>(level.triangle_count()));
-    for (int t = 0; t < level.triangle_count(); ++t) {
-      const RestTriangle triangle = RestTriangle::of(level, t);
-      rest[t] << triangle.a, triangle.b, triangle.c, triangles[t].tail<4>();
-    }
-    StretchFormulaKernel kernel(compile_triangle(law, material, TriangleVariables::stretches));
-    return std::make_unique<BatchedEnergy<StretchFormulaKernel>>(std::move(kernel), level.rest.triangles,
-                                                                 rest, level.triangle_order);
-  }
-  const bool both = uses_stretches(law);
+  const bool stretches = uses_stretches(law);
   StrainKernel kernel(
-      compile_triangle(law, material, both ? TriangleVariables::both : TriangleVariables::strains), both);
+      compile_triangle(law, material, stretches ? TriangleVariables::both : TriangleVariables::strains),
+      stretches);
   return std::make_unique<BatchedEnergy<StrainKernel>>(std::move(kernel), level.rest.triangles, triangles,
                                                        level.triangle_order);
 }
