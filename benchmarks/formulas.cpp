@@ -46,7 +46,7 @@ void compare(const std::string& name, const BoundEnergy& plugin, const BoundEner
   const BoundEnergy* both[] = {&plugin, &formula};
   BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {plugin.stencils()}));
   const BlockSlots slots(*matrix.pattern, plugin.stencils());
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   Positions g = Positions::Zero(x.rows(), 3);
   volatile double sum = 0;
   const std::function<void(const BoundEnergy&)> parts[] = {

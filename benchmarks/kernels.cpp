@@ -117,7 +117,7 @@ void hessian(benchmark::State& state) {
   const BoundEnergy& e = energy<Kernel>();
   BlockMatrix matrix(BlockPattern::of(cloth_of<Kernel>().level.vertex_count(), {e.stencils()}));
   const BlockSlots slots(*matrix.pattern, e.stencils());
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     e.add_hessian(cloth_of<Kernel>().x, projection, sink);

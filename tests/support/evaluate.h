@@ -22,7 +22,7 @@ inline drape::BlockMatrix hessian_of(const drape::BoundEnergy& energy, const dra
   matrix.set_zero();
   if (stencils.rows() == 0) return matrix;
   const drape::BlockSlots slots(*matrix.pattern, stencils);
-  drape::BlockSink sink(slots, matrix);
+  drape::BlockSink sink = slots.sink(matrix);
   energy.add_hessian(x, projection, sink);
   return matrix;
 }

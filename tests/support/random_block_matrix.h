@@ -14,7 +14,7 @@ inline drape::BlockMatrix random_matrix(int vertices, const drape::Stencils& ste
   const auto pattern = drape::BlockPattern::of(vertices, {stencils});
   drape::BlockMatrix matrix(pattern);
   const drape::BlockSlots slots(*pattern, stencils);
-  drape::BlockSink sink(slots, matrix);
+  drape::BlockSink sink = slots.sink(matrix);
   std::srand(seed);
   for (int e = 0; e < stencils.rows(); ++e) {
     const Eigen::Matrix<double, 12, 12> r = Eigen::Matrix<double, 12, 12>::Random();

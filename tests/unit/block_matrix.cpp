@@ -75,7 +75,7 @@ TEST_CASE("Elements' blocks are summed into the right blocks, transposed where t
   const Stencils s = random_stencils(n, 40, 3, 4);
   BlockMatrix matrix(BlockPattern::of(n, {s, random_stencils(n, 5, 2, 5)}));
   const BlockSlots slots(*matrix.pattern, s);
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * n, 3 * n);
   std::mt19937 random(6);
   for (int e = 0; e < s.rows(); ++e)

@@ -62,7 +62,7 @@ struct ChainOfSprings {
                           const std::vector<const BoundEnergy*>& persistent = {}) {
     matrix.set_zero();
     const BlockSlots slots(*pattern, springs.stencils());
-    BlockSink sink(slots, matrix);
+    BlockSink sink = slots.sink(matrix);
     springs.add_hessian(x, Projection::none, sink);
     return assembler.add(matrix, persistent, {&transient}, x, Projection::none);
   }

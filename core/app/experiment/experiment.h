@@ -9,6 +9,7 @@
 
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/kernel/model/contact_model.h"
+#include "core/kernel/model/hierarchy.h"
 #include "core/kernel/model/level_model.h"
 #include "core/kernel/model/metric.h"
 #include "core/kernel/model/refiner.h"

@@ -3,8 +3,8 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/level_handle.h"
 #include "core/app/python/module.h"
-#include "core/kernel/mesh/extent.h"
 #include "core/kernel/model/objective.h"
+#include "core/kernel/plugin/bounds.h"
 
 namespace drape::python {
 
@@ -24,7 +24,7 @@ Projection projection_of(const std::string& kind, double blend) {
 /// search cannot sort.
 Positions state_of(const ModelHandle& m, const py::handle& values, const std::string& name) {
   Positions x = positions_of(values, m.vertex_count(), name);
-  if (!m.model().contacts().empty() && !(x.array().abs() <= largest_coordinate).all())
+  if (!m.model().contacts().empty() && !(x.array().abs() <= bounds::largest_coordinate).all())
     throw py::value_error(name + " must be finite and within 1e9 m, because the model has contacts");
   return x;
 }

@@ -65,7 +65,7 @@ BlockMatrix hessian_of(const BoundEnergyHandle& h, const Positions& x) {
   matrix.set_zero();
   if (stencils.rows() == 0) return matrix;
   const BlockSlots slots(*matrix.pattern, stencils);
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   h.energy->add_hessian(x, Projection::none, sink);
   return matrix;
 }

@@ -39,7 +39,9 @@ ModelHandle SolverProblem::model(int level) const {
 
 Positions SolverProblem::prolong(int level, const Positions& x) const {
   checked(level + 1);
-  return problem().prolong(problem().hierarchy.linear[checked(level)], level, x);
+  Positions y = problem().hierarchy.linear[checked(level)] * x;
+  problem().model(level + 1)->set_dirichlet(y);
+  return y;
 }
 
 int SolverProblem::vertex_count() const {

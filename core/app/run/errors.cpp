@@ -59,7 +59,7 @@ nlohmann::ordered_json ErrorTable::add(const std::string& method, const LevelRes
   level.file = "snapshots/" + method + "_l" + std::to_string(result.level) + ".bin";
   level.last = result.x;
   level.converged = has_converged(result.outcome);
-  const auto weights = experiment_.solver_of(method).interpolation(scene_.hierarchy);
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method).interpolation());
   nlohmann::ordered_json entry = {{"file", level.file}};
   for (const Snapshot& snapshot : snapshots) {
     level.cost.push_back(before + snapshot.cost);
@@ -94,7 +94,7 @@ void ErrorTable::write(const Positions* reference, const std::function<bool()>& 
     for (const LevelSnapshots& other : levels_)
       if (other.method == level.method && other.level == finest && other.converged)
         own = target_at(other.last, other.energies.back());
-    const auto weights = experiment_.solver_of(level.method).interpolation(scene_.hierarchy);
+    const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(level.method).interpolation());
     const bool same = own && standard && own->x == standard->x;
     const int vertices = scene_.hierarchy.levels[level.level].vertex_count();
     SnapshotFile states;

@@ -185,7 +185,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
         parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
-  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
   const double on_finest = energy_on_finest(scene_, weights, r.level, r.x);
   Json entry = {{"level", r.level},
                 {"vertices", level.vertex_count()},

@@ -78,7 +78,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
           at_dotted(state, v.name) = finite_or_null(v.value);
   }
   write_collection(method_);
-  const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
   std::vector<Json> of_start;  // the initial state compared with each level's state
   for (const LevelResult& r : results)
     of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
@@ -132,7 +132,7 @@ Recorder::Names Recorder::restore_fields() {
                                 checksum_of(read_file(file)) == row->value("fields_checksum", 0u)))
         continue;
       method_ = fine->method;  // whose metrics these are
-      const auto weights = experiment_.solver_of(method_).interpolation(scene_.hierarchy);
+      const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
       VertexFields fields;
       compare(fine->level, fine->x, scene_.hierarchy.prolong(coarse.x, coarse.level, fine->level, weights),
               &fields);

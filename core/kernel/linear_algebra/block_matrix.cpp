@@ -152,7 +152,7 @@ BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)
         for (Eigen::Index a = 0; a <= b; ++a) {
           const int i = stencils(e, a), j = stencils(e, b);
           if (i < 0 || j < 0) {
-            *slots++ = no_block;
+            *slots++ = BlockSink::no_block;
             continue;
           }
           const int slot = pattern.find(std::min(i, j), std::max(i, j));

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <memory>
 #include <vector>
 
-namespace drape {
+#include "core/kernel/linear_algebra/block_sink.h"
 
-/// m×k vertex indices, one row for each element; -1 where an element has fewer vertices.
-using Stencils = Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+namespace drape {
 
 /// Sparsity of a symmetric matrix of 3×3 blocks, one block row for each vertex. Stores blocks (i, j) with i ≤
 /// j row by row, columns ascending; every diagonal block is present. Immutable.
@@ -47,47 +45,14 @@ struct BlockMatrix {
 class BlockSlots {
  public:
   BlockSlots(const BlockPattern& pattern, const Stencils& stencils);
+  /// Adds to `matrix`, over the pattern, `factor` times what it is given. Refers to both.
+  BlockSink sink(BlockMatrix& matrix, double factor = 1) const {
+    return {slots_.data(), pairs_, matrix.values.data(), factor};
+  }
 
  private:
-  friend class BlockSink;
   int pairs_;               // k(k+1)/2 for each element
-  std::vector<int> slots_;  // block index, bitwise complemented if transposed, or no_block
-  static constexpr int no_block = std::numeric_limits<int>::min();  // a pair with a missing vertex
-};
-
-/// Adds elements' 3×3 blocks to a matrix. Concurrent calls are safe for elements that share no vertex.
-class BlockSink {
- public:
-  /// `factor` multiplies all added blocks.
-  BlockSink(const BlockSlots& slots, BlockMatrix& matrix, double factor = 1)
-      : slots_(slots.slots_.data()), pairs_(slots.pairs_), values_(matrix.values.data()), factor_(factor) {}
-
-  /// A sink for the elements from row `first` of the stencils on.
-  BlockSink from(int first) const {
-    BlockSink part = *this;
-    part.slots_ += static_cast<std::ptrdiff_t>(first) * pairs_;
-    return part;
-  }
-
-  /// Adds the element's 3×3 block h, row-major, whose rows belong to its vertex a and whose columns belong to
-  /// its vertex b. Only pairs a ≤ b are given: the other half follows by symmetry. Nothing is checked.
-  void add(int element, int a, int b, const double* h) {
-    const int slot = slots_[static_cast<std::size_t>(element) * pairs_ + b * (b + 1) / 2 + a];
-    if (slot >= 0) {
-      double* v = values_ + 9 * static_cast<std::size_t>(slot);
-      for (int i = 0; i < 9; ++i) v[i] += factor_ * h[i];
-    } else if (slot != BlockSlots::no_block) {
-      double* v = values_ + 9 * static_cast<std::size_t>(~slot);
-      for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) v[3 * r + c] += factor_ * h[3 * c + r];
-    }
-  }
-
- private:
-  const int* slots_;
-  int pairs_;
-  double* values_;
-  double factor_;
+  std::vector<int> slots_;  // as BlockSink takes them
 };
 
 }  // namespace drape

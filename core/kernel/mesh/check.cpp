@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/extent.h"
 #include "core/kernel/mesh/flat_overlaps.h"
 #include "core/kernel/mesh/mesh_faults.h"
 #include "core/kernel/mesh/unjoined_borders.h"
+#include "core/kernel/plugin/bounds.h"
 
 namespace drape {
 namespace {
@@ -144,11 +144,11 @@ std::vector<std::string> check_coordinates(const Positions& x) {
     const double largest = x.row(v).cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(largest))
       not_finite.push_back(v);
-    else if (largest > largest_coordinate)
+    else if (largest > bounds::largest_coordinate)
       too_large.push_back(v);
   }
-  const std::string at_most =
-      "at most " + three_digits(largest_coordinate) + " m can be computed with: is the file in metres?";
+  const std::string at_most = "at most " + three_digits(bounds::largest_coordinate) +
+                              " m can be computed with: is the file in metres?";
   FaultLines lines(faults);
   lines.add(not_finite,
             {"vertex has", "vertices have", " a coordinate that is not finite", "write the file again"},
@@ -159,9 +159,9 @@ std::vector<std::string> check_coordinates(const Positions& x) {
   const double diagonal = bounding_box_diagonal(x);
   const double distance = x.cwiseAbs().maxCoeff();
   const double rounding = distance * std::numeric_limits<double>::epsilon();
-  if (diagonal < smallest_diagonal)
+  if (diagonal < bounds::smallest_diagonal)
     faults.push_back("the mesh is " + three_digits(diagonal) + " m across; at least " +
-                     three_digits(smallest_diagonal) + " m can be computed with");
+                     three_digits(bounds::smallest_diagonal) + " m can be computed with");
   else if (rounding > largest_rounding * diagonal)
     faults.push_back("the mesh is " + three_digits(diagonal) + " m across and " + three_digits(distance) +
                      " m from the origin, where rounding moves vertices by " + three_digits(rounding) +

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/kernel/mesh/disjoint_sets.h"
-#include "core/kernel/mesh/extent.h"
 #include "core/kernel/mesh/half_edges.h"
+#include "core/kernel/plugin/bounds.h"
 
 namespace drape {
 namespace {
@@ -22,7 +22,7 @@ bool has_no_area(const TriangleMesh& mesh, int t) {
   const Eigen::RowVector3d a = mesh.vertices.row(v[0]), b = mesh.vertices.row(v[1]),
                            c = mesh.vertices.row(v[2]);
   const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
-  return (b - a).cross(c - a).norm() <= smallest_height * longest;  // false where a coordinate is NaN
+  return (b - a).cross(c - a).norm() <= bounds::smallest_height * longest;  // false where a coordinate is NaN
 }
 
 std::vector<MeshFaults::Pair> doubled(const Triangles& triangles) {

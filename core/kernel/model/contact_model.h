@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/kernel/model/energy.h"
-#include "core/kernel/model/friction.h"
+#include "core/kernel/model/friction_contact.h"
 #include "core/kernel/model/gaps.h"
 #include "core/kernel/model/level.h"
 #include "core/kernel/model/material.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/kernel/files/number_text.h"
+#include "core/kernel/linear_algebra/block_matrix.h"
 #include "core/kernel/mesh/generate.h"
 
 namespace drape {
@@ -23,7 +24,7 @@ Eigen::MatrixXd dense_hessian(const BoundEnergy& energy, const Positions& x, dou
   BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
   matrix.set_zero();
   const BlockSlots slots(*matrix.pattern, stencils);
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   energy.add_hessian(x, Projection::none, sink);
   for (int i = 0; i < matrix.pattern->rows(); ++i)
     for (int b = matrix.pattern->row_start[i]; b < matrix.pattern->row_start[i + 1]; ++b) {

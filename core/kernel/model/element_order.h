@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/linear_algebra/block_sink.h"
 #include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/mesh/triangle_mesh.h"
 

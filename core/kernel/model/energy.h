@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/kernel/linear_algebra/block_sink.h"
 #include "core/kernel/model/level.h"
 #include "core/kernel/model/material.h"
 

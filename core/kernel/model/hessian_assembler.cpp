@@ -163,12 +163,12 @@ const BlockMatrix& HessianAssembler::add(BlockMatrix& smooth,
     for (const BoundEnergy* energy : persistent)
       persistent_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
   for (std::size_t k = 0; k < persistent.size(); ++k) {
-    BlockSink sink(*persistent_slots_[k], *sum);
+    BlockSink sink = persistent_slots_[k]->sink(*sum);
     persistent[k]->add_hessian(x, projection, sink);
   }
   for (std::size_t k = 0; k < transient.size(); ++k) {
     const BlockSlots slots(*pattern_, stencils[k]);
-    BlockSink sink(slots, *sum);
+    BlockSink sink = slots.sink(*sum);
     transient[k]->add_hessian(x, projection, sink);
   }
   return *sum;

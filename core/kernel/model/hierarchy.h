@@ -6,12 +6,6 @@
 
 namespace drape {
 
-/// Which prolongation maps a coarse level's vertices to a finer level.
-enum class Interpolation {
-  midpoint,  ///< linear in the rest shape; on regular refinements new vertices are edge midpoints
-  refiner    ///< the weights of the hierarchy's refiner
-};
-
 /// Levels of one cloth from coarse to fine, and the operators between them. Immutable.
 struct Hierarchy {
   std::vector<Level> levels;                      ///< at least one

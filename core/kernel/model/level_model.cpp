@@ -226,7 +226,7 @@ void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMat
                              double factor) const {
   for (const Term& term : terms_)
     if (term.slots && roles.has(term.role)) {
-      BlockSink sink(*term.slots, matrix, factor);
+      BlockSink sink = term.slots->sink(matrix, factor);
       term.energy->add_hessian(x, projection, sink);
     }
 }

@@ -29,7 +29,7 @@ BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection
   for (std::size_t k = 0; k < energies.size(); ++k) {
     if (stencils[k].rows() == 0) continue;
     const BlockSlots slots(*matrix.pattern, stencils[k]);
-    BlockSink sink(slots, matrix);
+    BlockSink sink = slots.sink(matrix);
     energies[k]->add_hessian(x, projection, sink);
   }
   return matrix;

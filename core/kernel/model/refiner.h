@@ -19,4 +19,10 @@ class Refiner {
   virtual Refinement refine(const Level& coarse) const = 0;
 };
 
+/// Which prolongation maps a coarse level's vertices to a finer level.
+enum class Interpolation {
+  midpoint,  ///< linear in the rest shape; on regular refinements new vertices are edge midpoints
+  refiner    ///< the weights of the hierarchy's refiner
+};
+
 }  // namespace drape

@@ -1,16 +1,8 @@
 #include "core/kernel/model/solver.h"
 
+#include <utility>
+
 namespace drape {
-
-Positions Problem::prolong(const ProlongationMatrix& weights, int level, const Positions& x) const {
-  Positions y = weights * x;
-  model(level + 1)->set_dirichlet(y);
-  return y;
-}
-
-std::vector<ProlongationMatrix> Solver::interpolation(const Hierarchy& hierarchy) const {
-  return hierarchy.linear;
-}
 
 Outcome worse_of(Outcome a, Outcome b) {
   constexpr Outcome rising[] = {Outcome::converged_to_rounding,

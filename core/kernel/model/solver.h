@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "core/kernel/model/contact_model.h"
-#include "core/kernel/model/hierarchy.h"
-#include "core/kernel/model/level_model.h"
 #include "core/kernel/model/load_stepping.h"
+#include "core/kernel/model/refiner.h"
 
 namespace drape {
+
+struct Hierarchy;
+class LevelModel;
 
 /// Input of a method. Refers to objects that the experiment owns.
 struct Problem {
@@ -26,9 +28,6 @@ struct Problem {
   std::shared_ptr<const LevelModel> model(int level) const {
     return load_stepping ? load_stepping->model(level) : models[level];
   }
-  /// A level's state prolonged to the next level by `weights` (n_{l+1} × n_l), with Dirichlet vertices at
-  /// their targets.
-  Positions prolong(const ProlongationMatrix& weights, int level, const Positions& x) const;
 };
 
 /// How a level ended. `refined_early_on_request`: an observer asked for the next level.
@@ -124,9 +123,8 @@ class Solver {
                                           Observer& observer) const {
     return solve(problem, observer);
   }
-  /// The prolongations, [l]: n_{l+1} × n_l, for measuring or showing the method's states on finer meshes. By
-  /// default linear interpolation over the rest shape, which does not move the surface.
-  virtual std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const;
+  /// Which prolongation the method's states are measured and shown with on finer meshes.
+  virtual Interpolation interpolation() const { return Interpolation::midpoint; }
 };
 
 }  // namespace drape

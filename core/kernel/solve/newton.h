@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/model/hierarchy.h"
 #include "core/kernel/model/objective.h"
 #include "core/kernel/model/solver.h"
 #include "core/kernel/solve/newton_parameters.h"

@@ -94,7 +94,7 @@ class TargetObjective : public Objective {
     for (int i = 0; i < pattern_->rows(); ++i)
       for (int c = 0; c < 3; ++c) matrix_.block(pattern_->row_start[i])[4 * c] = weight(i);
     if (penalty_) {
-      BlockSink sink(*slots_, matrix_);
+      BlockSink sink = slots_->sink(matrix_);
       penalty_->add_hessian(y, projection, sink);
     }
     return matrix_;
@@ -172,15 +172,16 @@ Refined refine_safely(const Problem& problem, int level, const Positions& x,
   const Stopwatch watch;
   const std::shared_ptr<const LevelModel> finer = problem.model(level + 1);
   const LevelModel& model = *finer;
+  Positions target = weights * x;
+  model.set_dirichlet(target);
   Refined refined;
   if (model.contacts().empty() && model.limits().empty()) {
-    refined.x = problem.prolong(weights, level, x);
+    refined.x = std::move(target);
     refined.seconds = watch.seconds();
     return refined;
   }
   refined.x = problem.hierarchy.midpoints[level] * x;
   move_dirichlet_vertices(model, refined.x);
-  Positions target = problem.prolong(weights, level, x);
   const bool within_limits = strain_limit_violations(model.limits(), target, 1).empty();
   if (within_limits && is_collision_free(model, refined.x, target)) {
     refined.x = std::move(target);

@@ -3,6 +3,8 @@
 #include <string>
 
 #include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/model/hierarchy.h"
+#include "core/kernel/model/level_model.h"
 #include "core/kernel/model/solver.h"
 
 namespace drape {

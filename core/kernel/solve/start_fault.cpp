@@ -5,8 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/kernel/mesh/extent.h"
 #include "core/kernel/model/stretch_limit.h"
+#include "core/kernel/plugin/bounds.h"
 
 namespace drape {
 
@@ -26,7 +26,7 @@ std::string degenerate_triangle(const Triangles& triangles, const Positions& x) 
     const auto length = [](const Eigen::RowVector3d& edge) { return edge.cwiseAbs().maxCoeff(); };
     const double longest = std::max({length(b - a), length(c - b), length(a - c)});
     // Neither the lengths nor the cross product may over- or underflow.
-    if (longest == 0 || ((b - a) / longest).cross((c - a) / longest).norm() <= smallest_height)
+    if (longest == 0 || ((b - a) / longest).cross((c - a) / longest).norm() <= bounds::smallest_height)
       return "triangle " + std::to_string(t) + " (" + std::to_string(v[0]) + ", " + std::to_string(v[1]) +
              ", " + std::to_string(v[2]) + ")";
   }

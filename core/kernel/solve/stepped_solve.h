@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/model/hierarchy.h"
+#include "core/kernel/model/level_model.h"
 #include "core/kernel/model/solver.h"
 #include "core/kernel/solve/newton_state.h"
 

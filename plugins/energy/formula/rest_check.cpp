@@ -18,7 +18,7 @@ bool has_finite_hessian(const BoundEnergy& energy, const Positions& x) {
   BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
   matrix.set_zero();
   const BlockSlots slots(*matrix.pattern, stencils);
-  BlockSink sink(slots, matrix);
+  BlockSink sink = slots.sink(matrix);
   energy.add_hessian(x, Projection::none, sink);
   for (const double entry : matrix.values)
     if (!std::isfinite(entry)) return false;

@@ -23,9 +23,7 @@ class CascadicSolver : public ResumableSolver {
   };
   explicit CascadicSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
-    return hierarchy.weights(p_.prolongation);
-  }
+  Interpolation interpolation() const override { return p_.prolongation; }
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {

@@ -59,9 +59,7 @@ class PcsSolver : public ResumableSolver {
   };
   explicit PcsSolver(const Parameters& parameters) : p_(parameters) {}
 
-  std::vector<ProlongationMatrix> interpolation(const Hierarchy& hierarchy) const override {
-    return hierarchy.weights(p_.interpolation.state);
-  }
+  Interpolation interpolation() const override { return p_.interpolation.state; }
 
   std::vector<LevelResult> resume(const Problem& problem, const MethodState& from,
                                   Observer& observer) const override {
