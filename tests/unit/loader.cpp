@@ -11,11 +11,11 @@
 #include <fstream>
 
 #include "core/kernel/files/file.h"
-#include "core/kernel/linear_algebra/block_matrix.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/abi.h"
 #include "core/kernel/plugin/make.h"
-#include "core/kernel/solve/newton_parameters.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/step/newton_parameters.h"
 #include "tests/support/folders.h"
 
 using namespace drape;

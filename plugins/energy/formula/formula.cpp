@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/kernel/elements/formula_properties.h"
-#include "core/kernel/model/derivative_check.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/formulas/formula_properties.h"
+#include "core/numerics/model/derivative_check.h"
 #include "plugins/energy/formula/hinge.h"
 #include "plugins/energy/formula/membrane.h"
 #include "plugins/energy/formula/read_law.h"

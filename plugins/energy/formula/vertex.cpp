@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/kernel/elements/vertex_energy.h"
+#include "core/numerics/elements/vertex_energy.h"
 #include "plugins/energy/formula/compile.h"
 
 namespace drape::formula {

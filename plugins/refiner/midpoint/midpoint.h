@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/model/midpoint.h"
+#include "core/numerics/hierarchy/midpoint.h"
 
 namespace drape {
 

@@ -1,5 +1,5 @@
 #include "core/kernel/plugin/plugin.h"
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/solve/newton.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
-#include "core/kernel/contact/contact_parameters.h"
-#include "core/kernel/contact/vertex_contacts.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/contact/contact_parameters.h"
+#include "core/numerics/contact/vertex_contacts.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace {

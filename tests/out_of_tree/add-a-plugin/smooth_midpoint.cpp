@@ -1,5 +1,5 @@
-#include "core/kernel/model/midpoint.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/hierarchy/midpoint.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "core/kernel/elements/energy_formula.h"
+#include "core/numerics/formulas/energy_formula.h"
 
 struct Orthotropic {
   double warp = 2e3, weft = 5e2, shear = 60, poisson = 0.2;
