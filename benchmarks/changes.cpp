@@ -15,9 +15,9 @@
 #include "benchmarks/measure.h"
 #include "core/app/experiment/experiment.h"
 #include "core/app/files/machine.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
 #include "core/kernel/plugin/loader.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
 
 using namespace drape;

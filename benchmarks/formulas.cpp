@@ -14,11 +14,11 @@
 
 #include "benchmarks/measure.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/loader.h"
 #include "core/kernel/plugin/make.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

@@ -4,9 +4,9 @@
 #include <concepts>
 #include <random>
 
-#include "core/kernel/elements/element_energy.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/elements/element_energy.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 #include "tests/support/unregistered.h"
 // After it:

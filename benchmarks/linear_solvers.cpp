@@ -20,12 +20,12 @@
 
 #include "benchmarks/measure.h"
 #include "core/app/files/machine.h"
-#include "core/kernel/linear_algebra/block_cholesky.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/model/objective.h"
 #include "core/kernel/plugin/loader.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
+#include "core/numerics/model/objective.h"
 
 using namespace drape;
 using nlohmann::ordered_json;

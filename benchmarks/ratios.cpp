@@ -14,11 +14,11 @@
 
 #include "benchmarks/measure.h"
 #include "core/app/files/machine.h"
-#include "core/kernel/linear_algebra/block_cholesky.h"
-#include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/solve/newton.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/kernel/version.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
+#include "core/numerics/solve/newton.h"
 
 using namespace drape;
 

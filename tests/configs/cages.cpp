@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 
 namespace {

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/app/files/snapshot_file.h"
 #include "core/app/run/reference.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 #include "tests/support/registry.h"
 

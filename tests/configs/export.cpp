@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 #include "tests/support/glb.h"

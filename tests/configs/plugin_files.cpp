@@ -8,7 +8,7 @@ using Catch::Contains;
 
 namespace {
 
-const std::string energy_file = R"(#include "core/kernel/elements/energy_formula.h"
+const std::string energy_file = R"(#include "core/numerics/formulas/energy_formula.h"
 #include "stiffness.h"
 
 DRAPE_MEMBRANE(rubber, "Isotropic.") {

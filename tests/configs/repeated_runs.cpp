@@ -4,8 +4,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/drum.h"
 #include "tests/support/folders.h"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 
 namespace fs = std::filesystem;

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <random>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/contact_model.h"
-#include "core/kernel/model/friction.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/conformance.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <random>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/energy.h"
-#include "core/kernel/model/hierarchy.h"
-#include "core/kernel/model/midpoint.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/refiner.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/conformance.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"

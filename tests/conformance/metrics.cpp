@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -2,10 +2,10 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/kernel/interfaces/refiner.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

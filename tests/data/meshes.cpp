@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/kernel/contact/intersections.h"
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/folders.h"
 
 using namespace drape;

@@ -5,8 +5,8 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/io_formats.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh_files/io_formats.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
 #include "core/kernel/version.h"
 
 // A program of somebody else's: exits with 0 when the library it was linked with works.

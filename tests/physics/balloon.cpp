@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/strip.h"
 

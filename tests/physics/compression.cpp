@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/hierarchy.h"
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/strip.h"
 

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/strip.h"
 
 using namespace drape;

@@ -2,7 +2,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/command.h"
 #include "tests/support/layered_shapes.h"

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/model/stretch_limit.h"
+#include "core/numerics/model/stretch_limit.h"
 #include "tests/support/elastica.h"
 #include "tests/support/strip.h"
 

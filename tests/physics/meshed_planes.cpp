@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/slope.h"
 #include "tests/support/solve.h"

@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/command.h"
 #include "tests/support/slope.h"
 #include "tests/support/solve.h"

@@ -1,8 +1,8 @@
-#include "core/kernel/model/weak_barrier.h"
+#include "core/numerics/model/weak_barrier.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/model/gaps.h"
+#include "core/kernel/interfaces/gaps.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace {

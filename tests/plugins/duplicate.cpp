@@ -1,6 +1,6 @@
 // A plugin whose only fault is a name that good.cpp has too.
 
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace {

@@ -5,10 +5,10 @@
 #include <new>
 #include <stdexcept>
 
-#include "core/kernel/model/energy.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/plugin.h"
-#include "core/kernel/solve/newton_parameters.h"
+#include "core/numerics/step/newton_parameters.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // A plugin that loads: one refiner, which tells its parameter by the number of rows it returns.
 
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace {

@@ -1,6 +1,6 @@
 // A plugin with a refiner that has no name.
 
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace {

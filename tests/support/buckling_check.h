@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/elements/membrane_formula.h"
+#include "core/numerics/formulas/membrane_formula.h"
 #include "tests/support/kernel_check.h"
 
-/// Properties of every membrane that buckles below the mesh (core/kernel/elements/buckling_membrane.h), for
+/// Properties of every membrane that buckles below the mesh (core/numerics/elements/buckling_membrane.h), for
 /// one triangle.
 template <class Law>
 class BucklingCheck {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel/mesh/split_triangles.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh/split_triangles.h"
 
 // Closed meshes to blow up, triangles counter-clockwise seen from outside.
 

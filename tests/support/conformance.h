@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 #include "tests/support/folders.h"
 #include "tests/support/registry.h"
 

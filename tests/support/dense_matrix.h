@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
 
 /// Both triangles of a block matrix, as an oracle for small cases.
 inline Eigen::MatrixXd dense(const drape::BlockMatrix& m) {

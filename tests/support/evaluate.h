@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/kernel/model/energy.h"
-#include "core/kernel/model/objective.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/numerics/model/objective.h"
 #include "tests/support/dense_matrix.h"
 
 inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drape::Positions& x) {

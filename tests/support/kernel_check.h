@@ -5,13 +5,13 @@
 #include <functional>
 #include <random>
 
-#include "core/kernel/elements/element_energy.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/elements/element_energy.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"
 
-// What every element kernel owes (see core/kernel/elements/element_energy.h), for one state of one element. A
-// state is the column of its differences x_i - x_0.
+// What every element kernel owes (see core/numerics/elements/element_energy.h), for one state of one element.
+// A state is the column of its differences x_i - x_0.
 
 template <class Kernel>
 struct KernelCheck {

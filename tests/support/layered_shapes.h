@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 // Rest shapes whose layers lie on each other, and starts in which the layers are apart. Lengths in metres.
 

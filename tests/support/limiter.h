@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 
 /// A strain limit without an energy, which allows a fixed fraction of every step.
 class Limiter : public drape::Energy, public drape::BoundEnergy {

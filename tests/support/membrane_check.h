@@ -7,8 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/kernel/elements/membrane_formula.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/formulas/membrane_formula.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
 
 /// Edge vectors of a triangle at rest, and a state of it as KernelCheck takes it.

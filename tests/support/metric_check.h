@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <string>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level_model.h"
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/patterns/generate.h"
 
 // What tests of metrics share.
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/solve/iterate.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/step/iterate.h"
 
 /// An iterate at the rest shape of a sheet of 4×4 vertices, evaluated, for tests of the Newton solver's
 /// parts.

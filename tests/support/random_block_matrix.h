@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
 
 /// A random symmetric positive semidefinite block matrix: a random 12×12 one for every element.
 inline drape::BlockMatrix random_matrix(int vertices, const drape::Stencils& stencils, unsigned seed) {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "core/kernel/model/contact_stiffness.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
 
 inline constexpr double gravity = 9.81, dhat = 1e-3;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 
 /// A unit weight at each vertex: constant forces, whose Hessian is zero.
 class Weight : public drape::Energy, public drape::BoundEnergy {

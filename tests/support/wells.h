@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 
 /// ¼ Σ k (|x_i − a_i|² − w²)²: a bowl for w = 0, with a hump at a_i (an indefinite Hessian) otherwise.
 class Wells : public drape::Energy, public drape::BoundEnergy {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 #include "tests/support/sweep_runs.h"

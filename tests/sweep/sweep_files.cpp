@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

@@ -1,13 +1,13 @@
-#include "core/kernel/model/active_contacts.h"
+#include "core/numerics/model/active_contacts.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/contact_stiffness.h"
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/solve.h"
 

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level_model.h"
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton.h"
 #include "tests/support/weight.h"
 
 using namespace drape;

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <random>
 
-#include "core/kernel/contact/pair_contacts.h"
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_geometry.h"
 
 using namespace drape;
 using Eigen::Vector3d;

@@ -1,4 +1,4 @@
-#include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
 
 #include <Eigen/Cholesky>
 #include <atomic>
@@ -6,8 +6,8 @@
 #include <limits>
 #include <thread>
 
-#include "core/kernel/linear_algebra/flush_denormals.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/flush_denormals.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/dense_matrix.h"
 #include "tests/support/random_block_matrix.h"

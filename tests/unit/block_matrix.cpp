@@ -1,10 +1,10 @@
-#include "core/kernel/linear_algebra/block_matrix.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 #include <set>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;

@@ -1,10 +1,10 @@
-#include "core/kernel/contact/broad_phase.h"
+#include "core/numerics/collision_detection/broad_phase.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/processor_time.h"
 
 using namespace drape;

@@ -1,4 +1,4 @@
-#include "core/kernel/contact/closest.h"
+#include "core/numerics/collision_detection/closest.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "core/kernel/contact/pair_geometry.h"
+#include "core/numerics/contact/pair_geometry.h"
 
 using namespace drape;
 using Eigen::Vector3d;

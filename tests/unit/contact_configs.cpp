@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/experiment/load_schedule.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

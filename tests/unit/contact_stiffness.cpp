@@ -1,9 +1,9 @@
-#include "core/kernel/model/contact_stiffness.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level_model.h"
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"

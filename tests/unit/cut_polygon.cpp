@@ -1,4 +1,4 @@
-#include "core/kernel/mesh/cut_polygon.h"
+#include "core/numerics/mesh/cut_polygon.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-#include "core/kernel/solve/cycle_detector.h"
+#include "core/numerics/step/cycle_detector.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "core/kernel/model/derivative_check.h"
+#include "core/numerics/model/derivative_check.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level_model.h"
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

@@ -1,9 +1,9 @@
-#include "core/kernel/solve/dirichlet_enforcer.h"
+#include "core/numerics/solve/dirichlet_enforcer.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/solve/dirichlet_predictor.h"
+#include "core/numerics/solve/dirichlet_predictor.h"
 #include "tests/support/limiter.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/wells.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

@@ -1,11 +1,11 @@
-#include "core/kernel/model/element_order.h"
+#include "core/kernel/interfaces/element_order.h"
 
 #include <catch2/catch.hpp>
 #include <numeric>
 #include <set>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

@@ -1,10 +1,10 @@
-#include "core/kernel/elements/energy_formula.h"
+#include "core/numerics/formulas/energy_formula.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/derivative_check.h"
+#include "core/numerics/model/derivative_check.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/unregistered.h"

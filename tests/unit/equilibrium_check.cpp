@@ -1,4 +1,4 @@
-#include "core/kernel/solve/equilibrium_check.h"
+#include "core/numerics/step/equilibrium_check.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

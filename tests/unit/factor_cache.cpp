@@ -1,9 +1,9 @@
-#include "core/kernel/solve/factor_cache.h"
+#include "core/numerics/step/factor_cache.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/kernel/solve/equilibrium_check.h"
+#include "core/numerics/step/equilibrium_check.h"
 #include "tests/support/newton_problem.h"
 #include "tests/support/registry.h"
 #include "tests/support/wells.h"

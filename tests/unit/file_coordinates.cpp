@@ -1,11 +1,11 @@
-#include "core/kernel/mesh/file_coordinates.h"
+#include "core/numerics/mesh_files/file_coordinates.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/primitives.h"
-#include "core/kernel/mesh/rotation.h"
+#include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
 

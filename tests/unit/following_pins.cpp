@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/primitives.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
 

@@ -1,4 +1,4 @@
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact_forces/friction.h"
 
 #include <algorithm>
 #include <random>

@@ -1,8 +1,8 @@
-#include "core/kernel/linear_algebra/galerkin.h"
+#include "core/numerics/linear_algebra/galerkin.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/model/transfer.h"
+#include "core/numerics/hierarchy/transfer.h"
 #include "tests/support/dense_matrix.h"
 
 using namespace drape;

@@ -1,13 +1,13 @@
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/delaunay.h"
-#include "core/kernel/model/level.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/patterns/delaunay.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/kernel/model/hessian_assembler.h"
+#include "core/numerics/model/hessian_assembler.h"
 
 #include <catch2/catch.hpp>
 

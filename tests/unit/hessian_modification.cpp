@@ -1,4 +1,4 @@
-#include "core/kernel/solve/hessian_modification.h"
+#include "core/numerics/step/hessian_modification.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

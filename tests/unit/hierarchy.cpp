@@ -1,12 +1,12 @@
-#include "core/kernel/model/hierarchy.h"
+#include "core/numerics/hierarchy/hierarchy.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/split_triangles.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/split_triangles.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

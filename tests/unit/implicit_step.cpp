@@ -1,4 +1,4 @@
-#include "core/kernel/solve/implicit_step.h"
+#include "core/numerics/step/implicit_step.h"
 
 #include <catch2/catch.hpp>
 

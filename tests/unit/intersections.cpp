@@ -1,4 +1,4 @@
-#include "core/kernel/contact/intersections.h"
+#include "core/numerics/collision_detection/intersections.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
@@ -8,7 +8,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/processor_time.h"
 
 using namespace drape;

@@ -1,8 +1,8 @@
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

@@ -3,10 +3,10 @@
 #include <catch2/catch.hpp>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/model/objective.h"
-#include "core/kernel/solve/newton.h"
-#include "core/kernel/solve/newton_state.h"
-#include "core/kernel/solve/resumable_solver.h"
+#include "core/numerics/model/objective.h"
+#include "core/numerics/solve/newton.h"
+#include "core/numerics/solve/newton_state.h"
+#include "core/numerics/solve/resumable_solver.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

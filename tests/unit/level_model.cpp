@@ -1,9 +1,9 @@
-#include "core/kernel/model/level_model.h"
+#include "core/numerics/model/level_model.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/elements/linear_energy.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/elements/linear_energy.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

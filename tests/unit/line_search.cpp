@@ -1,4 +1,4 @@
-#include "core/kernel/solve/line_search.h"
+#include "core/numerics/step/line_search.h"
 
 #include <catch2/catch.hpp>
 

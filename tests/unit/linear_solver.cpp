@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/linear_algebra/block_cholesky.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
 #include "tests/support/random_block_matrix.h"
 #include "tests/support/solve.h"
 

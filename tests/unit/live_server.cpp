@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 #include "tests/support/command.h"
 #include "tests/support/live_client.h"
 

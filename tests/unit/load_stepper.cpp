@@ -1,4 +1,4 @@
-#include "core/kernel/solve/load_stepper.h"
+#include "core/numerics/solve/load_stepper.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 using Faults = std::vector<std::string>;

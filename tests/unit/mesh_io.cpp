@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "core/kernel/files/file.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 namespace fs = std::filesystem;

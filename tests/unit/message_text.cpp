@@ -10,8 +10,8 @@
 
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"
 
 using namespace drape;

@@ -1,9 +1,9 @@
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/level_model.h"
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 using Catch::Matchers::Contains;

@@ -1,10 +1,10 @@
-#include "core/kernel/linear_algebra/multigrid.h"
+#include "core/numerics/multigrid/multigrid.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/solve/factor_cache.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/step/factor_cache.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

@@ -1,11 +1,11 @@
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/solve/newton.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/solve/newton_state.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton_state.h"
 #include "tests/support/weight.h"
 #include "tests/support/wells.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/kernel/linear_algebra/pack.h"
+#include "core/numerics/linear_algebra/pack.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>

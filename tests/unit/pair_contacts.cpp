@@ -1,11 +1,11 @@
-#include "core/kernel/contact/pair_contacts.h"
+#include "core/numerics/contact/pair_contacts.h"
 
 #include <Eigen/Geometry>
 #include <map>
 #include <set>
 
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact_forces/friction.h"
 #include "tests/support/kernel_check.h"
 
 using namespace drape;

@@ -1,4 +1,4 @@
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 #include <atomic>
 #include <catch2/catch.hpp>

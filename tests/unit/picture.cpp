@@ -11,8 +11,8 @@
 #include "core/app/picture/sampling.h"
 #include "core/app/picture/surface.h"
 #include "core/app/view/colours.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

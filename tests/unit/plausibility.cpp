@@ -2,10 +2,10 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/kernel/contact/surface_gap.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/primitives.h"
+#include "core/numerics/collision_detection/surface_gap.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/patterns/primitives.h"
 #include "tests/support/command.h"
 #include "tests/support/solve.h"
 

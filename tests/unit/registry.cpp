@@ -5,7 +5,7 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/app/files/yaml_file.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/make.h"
 
 using namespace drape;

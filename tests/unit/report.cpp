@@ -15,12 +15,12 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/colours.h"
 #include "core/app/view/html.h"
-#include "core/kernel/files/base64.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/mesh_files/base64.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/declared_metrics.h"
 
 using namespace drape;

@@ -1,10 +1,10 @@
-#include "core/kernel/model/rest_interpolation.h"
+#include "core/numerics/hierarchy/rest_interpolation.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

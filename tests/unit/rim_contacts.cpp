@@ -1,9 +1,9 @@
-#include "core/kernel/contact/rim_contacts.h"
+#include "core/numerics/contact/rim_contacts.h"
 
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/contact/barrier.h"
+#include "core/numerics/contact_forces/barrier.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/kernel_check.h"
 

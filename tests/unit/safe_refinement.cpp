@@ -1,14 +1,14 @@
-#include "core/kernel/solve/safe_refinement.h"
+#include "core/numerics/solve/safe_refinement.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/friction.h"
-#include "core/kernel/model/stretch_limit.h"
-#include "core/kernel/solve/newton_state.h"
-#include "core/kernel/solve/progression.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton_state.h"
+#include "core/numerics/solve/progression.h"
 #include "tests/support/registry.h"
 
 using namespace drape;

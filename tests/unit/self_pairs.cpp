@@ -1,14 +1,14 @@
-#include "core/kernel/contact/self_pairs.h"
+#include "core/numerics/contact/self_pairs.h"
 
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/contact/candidate_pairs.h"
-#include "core/kernel/contact/moving_pairs.h"
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact/candidate_pairs.h"
+#include "core/numerics/contact/moving_pairs.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 using Eigen::Vector3d;

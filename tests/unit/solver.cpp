@@ -1,4 +1,4 @@
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,13 +1,13 @@
 // Messages about starts without finite energy or forces.
 
-#include "core/kernel/solve/start_fault.h"
+#include "core/numerics/solve/start_fault.h"
 
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/kernel/elements/linear_energy.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/elements/linear_energy.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/solve/newton.h"
 
 using namespace drape;
 

@@ -1,4 +1,4 @@
-#include "core/kernel/solve/step_controller.h"
+#include "core/numerics/step/step_controller.h"
 
 #include <catch2/catch.hpp>
 

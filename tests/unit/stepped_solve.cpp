@@ -1,4 +1,4 @@
-#include "core/kernel/solve/stepped_solve.h"
+#include "core/numerics/solve/stepped_solve.h"
 
 #include <catch2/catch.hpp>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "core/kernel/elements/stretch.h"
+#include "core/numerics/elements/stretch.h"
 
 #include <Eigen/SVD>
 #include <catch2/catch.hpp>

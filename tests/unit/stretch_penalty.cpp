@@ -1,4 +1,4 @@
-#include "core/kernel/elements/stretch_penalty.h"
+#include "core/numerics/elements/stretch_penalty.h"
 
 #include "tests/support/membrane_check.h"
 

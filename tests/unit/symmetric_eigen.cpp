@@ -1,4 +1,4 @@
-#include "core/kernel/linear_algebra/symmetric_eigen.h"
+#include "core/numerics/linear_algebra/symmetric_eigen.h"
 
 #include <catch2/catch.hpp>
 #include <random>

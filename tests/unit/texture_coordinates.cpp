@@ -1,6 +1,6 @@
 // Texture coordinates from a file over the levels to files again, and those of flat meshes without any.
 
-#include "core/kernel/mesh/texture_coordinates.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 
 #include <unistd.h>
 
@@ -9,11 +9,11 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/split_triangles.h"
-#include "core/kernel/model/hierarchy.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/mesh/split_triangles.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 namespace fs = std::filesystem;

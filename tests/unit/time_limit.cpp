@@ -7,7 +7,7 @@
 
 #include <regex>
 
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 #include "tests/support/command.h"
 #include "tests/support/folders.h"
 

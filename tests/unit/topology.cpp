@@ -1,12 +1,12 @@
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
 #include <utility>
 
-#include "core/kernel/linear_algebra/same_entries.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

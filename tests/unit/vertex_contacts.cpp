@@ -1,10 +1,10 @@
-#include "core/kernel/contact/vertex_contacts.h"
+#include "core/numerics/contact/vertex_contacts.h"
 
 #include <Eigen/Geometry>
 #include <limits>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/contact_forces/friction.h"
 #include "tests/support/kernel_check.h"
 
 using namespace drape;

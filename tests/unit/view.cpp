@@ -8,8 +8,8 @@
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
-#include "core/kernel/elements/vertex_fields.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/elements/vertex_fields.h"
+#include "core/numerics/patterns/generate.h"
 
 using namespace drape;
 

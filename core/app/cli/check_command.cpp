@@ -10,8 +10,8 @@
 #include "core/app/files/yaml_file.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/model/derivative_check.h"
 #include "core/kernel/plugin/make.h"
+#include "core/numerics/model/derivative_check.h"
 
 namespace drape {
 

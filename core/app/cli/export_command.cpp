@@ -9,8 +9,8 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/picture_scene.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

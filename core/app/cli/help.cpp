@@ -5,7 +5,7 @@
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

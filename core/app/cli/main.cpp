@@ -34,10 +34,10 @@
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/loader.h"
-#include "core/kernel/plugin/string_utils.h"
-#include "core/kernel/solve/newton_parameters.h"
 #include "core/kernel/version.h"
+#include "core/numerics/step/newton_parameters.h"
 
 namespace {
 

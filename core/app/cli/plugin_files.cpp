@@ -12,7 +12,7 @@
 #include "core/app/sweep/process.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

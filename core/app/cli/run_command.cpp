@@ -13,8 +13,8 @@
 #include "core/app/run/run_folder.h"
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 

@@ -15,7 +15,7 @@
 #include "core/app/sweep/memory.h"
 #include "core/app/sweep/slurm_engine.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "core/kernel/mesh/rotation.h"
-#include "core/kernel/model/position_penalty.h"
+#include "core/numerics/mesh/rotation.h"
+#include "core/numerics/model/position_penalty.h"
 
 namespace drape {
 

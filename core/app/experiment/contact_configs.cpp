@@ -4,8 +4,8 @@
 #include <map>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameter_path.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/config_node.h"
 
 namespace drape {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 namespace {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "core/app/experiment/experiment_parameters.h"
-#include "core/kernel/model/contact_model.h"
-#include "core/kernel/model/hierarchy.h"
-#include "core/kernel/model/level_model.h"
-#include "core/kernel/model/metric.h"
-#include "core/kernel/model/refiner.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/interfaces/metric.h"
+#include "core/kernel/interfaces/refiner.h"
+#include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/registry.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/model/level_model.h"
 
 namespace drape {
 

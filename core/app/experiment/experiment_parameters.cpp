@@ -1,7 +1,7 @@
 #include "core/app/experiment/experiment_parameters.h"
 
-#include "core/kernel/contact/contact_parameters.h"
 #include "core/kernel/plugin/placement.h"
+#include "core/numerics/contact/contact_parameters.h"
 
 namespace drape {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/mesh/file_coordinates.h"
-#include "core/kernel/model/material.h"
+#include "core/kernel/interfaces/material.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/solve/newton_parameters.h"
+#include "core/numerics/mesh_files/file_coordinates.h"
+#include "core/numerics/step/newton_parameters.h"
 
 namespace drape {
 

@@ -2,8 +2,8 @@
 
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/files/yaml_file.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameter_path.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

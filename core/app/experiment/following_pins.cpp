@@ -7,9 +7,9 @@
 
 #include "core/app/experiment/boundary_conditions.h"
 #include "core/app/experiment/contact_configs.h"
-#include "core/kernel/contact/closest.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/collision_detection/closest.h"
 
 namespace drape {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "core/kernel/solve/start_fault.h"
+#include "core/numerics/solve/start_fault.h"
 
 namespace drape {
 

@@ -1,7 +1,7 @@
 #include "core/app/experiment/reference_file.h"
 
-#include "core/kernel/linear_algebra/same_entries.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

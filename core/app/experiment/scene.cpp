@@ -12,11 +12,11 @@
 #include "core/app/experiment/shared_vertices.h"
 #include "core/app/experiment/size_estimate.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/linear_algebra/same_entries.h"
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/rotation.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/rotation.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 
 namespace drape {
 

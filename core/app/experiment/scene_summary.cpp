@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/kernel/elements/bending_stiffness.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/model/gaps.h"
+#include "core/kernel/interfaces/gaps.h"
+#include "core/numerics/elements/bending_stiffness.h"
 
 namespace drape {
 

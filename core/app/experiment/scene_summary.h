@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/app/experiment/experiment.h"
-#include "core/kernel/model/gaps.h"
+#include "core/kernel/interfaces/gaps.h"
 
 namespace drape {
 

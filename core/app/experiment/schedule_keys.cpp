@@ -6,8 +6,8 @@
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/experiment/experiment_path.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/make.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

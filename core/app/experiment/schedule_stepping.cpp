@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "core/kernel/model/stretch_limit.h"
+#include "core/numerics/model/stretch_limit.h"
 
 namespace drape {
 

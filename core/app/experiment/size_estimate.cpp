@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "core/app/files/machine.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

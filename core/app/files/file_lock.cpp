@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/kernel/files/file.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

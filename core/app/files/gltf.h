@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

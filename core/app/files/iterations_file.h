@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

@@ -8,8 +8,8 @@
 
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 

@@ -8,7 +8,7 @@
 #include "core/app/picture/eye.h"
 #include "core/app/picture/lighting.h"
 #include "core/app/picture/ray_scene.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 

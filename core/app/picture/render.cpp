@@ -11,7 +11,7 @@
 #include "core/app/picture/lighting.h"
 #include "core/app/picture/ray_scene.h"
 #include "core/app/picture/sampling.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 

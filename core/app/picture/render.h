@@ -8,7 +8,7 @@
 
 #include "core/app/picture/image.h"
 #include "core/app/view/colours.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

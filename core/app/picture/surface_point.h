@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "core/app/view/colours.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/linear_algebra/block_matrix.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
 
 namespace drape::python {
 

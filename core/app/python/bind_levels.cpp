@@ -1,7 +1,7 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/level_handle.h"
 #include "core/app/python/module.h"
-#include "core/kernel/mesh/check.h"
+#include "core/numerics/mesh/check.h"
 
 namespace drape::python {
 

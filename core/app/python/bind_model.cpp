@@ -3,8 +3,8 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/level_handle.h"
 #include "core/app/python/module.h"
-#include "core/kernel/model/objective.h"
 #include "core/kernel/plugin/bounds.h"
+#include "core/numerics/model/objective.h"
 
 namespace drape::python {
 

@@ -8,8 +8,8 @@
 #include "core/app/python/prototype_parameters.h"
 #include "core/app/python/prototype_solver.h"
 #include "core/app/python/registry.h"
-#include "core/kernel/model/derivative_check.h"
 #include "core/kernel/plugin/make.h"
+#include "core/numerics/model/derivative_check.h"
 
 namespace drape::python {
 

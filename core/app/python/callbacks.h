@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/app/python/python_call.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape::python {
 

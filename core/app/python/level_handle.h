@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "core/kernel/model/level.h"
-#include "core/kernel/model/level_model.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/model/level_model.h"
 
 namespace drape::python {
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/app/python/registry.h"
-#include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/plugin/abi.h"
+#include "core/kernel/threads/parallel.h"
 #include "core/kernel/version.h"
 
 namespace {

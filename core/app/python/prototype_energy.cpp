@@ -8,7 +8,7 @@
 
 #include "core/app/python/arrays.h"
 #include "core/app/python/level_handle.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape::python {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/app/python/python_call.h"
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 
 namespace drape::python {
 

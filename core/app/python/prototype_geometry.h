@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/app/python/python_call.h"
-#include "core/kernel/model/metric.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/metric.h"
+#include "core/kernel/interfaces/refiner.h"
 
 namespace drape::python {
 

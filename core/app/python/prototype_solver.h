@@ -2,8 +2,8 @@
 
 #include "core/app/python/level_handle.h"
 #include "core/app/python/python_call.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape::python {
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape::python {
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "core/app/report/run_data.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape::python {
 

@@ -10,8 +10,8 @@
 #include "core/app/report/text_table.h"
 #include "core/app/view/html.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

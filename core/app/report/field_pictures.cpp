@@ -7,7 +7,7 @@
 #include "core/app/report/midpoint_surface.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
 
 namespace drape {
 

@@ -7,7 +7,7 @@
 
 #include "core/app/picture/surface.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

@@ -10,8 +10,8 @@
 #include "core/app/report/tables.h"
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
-#include "core/kernel/files/base64.h"
 #include "core/kernel/files/file.h"
+#include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
 

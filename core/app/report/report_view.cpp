@@ -11,7 +11,7 @@
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -12,7 +12,7 @@
 #include "core/app/experiment/error_measures.h"
 #include "core/app/files/iterations_file.h"
 #include "core/app/files/optional_number.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 

@@ -11,9 +11,9 @@
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/texture_coordinates.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/mesh/texture_coordinates.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -8,7 +8,7 @@
 #include "core/app/report/metric_columns.h"
 #include "core/app/report/run_rows.h"
 #include "core/app/report/tables.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

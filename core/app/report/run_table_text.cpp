@@ -6,8 +6,8 @@
 #include "core/app/report/run_table.h"
 #include "core/app/view/html.h"
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/app/report/run_data.h"
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
 
 namespace drape {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/app/run/recorder.h"
-#include "core/kernel/solve/newton_state.h"
+#include "core/numerics/solve/newton_state.h"
 
 namespace drape {
 

@@ -7,9 +7,9 @@
 #include "core/app/report/run_data.h"
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/version.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/app/run/checkpoint.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

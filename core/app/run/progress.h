@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/app/run/time_to_go.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

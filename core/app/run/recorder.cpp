@@ -9,10 +9,10 @@
 #include "core/app/run/recorder_files.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/number_text.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/io_formats.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/kernel/threads/stopwatch.h"
 #include "core/kernel/version.h"
+#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 

@@ -9,7 +9,7 @@
 #include "core/app/run/errors.h"
 #include "core/app/run/run_folder.h"
 #include "core/app/run/snapshots.h"
-#include "core/kernel/mesh/io.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -6,8 +6,8 @@
 #include "core/app/run/recorder_files.h"
 #include "core/app/run/reference.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/io.h"
+#include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

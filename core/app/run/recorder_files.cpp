@@ -8,7 +8,7 @@
 #include "core/app/experiment/contact_configs.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/mesh/io_formats.h"
+#include "core/numerics/mesh_files/io_formats.h"
 
 namespace drape {
 

@@ -1,6 +1,6 @@
 #include "core/app/run/reference.h"
 
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/solve/newton.h"
 
 namespace drape {
 

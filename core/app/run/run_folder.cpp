@@ -11,7 +11,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/model/metric_declaration.h"
+#include "core/kernel/interfaces/metric_declaration.h"
 
 namespace drape {
 

@@ -13,9 +13,9 @@
 #include "core/app/view/live_view.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/app/experiment/experiment.h"
-#include "core/kernel/solve/stepped_solve.h"
+#include "core/numerics/solve/stepped_solve.h"
 
 namespace drape {
 

@@ -11,7 +11,7 @@
 #include "core/app/files/machine.h"
 #include "core/app/sweep/memory.h"
 #include "core/app/sweep/process.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include "core/app/files/json_file.h"
 #include "core/app/sweep/local_engine.h"
 #include "core/app/sweep/sweep_folder.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

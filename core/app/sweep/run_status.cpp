@@ -11,7 +11,7 @@
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 

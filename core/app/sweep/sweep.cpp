@@ -12,7 +12,7 @@
 #include "core/app/sweep/experiment_files.h"
 #include "core/app/sweep/variations.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 
 namespace drape {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/app/files/file_name.h"
-#include "core/kernel/model/solver.h"
+#include "core/kernel/interfaces/solver.h"
 
 namespace drape {
 

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <exception>
 
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

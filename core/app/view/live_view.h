@@ -8,7 +8,7 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/view/live_server.h"
 #include "core/app/view/view_document.h"
-#include "core/kernel/linear_algebra/stopwatch.h"
+#include "core/kernel/threads/stopwatch.h"
 
 namespace drape {
 

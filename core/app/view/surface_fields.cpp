@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "core/app/view/colours.h"
-#include "core/kernel/contact/box_tree.h"
-#include "core/kernel/contact/closest.h"
+#include "core/numerics/collision_detection/box_tree.h"
+#include "core/numerics/collision_detection/closest.h"
 
 namespace drape {
 

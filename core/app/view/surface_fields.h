@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include "core/app/view/embedded.h"
 #include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
-#include "core/kernel/elements/vertex_fields.h"
-#include "core/kernel/files/base64.h"
+#include "core/numerics/elements/vertex_fields.h"
+#include "core/numerics/mesh_files/base64.h"
 
 namespace drape {
 

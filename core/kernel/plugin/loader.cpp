@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/abi.h"
 #include "core/kernel/plugin/shared_library.h"
-#include "core/kernel/plugin/string_utils.h"
 
 namespace drape {
 namespace {

@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/make.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "core/kernel/plugin/string_utils.h"
 #include "core/kernel/plugin/text_location.h"
 
 namespace drape {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/kernel/contact/contact_kernel.h"
-#include "core/kernel/contact/contact_stack.h"
-#include "core/kernel/contact/intersections.h"
-#include "core/kernel/contact/rim_contacts.h"
-#include "core/kernel/contact/surface_contacts.h"
-#include "core/kernel/contact/surface_gap.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/collision_detection/surface_gap.h"
+#include "core/numerics/contact/contact_kernel.h"
+#include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/rim_contacts.h"
+#include "core/numerics/contact/surface_contacts.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 
 namespace drape::ipc {

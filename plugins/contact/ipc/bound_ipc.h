@@ -4,9 +4,9 @@
 #include <memory>
 #include <mutex>
 
-#include "core/kernel/contact/broad_phase.h"
-#include "core/kernel/contact/self_pairs.h"
-#include "core/kernel/model/gaps.h"
+#include "core/kernel/interfaces/gaps.h"
+#include "core/numerics/collision_detection/broad_phase.h"
+#include "core/numerics/contact/self_pairs.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "plugins/contact/ipc/rest_layers.h"
 

@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/kernel/contact/intersections.h"
-#include "core/kernel/mesh/alpha_wrap.h"
-#include "core/kernel/mesh/check.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/mesh/alpha_wrap.h"
+#include "core/numerics/mesh/check.h"
 
 namespace drape::ipc {
 namespace {

@@ -3,9 +3,9 @@
 #include <mutex>
 #include <vector>
 
-#include "core/kernel/contact/broad_phase.h"
-#include "core/kernel/contact/contact_parameters.h"
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/collision_detection/broad_phase.h"
+#include "core/numerics/contact/contact_parameters.h"
 #include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/mesh/rotation.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/mesh/rotation.h"
 
 namespace drape::ipc {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/contact/obstacle_parameters.h"
-#include "core/kernel/contact/obstacle_surface.h"
-#include "core/kernel/mesh/file_coordinates.h"
+#include "core/numerics/collision_detection/obstacle_surface.h"
+#include "core/numerics/contact/obstacle_parameters.h"
+#include "core/numerics/mesh_files/file_coordinates.h"
 #include "plugins/contact/ipc/cages.h"
 #include "plugins/contact/ipc/validated_mesh.h"
 

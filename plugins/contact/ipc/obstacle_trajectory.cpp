@@ -5,12 +5,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/kernel/contact/nonlinear_ccd.h"
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/linear_algebra/interpolate.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/linear_algebra/same_entries.h"
-#include "core/kernel/mesh/rotation.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/nonlinear_ccd.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/linear_algebra/interpolate.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/rotation.h"
 
 namespace drape::ipc {
 namespace {

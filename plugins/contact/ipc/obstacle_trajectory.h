@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/contact/broad_phase.h"
-#include "core/kernel/contact/candidates.h"
+#include "core/numerics/collision_detection/broad_phase.h"
+#include "core/numerics/contact/candidates.h"
 #include "plugins/contact/ipc/obstacle.h"
 
 namespace drape::ipc {
@@ -41,7 +41,7 @@ class ObstacleTrajectory {
   TrajectorySegment segment(double begin, double end) const;
 
   /// The largest collision-free step with the cloth at x, which leaves the minimum gap of
-  /// core/kernel/contact/nonlinear_ccd.h. The limit names the blocking pair.
+  /// core/numerics/collision_detection/nonlinear_ccd.h. The limit names the blocking pair.
   StepLimit max_step(const Surface& cloth, const Positions& x, double dhat, BroadPhaseKind broad_phase) const;
 
  private:

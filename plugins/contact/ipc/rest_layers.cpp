@@ -4,10 +4,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/contact/self_pairs.h"
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact/self_pairs.h"
 
 namespace drape::ipc {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/contact/surface.h"
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/numerics/collision_detection/surface.h"
 
 namespace drape::ipc {
 

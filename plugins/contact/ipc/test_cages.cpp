@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/contact/intersections.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/primitives.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
+#include "core/numerics/patterns/primitives.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/command.h"
 

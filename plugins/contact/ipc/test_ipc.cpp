@@ -3,12 +3,12 @@
 #include <random>
 #include <set>
 
-#include "core/kernel/contact/contact_stack.h"
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/contact/rim_contacts.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/contact_stiffness.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact/rim_contacts.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/processor_time.h"

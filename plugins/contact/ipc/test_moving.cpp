@@ -1,12 +1,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/contact/intersections.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/model/active_contacts.h"
-#include "core/kernel/model/friction.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/intersections.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/model/active_contacts.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/bound_ipc.h"
 #include "plugins/contact/ipc/obstacle_trajectory.h"
 #include "tests/support/command.h"

@@ -4,12 +4,12 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/contact/surface_contacts.h"
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/mesh/io.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/contact/surface_contacts.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/command.h"
 #include "tests/support/evaluate.h"

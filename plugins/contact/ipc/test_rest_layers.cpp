@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/ipc.h"
 #include "tests/support/evaluate.h"
 

@@ -4,11 +4,11 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/contact/pair_geometry.h"
-#include "core/kernel/contact/surface_contacts.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact/pair_geometry.h"
+#include "core/numerics/contact/surface_contacts.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/ipc/obstacle.h"
 #include "tests/support/decompositions.h"
 #include "tests/support/evaluate.h"

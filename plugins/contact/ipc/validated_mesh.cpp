@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/kernel/linear_algebra/same_entries.h"
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/io.h"
-#include "core/kernel/mesh/primitives.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/patterns/primitives.h"
 
 namespace drape::ipc {
 namespace {

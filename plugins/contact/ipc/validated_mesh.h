@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/mesh/file_coordinates.h"
-#include "core/kernel/mesh/repair.h"
-#include "core/kernel/mesh/topology.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/mesh/repair.h"
+#include "core/numerics/mesh_files/file_coordinates.h"
 
 namespace drape::ipc {
 
@@ -34,7 +34,7 @@ struct LoadedMeshes {
 /// their faults.
 LoadedMeshes load_validated_meshes(const std::vector<std::string>& files, const FileCoordinates& coordinates,
                                    bool strict);
-/// unit_box and unit_sphere of core/kernel/mesh/primitives.h.
+/// unit_box and unit_sphere of core/numerics/patterns/primitives.h.
 std::shared_ptr<const ValidatedMesh> validated_box();
 std::shared_ptr<const ValidatedMesh> validated_sphere(int subdivisions);
 

@@ -1,4 +1,4 @@
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/plugin/plugin.h"
 
 namespace drape {

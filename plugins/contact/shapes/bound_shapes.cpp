@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernel/contact/contact_stack.h"
-#include "core/kernel/contact/nonlinear_ccd.h"
-#include "core/kernel/contact/vertex_contacts.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/model/gaps.h"
+#include "core/kernel/interfaces/gaps.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/nonlinear_ccd.h"
+#include "core/numerics/contact/contact_stack.h"
+#include "core/numerics/contact/vertex_contacts.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shape_scene.h"
 #include "plugins/contact/shapes/solid_trajectory.h"

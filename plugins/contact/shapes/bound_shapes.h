@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/kernel/contact/barrier_parameters.h"
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/contact_forces/barrier_parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/kernel/contact/closest.h"
-#include "core/kernel/mesh/primitives.h"
+#include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/patterns/primitives.h"
 
 namespace drape::shapes {
 

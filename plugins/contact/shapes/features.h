@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact_forces/barrier.h"
 
 namespace drape::shapes {
 

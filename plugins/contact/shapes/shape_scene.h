@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/kernel/contact/pair_contacts.h"
-#include "core/kernel/contact/surface.h"
+#include "core/numerics/collision_detection/surface.h"
+#include "core/numerics/contact/pair_contacts.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/contact/obstacle_parameters.h"
-#include "core/kernel/model/contact_model.h"
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/numerics/contact/obstacle_parameters.h"
 #include "plugins/contact/shapes/solid.h"
 
 namespace drape::shapes {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/mesh/rotation.h"
+#include "core/numerics/mesh/rotation.h"
 
 namespace drape::shapes {
 

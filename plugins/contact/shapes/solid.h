@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "core/kernel/contact/signed_distance.h"
+#include "core/numerics/collision_detection/signed_distance.h"
 
 namespace drape::shapes {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/kernel/contact/nonlinear_ccd.h"
-#include "core/kernel/linear_algebra/interpolate.h"
+#include "core/numerics/collision_detection/nonlinear_ccd.h"
+#include "core/numerics/linear_algebra/interpolate.h"
 
 namespace drape::shapes {
 

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/active_contacts.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/model/active_contacts.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
 

@@ -3,10 +3,10 @@
 #include <limits>
 #include <random>
 
-#include "core/kernel/contact/barrier.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/contact_stiffness.h"
-#include "core/kernel/model/friction.h"
+#include "core/numerics/contact_forces/barrier.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/contact_forces/friction.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/contact/shapes/features.h"
 #include "plugins/contact/shapes/separation.h"
 #include "plugins/contact/shapes/shapes.h"
@@ -351,7 +351,8 @@ TEST_CASE("shapes: flat cloth on a face has the pressure κ |b'|") {
       CHECK(g.leftCols(2).norm() <= 1e-12 * g.norm());
     }
     CHECK(energy_at(*bound, lifted(level, 1.001 * dhat)) == 0);
-    // The material's own stiffness leaves the gap that core/kernel/model/contact_stiffness.h tells.
+    // The material's own stiffness leaves the gap that core/numerics/contact_forces/contact_stiffness.h
+    // tells.
     Shapes::Parameters own = with({level_with(kind)});
     own.stiffness.reset();
     const Material cotton;

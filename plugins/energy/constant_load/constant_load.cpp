@@ -1,7 +1,7 @@
 #include "plugins/energy/constant_load/constant_load.h"
 
-#include "core/kernel/elements/linear_energy.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/elements/linear_energy.h"
 
 namespace drape {
 

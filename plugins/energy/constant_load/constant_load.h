@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/constant_load/constant_load.h"
 #include "tests/support/evaluate.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/linear_algebra/pack_functions.h"
+#include "core/numerics/linear_algebra/pack_functions.h"
 #include "plugins/energy/formula/term.h"
 
 namespace drape::formula {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
 #include "plugins/energy/formula/functions.h"
 #include "plugins/energy/formula/law.h"
 

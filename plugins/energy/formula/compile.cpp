@@ -4,7 +4,7 @@
 #include <string>
 #include <type_traits>
 
-#include "core/kernel/elements/green_strain.h"
+#include "core/numerics/elements/green_strain.h"
 #include "plugins/energy/formula/differentiate.h"
 
 namespace drape::formula {

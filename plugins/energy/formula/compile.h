@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/kernel/elements/jet.h"
+#include "core/numerics/elements/jet.h"
 #include "plugins/energy/formula/law.h"
 #include "plugins/energy/formula/program.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/elements/jet_functions.h"
+#include "core/numerics/elements/jet_functions.h"
 #include "plugins/energy/formula/syntax.h"
 #include "plugins/energy/formula/term.h"
 

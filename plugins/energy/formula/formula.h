@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/parameters.h"
 #include "plugins/energy/formula/law.h"
 

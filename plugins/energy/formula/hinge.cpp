@@ -1,7 +1,7 @@
 #include "plugins/energy/formula/hinge.h"
 
-#include "core/kernel/elements/batched_energy.h"
-#include "core/kernel/elements/fold_formula.h"
+#include "core/numerics/elements/batched_energy.h"
+#include "core/numerics/formulas/fold_formula.h"
 #include "plugins/energy/formula/compile.h"
 #include "plugins/energy/formula/strain_kernel.h"
 

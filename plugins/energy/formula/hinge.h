@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "plugins/energy/formula/law.h"
 
 namespace drape::formula {

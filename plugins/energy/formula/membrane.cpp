@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "core/kernel/elements/buckling_membrane.h"
-#include "core/kernel/elements/formula_properties.h"
+#include "core/numerics/elements/buckling_membrane.h"
+#include "core/numerics/formulas/formula_properties.h"
 #include "plugins/energy/formula/strain_kernel.h"
 
 namespace drape::formula {

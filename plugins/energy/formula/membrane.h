@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "plugins/energy/formula/law.h"
 
 namespace drape::formula {

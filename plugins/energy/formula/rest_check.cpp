@@ -4,8 +4,8 @@
 #include <exception>
 
 #include "core/kernel/files/message_text.h"
-#include "core/kernel/model/derivative_check.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/model/derivative_check.h"
 
 namespace drape::formula {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/kernel/elements/batched_energy.h"
-#include "core/kernel/elements/green_strain.h"
-#include "core/kernel/elements/stretch_kernel.h"
+#include "core/numerics/elements/batched_energy.h"
+#include "core/numerics/elements/green_strain.h"
+#include "core/numerics/elements/stretch_kernel.h"
 #include "plugins/energy/formula/compile.h"
 
 namespace drape::formula {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/kernel/elements/formula_law.h"
-#include "core/kernel/plugin/string_utils.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/numerics/formulas/formula_law.h"
 #include "plugins/energy/formula/functions.h"
 
 namespace drape::formula {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "plugins/energy/formula/dimension.h"
 
 namespace drape::formula {

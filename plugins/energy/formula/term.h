@@ -74,7 +74,7 @@ struct Term {
   Term(TermGraph* graph_in, int node_in) : graph(graph_in), node(node_in) {}
   bool is(double value) const { return !graph && literal == value; }
 
-  // What jets of terms call (core/kernel/elements/jet_functions.h).
+  // What jets of terms call (core/numerics/elements/jet_functions.h).
 #define DRAPE_OPERATION(name, op) \
   friend Term name(const Term& a) { return apply(Op::op, a, {}, {}); }
   DRAPE_OPERATION(sqrt, square_root)

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/conformance.h"
 #include "tests/support/evaluate.h"
 #include "tests/support/registry.h"

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "core/kernel/linear_algebra/pack.h"
+#include "core/numerics/linear_algebra/pack.h"
 #include "plugins/energy/formula/compile.h"
 #include "plugins/energy/formula/functions.h"
 #include "plugins/energy/formula/law.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/kernel/elements/formula_properties.h"
-#include "core/kernel/elements/vertex_energy.h"
+#include "core/numerics/elements/vertex_energy.h"
+#include "core/numerics/formulas/formula_properties.h"
 #include "plugins/energy/formula/compile.h"
 
 namespace drape::formula {

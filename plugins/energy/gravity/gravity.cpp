@@ -1,4 +1,4 @@
-#include "core/kernel/elements/energy_formula.h"
+#include "core/numerics/formulas/energy_formula.h"
 
 struct Gravity {
   Eigen::Vector3d acceleration{0, 0, -9.81};

@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/unregistered.h"
 // After it:

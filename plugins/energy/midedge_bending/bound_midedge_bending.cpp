@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/kernel/elements/dihedral_angle.h"
-#include "core/kernel/elements/element_energy.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/elements/dihedral_angle.h"
+#include "core/numerics/elements/element_energy.h"
 
 namespace drape {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "core/kernel/elements/element_pack.h"
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/numerics/elements/element_pack.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 
 namespace drape {

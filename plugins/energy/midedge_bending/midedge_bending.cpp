@@ -1,7 +1,7 @@
 #include "plugins/energy/midedge_bending/midedge_bending.h"
 
-#include "core/kernel/elements/bending_stiffness.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/elements/bending_stiffness.h"
 #include "plugins/energy/midedge_bending/bound_midedge_bending.h"
 
 namespace drape {

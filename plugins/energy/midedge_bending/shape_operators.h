@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/kernel/model/level.h"
+#include "core/kernel/interfaces/level.h"
 
 namespace drape {
 

@@ -1,8 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "core/kernel/elements/dihedral_angle.h"
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/elements/dihedral_angle.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/midedge_bending/midedge_bending.h"
 #include "plugins/energy/midedge_bending/shape_operators.h"
 #include "tests/support/kernel_check.h"

@@ -1,4 +1,4 @@
-#include "core/kernel/elements/energy_formula.h"
+#include "core/numerics/formulas/energy_formula.h"
 
 // docs/theory/method.md, section 5. +∞ if a triangle degenerates.
 DRAPE_MEMBRANE(neo_hookean, "Neo-Hookean membrane in plane stress; resists collapse of triangles.") {

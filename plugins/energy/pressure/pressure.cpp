@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/model/element_order.h"
+#include "core/kernel/interfaces/element_order.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 namespace {

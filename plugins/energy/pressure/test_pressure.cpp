@@ -1,7 +1,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/pressure/pressure.h"
 #include "tests/support/closed_meshes.h"
 #include "tests/support/kernel_check.h"

@@ -3,10 +3,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "core/kernel/elements/bending_stiffness.h"
-#include "core/kernel/elements/dihedral_angle.h"
-#include "core/kernel/elements/element_energy.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/elements/bending_stiffness.h"
+#include "core/numerics/elements/dihedral_angle.h"
+#include "core/numerics/elements/element_energy.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 
 namespace drape {

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending.h"
 #include "plugins/energy/quadratic_bending/quadratic_bending_kernel.h"
 #include "tests/support/kernel_check.h"

@@ -3,10 +3,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/kernel/elements/element_energy.h"
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/model/stretch_limit.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/elements/element_energy.h"
+#include "core/numerics/model/stretch_limit.h"
 #include "plugins/energy/strain_limit/strain_limit_law.h"
 #include "plugins/energy/strain_limit/stretch_path.h"
 

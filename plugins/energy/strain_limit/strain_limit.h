@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/model/energy.h"
+#include "core/kernel/interfaces/energy.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/parameters.h"
 

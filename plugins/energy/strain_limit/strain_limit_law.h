@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/elements/stretch_kernel.h"
+#include "core/numerics/elements/stretch_kernel.h"
 
 namespace drape {
 

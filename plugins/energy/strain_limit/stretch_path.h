@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "core/kernel/elements/stretch.h"
+#include "core/numerics/elements/stretch.h"
 
 namespace drape {
 

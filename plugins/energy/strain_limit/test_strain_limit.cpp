@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/stretch_limit.h"
+#include "core/numerics/model/stretch_limit.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/energy/strain_limit/strain_limit.h"
 #include "plugins/energy/strain_limit/strain_limit_law.h"
 #include "plugins/energy/strain_limit/stretch_path.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/elements/vertex_fields.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/elements/vertex_fields.h"
 #include "plugins/metric/curvature_consistency/quadric.h"
 
 namespace drape {

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "core/kernel/mesh/topology.h"
-#include "core/kernel/mesh/triangle_mesh.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/parameters.h"
 #include "plugins/metric/curvature_consistency/curvature.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
 #include "plugins/metric/curvature_consistency/curvature.h"
 #include "plugins/metric/curvature_consistency/curvature_consistency.h"
 #include "plugins/metric/curvature_consistency/quadric.h"

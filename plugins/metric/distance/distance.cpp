@@ -12,9 +12,9 @@
 #include <numeric>
 #include <vector>
 
-#include "core/kernel/contact/closest.h"
-#include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/closest.h"
 
 namespace drape {
 namespace {

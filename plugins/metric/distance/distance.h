@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {

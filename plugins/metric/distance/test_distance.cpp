@@ -4,8 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "core/kernel/contact/closest.h"
-#include "core/kernel/linear_algebra/parallel.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/closest.h"
 #include "plugins/metric/distance/distance.h"
 #include "tests/support/kernel_check.h"
 #include "tests/support/metric_check.h"

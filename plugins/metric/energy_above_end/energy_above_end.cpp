@@ -1,6 +1,6 @@
-#include "core/kernel/model/level_model.h"
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/model/level_model.h"
 
 namespace drape {
 

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "core/kernel/linear_algebra/block_cholesky.h"
-#include "core/kernel/model/level_model.h"
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/bounds.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
+#include "core/numerics/model/level_model.h"
 
 namespace drape {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/kernel/linear_algebra/parallel.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/kernel/threads/parallel.h"
 
 namespace drape {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/kernel/model/metric.h"
+#include "core/kernel/interfaces/metric.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/kernel/linear_algebra/parallel.h"
-#include "core/kernel/model/midpoint.h"
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/hierarchy/midpoint.h"
 #include "plugins/metric/silhouette/silhouette.h"
 #include "tests/support/metric_check.h"
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/kernel/elements/stretch.h"
-#include "core/kernel/elements/vertex_fields.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/elements/stretch.h"
+#include "core/numerics/elements/vertex_fields.h"
 
 namespace drape {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
-#include "core/kernel/mesh/split_triangles.h"
-#include "core/kernel/model/refiner.h"
+#include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/numerics/mesh/split_triangles.h"
 
 namespace drape {
 

@@ -2,9 +2,9 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "core/kernel/mesh/check.h"
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/hierarchy.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/refiner/loop/loop.h"
 
 using namespace drape;

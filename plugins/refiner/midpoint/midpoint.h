@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/kernel/model/midpoint.h"
 #include "core/kernel/plugin/parameters.h"
+#include "core/numerics/hierarchy/midpoint.h"
 
 namespace drape {
 

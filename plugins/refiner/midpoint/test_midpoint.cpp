@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "core/kernel/mesh/generate.h"
-#include "core/kernel/model/hierarchy.h"
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/patterns/generate.h"
 #include "plugins/refiner/midpoint/midpoint.h"
 
 using namespace drape;

@@ -1,6 +1,6 @@
 #include "core/kernel/plugin/plugin.h"
-#include "core/kernel/solve/progression.h"
-#include "core/kernel/solve/resumable_solver.h"
+#include "core/numerics/solve/progression.h"
+#include "core/numerics/solve/resumable_solver.h"
 
 namespace drape {
 

@@ -1,7 +1,7 @@
-#include "core/kernel/solve/newton.h"
+#include "core/numerics/solve/newton.h"
 
 #include "core/kernel/plugin/plugin.h"
-#include "core/kernel/solve/resumable_solver.h"
+#include "core/numerics/solve/resumable_solver.h"
 
 namespace drape {
 

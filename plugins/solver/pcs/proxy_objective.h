@@ -3,10 +3,10 @@
 #include <memory>
 #include <vector>
 
-#include "core/kernel/linear_algebra/galerkin.h"
-#include "core/kernel/model/objective.h"
-#include "core/kernel/model/solver.h"
-#include "core/kernel/model/transfer.h"
+#include "core/kernel/interfaces/solver.h"
+#include "core/numerics/hierarchy/transfer.h"
+#include "core/numerics/linear_algebra/galerkin.h"
+#include "core/numerics/model/objective.h"
 
 namespace drape {
 

@@ -1,0 +1,75 @@
+#include "core/kernel/files/string_utils.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace drape {
+namespace {
+
+std::string folded(std::string word) {
+  for (char& c : word) c = c == '-' ? '_' : char(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+/// The optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::vector<size_t>> d(a.size() + 1, std::vector<size_t>(b.size() + 1));
+  for (size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
+  for (size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+  for (size_t i = 1; i <= a.size(); ++i)
+    for (size_t j = 1; j <= b.size(); ++j) {
+      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+    }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string nearest_word(const std::string& typed, const std::vector<std::string>& words) {
+  std::string nearest;
+  size_t least = std::string::npos;
+  for (const std::string& word : words) {
+    // A third of the letters may be wrong; beyond that a guess only misleads.
+    const size_t longer = std::max(typed.size(), word.size()), shorter = std::min(typed.size(), word.size());
+    if (longer - shorter > longer / 3) continue;  // also spares the work on a word of megabytes
+    const size_t distance = edit_distance(folded(typed), folded(word));
+    if (distance > longer / 3 || distance >= least) continue;
+    least = distance;
+    nearest = word;
+  }
+  return nearest;
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end; (end = text.find(separator, begin)) != std::string::npos; begin = end + 1)
+    parts.push_back(text.substr(begin, end - begin));
+  parts.push_back(text.substr(begin));
+  return parts;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string quoted_choice(const std::vector<std::string>& words) {
+  std::string text;
+  for (size_t i = 0; i < words.size(); ++i)
+    text += (i == 0 ? "\"" : i + 1 == words.size() ? " or \"" : ", \"") + words[i] + "\"";
+  return text;
+}
+
+std::size_t display_width(const std::string& text) {
+  return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, display_width(text)), ' ');
+}
+
+}  // namespace drape

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/kernel/interfaces/element_order.h"
+#include "core/kernel/interfaces/topology.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
+
+namespace drape {
+
+/// One resolution of one cloth: its rest shape and everything that depends on it alone. Immutable.
+struct Level {
+  int index = 0;                ///< 0 is the coarsest
+  TriangleMesh rest;            ///< rest positions X_l [m] and triangles
+  Topology topology;            ///< of rest.triangles
+  Eigen::VectorXd vertex_area;  ///< n, a third of the adjacent rest areas [m²]
+  Stencils hinges;              ///< h×4, topology.hinges
+  ElementOrder triangle_order;  ///< summation order for energies of triangles
+  ElementOrder hinge_order;     ///< summation order for energies of hinges
+
+  /// Builds a level from `rest`, which must have passed check_mesh.
+  static Level of(int index, TriangleMesh rest);
+
+  int vertex_count() const { return static_cast<int>(rest.vertices.rows()); }
+  int triangle_count() const { return static_cast<int>(rest.triangles.rows()); }
+};
+
+}  // namespace drape

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernel/interfaces/energy.h"
+
+namespace drape {
+
+class LevelModel;
+
+/// How far load stepping has come.
+struct LoadSteppingState {
+  int increment = 0;
+  std::vector<double> values;  ///< of all keyed parameters, one after another
+};
+
+/// Incremental loading: boundary conditions, obstacles, material and loads follow a pseudo-time while a level
+/// is solved (docs/guide/schedules.md). The increments are 0 … increment_count(). An increment that the
+/// cloth does not allow at once, such as an obstacle that would hit it, is applied in part and continued
+/// later. Models are values: every load that is reached has its own.
+class LoadStepping {
+ public:
+  virtual ~LoadStepping() = default;
+
+  virtual int increment_count() const = 0;
+  /// True if every increment is solved to equilibrium, false if each gets one implicit step. The last one is
+  /// always solved to equilibrium.
+  virtual bool equilibrates() const = 0;
+
+  /// Begins a level. Returns to increment 0 if the level starts from the scene's start; otherwise continues
+  /// from the load that the previous level reached.
+  virtual void begin(int level, bool from_start) = 0;
+
+  virtual LoadSteppingState state() const = 0;
+  /// Begins a level with the load of an earlier state.
+  virtual void restore(int level, const LoadSteppingState& state) = 0;
+
+  /// The plain model of a level under the current load. Levels coarser than the one that was begun keep the
+  /// load that they reached.
+  virtual std::shared_ptr<const LevelModel> model(int level) = 0;
+
+  /// The current increment, and whether it has been applied in full.
+  virtual int increment() const = 0;
+  virtual bool complete() const = 0;
+  bool finished() const { return increment() == increment_count() && complete(); }
+  /// Pseudo-time of the current increment, in the schedule's unit.
+  virtual double time() const = 0;
+
+  /// Continues the current increment, or begins the next, as far as a cloth at x (n×3) [m] allows on this
+  /// level. Returns the fraction of the remaining increment that was applied.
+  virtual StepLimit advance(int level, const Positions& x) = 0;
+  /// Applies this fraction of the remaining increment if a cloth at x allows all of it. Otherwise returns
+  /// false and changes nothing.
+  virtual bool advance_by(double fraction, int level, const Positions& x) = 0;
+};
+
+/// Result of one increment on one level, for observers.
+struct IncrementRow {
+  int level = 0, increment = 0;
+  double time = 0;                      ///< pseudo-time
+  int steps = 0;                        ///< of this increment
+  int iterations = 0;                   ///< likewise
+  double seconds = 0;                   ///< likewise
+  double energy = 0;                    ///< of the objective, without friction [J]
+  double force_residual = 0;            ///< [1]
+  double max_constraint_violation = 0;  ///< largest distance of a Dirichlet vertex from its target [m]
+};
+
+}  // namespace drape

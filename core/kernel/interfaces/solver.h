@@ -1,0 +1,130 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/interfaces/load_stepping.h"
+#include "core/kernel/interfaces/refiner.h"
+
+namespace drape {
+
+struct Hierarchy;
+class LevelModel;
+
+/// Input of a method. Refers to objects that the experiment owns.
+struct Problem {
+  const Hierarchy& hierarchy;
+  std::vector<std::shared_ptr<const LevelModel>> models;  ///< the plain model of every level at the start
+  /// The scene's start on every level, with Dirichlet vertices at their targets (n×3) [m].
+  std::vector<Positions> starts;
+  LoadStepping* load_stepping = nullptr;  ///< null without a schedule
+
+  int finest() const { return static_cast<int>(models.size()) - 1; }
+  /// The plain model of a level under the current load.
+  std::shared_ptr<const LevelModel> model(int level) const {
+    return load_stepping ? load_stepping->model(level) : models[level];
+  }
+};
+
+/// How a level ended. `refined_early_on_request`: an observer asked for the next level.
+/// `converged_to_rounding`: as near to equilibrium as round-off allows, though above the tolerance.
+enum class Outcome {
+  converged,
+  max_steps_reached,
+  stalled,
+  cancelled,
+  infeasible,
+  refined_early_on_request,
+  converged_to_rounding
+};
+const char* to_string(Outcome outcome);
+/// Whether a level is at equilibrium.
+inline bool has_converged(Outcome outcome) {
+  return outcome == Outcome::converged || outcome == Outcome::converged_to_rounding;
+}
+/// The worse outcome, in rising order: converged, converged_to_rounding, refined_early_on_request,
+/// max_steps_reached, stalled, infeasible, cancelled.
+Outcome worse_of(Outcome a, Outcome b);
+/// The same as has_converged for outcomes by name, as in results.
+bool has_converged(const std::string& outcome);
+
+/// One Newton iteration, for observers.
+struct IterationRow {
+  int level = 0, step = 0, iteration = 0;
+  std::optional<double> time;          ///< pseudo-time, with a schedule
+  double seconds = 0;                  ///< since the method's start
+  double flops = 0;                    ///< of the level's factorisations and multigrid cycles so far
+  double energy = 0;                   ///< E_l, the plain energy of the level [J]
+  std::optional<double> proxy_energy;  ///< F_l, if the method minimises a proxy [J]
+  double decrement = 0;         ///< ‖p‖ / (h √n), a velocity [m/s]; not Newton's √(gᵀH⁻¹g)
+  double force_residual = 0;    ///< of the objective, after the iteration [1]
+  double step_length = 0;       ///< α of the line search
+  double step_size = 0;         ///< h [s]; +∞ for the static form
+  std::optional<int> contacts;  ///< closer than d̂, if the level has a contact model
+  std::optional<double> smallest_gap;  ///< of them [m]; +∞ without one
+};
+
+/// Result of one level.
+struct LevelResult {
+  int level = 0;
+  Outcome outcome = Outcome::converged;
+  std::string message;  ///< remarks on the start, then what stopped it if it did not converge
+  Positions x;
+  /// Whether no coarser level counts towards its cost. False for a level whose refinement failed, so that it
+  /// started from the scene's start all the same: the attempt counts.
+  bool from_initial_state = false;
+  int steps = 0, iterations = 0, factorisations = 0, analyses = 0;
+  double flops = 0;  ///< of factorisations, of which a failed one counts in full, and multigrid cycles
+  double seconds = 0;
+  std::map<std::string, double> seconds_by_phase;
+  double decrement = 0;
+  double force_residual = 0;           ///< of the objective [1]
+  std::optional<double> smallest_gap;  ///< where the level has a contact model [m]; +∞ without a contact
+  ContactStiffness contact_stiffness;  ///< at the end, of each contact model [Pa]
+  LoadSteppingState load_stepping;     ///< at the end
+};
+
+struct NewtonState;
+struct MethodState;
+
+/// Sees every iteration and level of a run; progress bars, recorders and cancellation are observers.
+class Observer {
+ public:
+  virtual ~Observer() = default;
+  virtual void level_started(int level) { (void)level; }
+  virtual void iteration(const IterationRow& row, const Positions& x) { (void)row, (void)x; }
+  /// An increment of load stepping has ended at x.
+  virtual void increment_finished(const IncrementRow& row, const Positions& x) { (void)row, (void)x; }
+  virtual void level_finished(const LevelResult& result) { (void)result; }
+  virtual bool stop_requested() { return false; }
+  /// Whether to end the level now and begin the next one. Not asked on the finest level.
+  virtual bool refine_requested() { return false; }
+  /// Asked at the beginning of every step: whether to call checkpoint() with the state there.
+  virtual bool checkpoint_due() { return false; }
+  virtual void checkpoint(const NewtonState& state) { (void)state; }
+};
+
+/// A method: a schedule of Newton solves over the levels of a problem.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  /// Results of the levels reached, in order. Only misuse throws.
+  virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
+  /// Whether the solver can resume an interrupted solve of the same problem (ResumableSolver).
+  virtual bool can_resume() const { return false; }
+  /// Continues from a state, with the results of finished levels at the front; bit for bit as if `solve` had
+  /// not been interrupted. A state without a finished level or one under way begins its level from the start.
+  /// By default begins anew.
+  virtual std::vector<LevelResult> resume(const Problem& problem, [[maybe_unused]] const MethodState& from,
+                                          Observer& observer) const {
+    return solve(problem, observer);
+  }
+  /// Which prolongation the method's states are measured and shown with on finer meshes.
+  virtual Interpolation interpolation() const { return Interpolation::midpoint; }
+};
+
+}  // namespace drape

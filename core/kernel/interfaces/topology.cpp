@@ -1,0 +1,140 @@
+#include "core/kernel/interfaces/topology.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "core/kernel/interfaces/half_edges.h"
+
+namespace drape {
+namespace {
+
+void require_indices(const Triangles& triangles, int vertex_count) {
+  for (int t = 0; t < triangles.rows(); ++t) {
+    const auto v = triangles.row(t);
+    if (v.minCoeff() < 0 || v.maxCoeff() >= vertex_count)
+      throw std::runtime_error("topology: triangle " + std::to_string(t) + " has a vertex outside 0 … " +
+                               std::to_string(vertex_count - 1));
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+      throw std::runtime_error("topology: triangle " + std::to_string(t) + " repeats a vertex");
+  }
+}
+
+/// Triangles of an edge.
+enum class EdgeTriangles { at_most_two, any };
+
+void number_edges(const Triangles& triangles, int vertex_count, EdgeTriangles allowed, Topology& topology) {
+  const std::vector<int> order = half_edges_by_edge(triangles, vertex_count);
+  std::vector<int> first(order.size());  // of each half-edge, the earliest on the same edge
+  int edge_count = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same =
+        i > 0 && HalfEdge::of(triangles, order[i - 1]).same_edge(HalfEdge::of(triangles, order[i]));
+    first[order[i]] = same ? first[order[i - 1]] : order[i];
+    edge_count += !same;
+  }
+
+  topology.edges.resize(edge_count, 2);
+  topology.edge_triangles.resize(edge_count, 2);
+  topology.triangle_edges.resize(triangles.rows(), 3);
+  int* numbers = topology.triangle_edges.data();  // row-major: entry h belongs to half-edge h
+  int next = 0;
+  for (int h = 0; h < static_cast<int>(order.size()); ++h) {
+    if (first[h] == h) {
+      const HalfEdge side = HalfEdge::of(triangles, h);
+      topology.edges.row(next) << side.smaller(), side.larger();
+      topology.edge_triangles.row(next) << h / 3, -1;
+      numbers[h] = next++;
+      continue;
+    }
+    const int e = numbers[h] = numbers[first[h]];
+    if (topology.edge_triangles(e, 1) == -1)
+      topology.edge_triangles(e, 1) = h / 3;
+    else if (allowed == EdgeTriangles::at_most_two)
+      throw std::runtime_error("topology: edge (" + std::to_string(topology.edges(e, 0)) + ", " +
+                               std::to_string(topology.edges(e, 1)) + ") has more than two triangles");
+  }
+}
+
+/// Lists, for each of `row_count` values, the rows of `table` it occurs in, ascending.
+template <class Table, class Item>
+AdjacencyList transpose(const Table& table, int row_count, Item item) {
+  AdjacencyList list;
+  list.start.assign(row_count + 1, 0);
+  for (int r = 0; r < table.rows(); ++r)
+    for (int c = 0; c < table.cols(); ++c) ++list.start[table(r, c) + 1];
+  for (int i = 0; i < row_count; ++i) list.start[i + 1] += list.start[i];
+  list.items.resize(table.size());
+  std::vector<int> end(list.start.begin(), list.start.end() - 1);
+  for (int r = 0; r < table.rows(); ++r)
+    for (int c = 0; c < table.cols(); ++c) list.items[end[table(r, c)]++] = item(r, c);
+  return list;
+}
+
+Topology make_topology(const Triangles& triangles, int vertex_count, EdgeTriangles allowed) {
+  require_indices(triangles, vertex_count);
+  Topology topology;
+  number_edges(triangles, vertex_count, allowed, topology);
+
+  topology.on_border.assign(vertex_count, 0);
+  for (int e = 0; e < topology.edges.rows(); ++e) {
+    if (topology.edge_triangles(e, 1) != -1) continue;
+    topology.on_border[topology.edges(e, 0)] = 1;
+    topology.on_border[topology.edges(e, 1)] = 1;
+  }
+
+  topology.vertex_triangles = transpose(triangles, vertex_count, [](int t, int) { return t; });
+  AdjacencyList& neighbours = topology.vertex_vertices;
+  neighbours =
+      transpose(topology.edges, vertex_count, [&](int e, int c) { return topology.edges(e, 1 - c); });
+  for (int v = 0; v < vertex_count; ++v)
+    std::sort(neighbours.items.begin() + neighbours.start[v],
+              neighbours.items.begin() + neighbours.start[v + 1]);
+  return topology;
+}
+
+}  // namespace
+
+Topology Topology::of(const Triangles& triangles, int vertex_count) {
+  return make_topology(triangles, vertex_count, EdgeTriangles::at_most_two);
+}
+
+Topology Topology::of_any(const Triangles& triangles, int vertex_count) {
+  return make_topology(triangles, vertex_count, EdgeTriangles::any);
+}
+
+std::vector<int> Topology::components() const {
+  std::vector<char> seen(on_border.size(), 0);
+  std::vector<int> first, open;
+  for (int v = 0; v < static_cast<int>(seen.size()); ++v) {
+    if (seen[v]) continue;
+    first.push_back(v);
+    open = {v};
+    seen[v] = 1;
+    while (!open.empty()) {
+      const int from = open.back();
+      open.pop_back();
+      for (const int* to = vertex_vertices.begin(from); to != vertex_vertices.end(from); ++to)
+        if (!seen[*to]) seen[*to] = 1, open.push_back(*to);
+    }
+  }
+  return first;
+}
+
+Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> Topology::hinges(const Triangles& triangles) const {
+  const auto side_of = [&](int triangle, int edge) {
+    return triangle_edges(triangle, 0) == edge ? 0 : triangle_edges(triangle, 1) == edge ? 1 : 2;
+  };
+  const auto inner_count = (edge_triangles.col(1).array() != -1).count();
+  Eigen::Matrix<int, Eigen::Dynamic, 4, Eigen::RowMajor> hinges(inner_count, 4);
+  for (int e = 0, h = 0; e < edges.rows(); ++e) {
+    if (edge_triangles(e, 1) == -1) continue;
+    const int s = edge_triangles(e, 0), t = edge_triangles(e, 1);
+    const int k = side_of(s, e);
+    hinges.row(h++) << triangles(s, (k + 1) % 3), triangles(s, (k + 2) % 3), triangles(s, k),
+        triangles(t, side_of(t, e));
+  }
+  return hinges;
+}
+
+}  // namespace drape

@@ -1,0 +1,163 @@
+#include "core/kernel/threads/parallel.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cfenv>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace drape {
+namespace {
+
+/// A range and its pieces.
+struct Pieces {
+  int size, grain, count;
+
+  Pieces(int size, int grain) : size(size), grain(std::max(grain, 1)), count(0) {
+    if (size > 0) count = (size - 1) / this->grain + 1;
+  }
+  int begin(int piece) const { return piece * grain; }
+  int end(int piece) const { return grain < size - begin(piece) ? begin(piece) + grain : size; }
+};
+
+struct Task {
+  const Pieces& pieces;
+  const std::function<void(int piece, int begin, int end)>& body;
+
+  void run(int piece) const { body(piece, pieces.begin(piece), pieces.end(piece)); }
+};
+
+thread_local bool inside_task = false;
+
+/// Thread pool for one task at a time. Unlike in an OpenMP team, the caller waits for pieces, never for
+/// threads: on a busy machine a helper may be scheduled milliseconds late, and the caller then does its
+/// pieces.
+class Pool {
+ public:
+  /// Returns false if another thread's task is running.
+  bool run(const Task& task, int threads) {
+    std::unique_lock<std::mutex> lock(busy_, std::try_to_lock);
+    if (!lock) return false;
+    while (static_cast<int>(started_) < threads - 1) {
+      std::thread([this, index = started_] {
+        std::fesetenv(FE_DFL_ENV);  // not that of the caller, who may flush denormals just now
+        help(index);
+      }).detach();
+      ++started_;
+    }
+    task_ = &task;
+    error_ = nullptr;
+    failed_ = false;
+    unfinished_ = task.pieces.count;
+    helpers_ = threads - 1;
+    ++turn_;
+    ticket_.store(turn_ << 32 | static_cast<std::uint32_t>(task.pieces.count), std::memory_order_release);
+    ticket_.notify_all();
+    work();
+    for (int tries = 0; unfinished_.load(std::memory_order_acquire) > 0; ++tries)
+      if (tries > 1000) std::this_thread::yield();
+    if (error_) std::rethrow_exception(error_);
+    return true;
+  }
+
+ private:
+  static constexpr std::uint64_t left_mask = 0xffffffff;
+
+  void help(int index) {
+    for (;;) {
+      const std::uint64_t seen = ticket_.load(std::memory_order_acquire);
+      if ((seen & left_mask) > 0 && index < helpers_) {
+        work();
+        continue;
+      }
+      // The next task usually comes within microseconds.
+      for (int tries = 0; tries < 2000 && ticket_.load(std::memory_order_relaxed) == seen; ++tries) pause();
+      ticket_.wait(seen, std::memory_order_relaxed);
+    }
+  }
+
+  void work() {
+    inside_task = true;
+    for (std::uint64_t ticket = ticket_.load(std::memory_order_acquire); (ticket & left_mask) > 0;) {
+      if (!ticket_.compare_exchange_weak(ticket, ticket - 1, std::memory_order_acq_rel)) continue;
+      // We own this piece, so the task exists until we report it finished.
+      try {
+        if (!failed_) task_->run(task_->pieces.count - static_cast<int>(ticket & left_mask));
+      } catch (...) {
+        if (!failed_.exchange(true)) error_ = std::current_exception();
+      }
+      unfinished_.fetch_sub(1, std::memory_order_acq_rel);
+      ticket = ticket_.load(std::memory_order_acquire);
+    }
+    inside_task = false;
+  }
+
+  static void pause() {
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+
+  std::mutex busy_;
+  int started_ = 0;
+  std::uint64_t turn_ = 0;
+  std::atomic<std::uint64_t> ticket_ = 0;  // the task's number, and the count of its free pieces
+  std::atomic<int> helpers_ = 0;           // those with a smaller index may help
+  std::atomic<int> unfinished_ = 0;
+  const Task* task_ = nullptr;
+  std::atomic<bool> failed_ = false;
+  std::exception_ptr error_;
+};
+
+// Never destroyed: its threads live as long as the process.
+Pool& pool() {
+  static Pool* const instance = new Pool;
+  return *instance;
+}
+
+std::atomic<int> chosen_threads = 0;  // 0: one for each core
+
+void run_pieces(const Pieces& pieces, const std::function<void(int piece, int begin, int end)>& body) {
+  const int threads = std::min(thread_count(), pieces.count);
+  const Task task{pieces, body};
+  if (threads > 1 && !inside_task && pool().run(task, threads)) return;
+  for (int piece = 0; piece < pieces.count; ++piece) task.run(piece);
+}
+
+}  // namespace
+
+int core_count() {
+  static const int cores = [] {
+    cpu_set_t usable;
+    const bool known = sched_getaffinity(0, sizeof usable, &usable) == 0;
+    return std::max(known ? CPU_COUNT(&usable) : static_cast<int>(std::thread::hardware_concurrency()), 1);
+  }();
+  return cores;
+}
+
+int thread_count() {
+  const int threads = chosen_threads.load(std::memory_order_relaxed);
+  return threads > 0 ? threads : core_count();
+}
+
+void set_thread_count(int threads) { chosen_threads = std::max(threads, 0); }
+
+void parallel_for(int size, int grain, const std::function<void(int begin, int end)>& body) {
+  run_pieces(Pieces(size, grain), [&](int, int begin, int end) { body(begin, end); });
+}
+
+double parallel_sum(int size, int grain, const std::function<double(int begin, int end)>& body) {
+  const Pieces pieces(size, grain);
+  std::vector<double> parts(pieces.count);
+  run_pieces(pieces, [&](int piece, int begin, int end) { parts[piece] = body(begin, end); });
+  double sum = 0;
+  for (const double part : parts) sum += part;
+  return sum;
+}
+
+}  // namespace drape

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/kernel/interfaces/topology.h"
+#include "core/numerics/collision_detection/box.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+
+namespace drape {
+
+/// Algorithms that find overlapping boxes. Both find the same pairs: `fcl` is the check of `bvh`.
+enum class BroadPhaseKind {
+  bvh,  ///< own eight-wide BVH, built once and refitted
+  fcl   ///< FCL's BVHModel, refitted too
+};
+
+/// Finds the overlapping pairs of closed boxes, except for boxes of primitives that share a vertex.
+class BroadPhase {
+ public:
+  virtual ~BroadPhase() = default;
+
+  /// Copies the boxes, none of which may be empty. Cheapest if their number is that of the last call and
+  /// their neighbours are the same.
+  virtual void update(const std::vector<Box>& boxes) = 0;
+
+  /// Sets row i of `pairs` to the boxes j > i that overlap box i, ascending. Returns false, without rows, if
+  /// there are more than `limit` pairs.
+  virtual bool overlaps(long limit, AdjacencyList& pairs) const = 0;
+
+  /// Sets row i of `pairs` to the other's boxes that overlap box i, ascending. Returns false, without rows,
+  /// if there are more than `limit` pairs. Throws std::runtime_error if `other` is of another kind.
+  virtual bool overlaps(const BroadPhase& other, long limit, AdjacencyList& pairs) const = 0;
+};
+
+/// An empty broad phase of this kind. Row i of `vertices`, if it has any, names the vertices of the primitive
+/// in box i, at most three; the number of boxes is then that of the rows.
+std::unique_ptr<BroadPhase> make_broad_phase(BroadPhaseKind kind, const Stencils& vertices = {});
+
+}  // namespace drape

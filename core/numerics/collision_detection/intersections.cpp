@@ -1,0 +1,158 @@
+#include "core/numerics/collision_detection/intersections.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <array>
+#include <limits>
+
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/collision_detection/broad_phase.h"
+
+namespace drape {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Vector = Eigen::Vector3d;
+
+constexpr int triangles_per_task = 256;
+
+/// The corners of a triangle, those that it shares with another one first.
+using Corners = std::array<Vector, 3>;
+
+Point point(const Vector& p) { return {p.x(), p.y(), p.z()}; }
+Kernel::Triangle_3 triangle(const Corners& c) { return {point(c[0]), point(c[1]), point(c[2])}; }
+
+/// The pair shares corners 0 and 1.
+bool overlap_beside_edge(const Corners& a, const Corners& b) {
+  const Vector edge = (a[1] - a[0]).normalized();
+  const Vector u = a[2] - a[0], v = b[2] - b[0];
+  const Vector across_u = u - edge.dot(u) * edge, across_v = v - edge.dot(v) * edge;
+  // Unfolded by more than a right angle, beyond round-off: most pairs of a mesh. Without this shortcut the
+  // coplanar pairs of a flat but tilted mesh need exact arithmetic.
+  if (across_u.dot(across_v) < -1e-6 * u.norm() * v.norm()) return false;
+  const Point p = point(a[0]), q = point(a[1]), r = point(a[2]), s = point(b[2]);
+  return CGAL::coplanar(p, q, r, s) && CGAL::coplanar_orientation(p, q, r, s) == CGAL::POSITIVE;
+}
+
+/// The pair shares corner 0.
+bool meet_beside_vertex(const Corners& a, const Corners& b) {
+  const Vector a1 = (a[1] - a[0]).normalized(), a2 = (a[2] - a[0]).normalized();
+  const Vector b1 = (b[1] - b[0]).normalized(), b2 = (b[2] - b[0]).normalized();
+  // On opposite sides of a plane through the corner, beyond round-off.
+  const Vector n = a1 + a2 - b1 - b2;
+  if (std::min(n.dot(a1), n.dot(a2)) > 1e-6 && std::max(n.dot(b1), n.dot(b2)) < -1e-6) return false;
+  return CGAL::do_intersect(triangle(a), Kernel::Segment_3(point(b[1]), point(b[2]))) ||
+         CGAL::do_intersect(triangle(b), Kernel::Segment_3(point(a[1]), point(a[2])));
+}
+
+bool has_no_area(const Corners& c) { return CGAL::collinear(point(c[0]), point(c[1]), point(c[2])); }
+
+/// A degenerate triangle touches a neighbour's corner or edge; CGAL's predicates exclude it.
+bool meet(const Corners& a, const Corners& b, int shared) {
+  if (has_no_area(a) || has_no_area(b)) return true;
+  if (shared == 3) return true;
+  if (shared == 2) return overlap_beside_edge(a, b);
+  if (shared == 1) return meet_beside_vertex(a, b);
+  return CGAL::do_intersect(triangle(a), triangle(b));
+}
+
+Corners corners(const Positions& x, const std::array<int, 3>& v) {
+  return {x.row(v[0]), x.row(v[1]), x.row(v[2])};
+}
+std::array<int, 3> vertices(const TriangleMesh& mesh, int t) {
+  return {mesh.triangles(t, 0), mesh.triangles(t, 1), mesh.triangles(t, 2)};
+}
+
+/// Moves shared vertices to the front, in the same order, and returns their number.
+int share_first(std::array<int, 3>& a, std::array<int, 3>& b) {
+  int shared = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = shared; j < 3; ++j)
+      if (a[i] == b[j]) {
+        std::swap(a[i], a[shared]);
+        std::swap(b[j], b[shared]);
+        ++shared;
+        break;
+      }
+  return shared;
+}
+
+Box box_of(const TriangleMesh& mesh, int t) {
+  Box box;
+  for (const int v : vertices(mesh, t))
+    box.include(Box::around(mesh.vertices.row(v), mesh.vertices.row(v), 0));
+  return box;
+}
+
+Vector middle_of_both(const Box& a, const Box& b) {
+  Vector p;
+  for (int k = 0; k < 3; ++k)
+    p[k] = 0.5 * (std::max(a.lower[k], b.lower[k]) + std::min(a.upper[k], b.upper[k]));
+  return p;
+}
+
+std::vector<Box> boxes_of(const TriangleMesh& mesh) {
+  std::vector<Box> boxes(mesh.triangles.rows());
+  parallel_for(static_cast<int>(boxes.size()), triangles_per_task, [&](int begin, int end) {
+    for (int t = begin; t < end; ++t) boxes[t] = box_of(mesh, t);
+  });
+  return boxes;
+}
+
+std::vector<TrianglePair> meeting(const TriangleMesh& mesh, const TriangleMesh& other, bool same,
+                                  const AdjacencyList& candidates) {
+  const int count = static_cast<int>(mesh.triangles.rows());
+  std::vector<std::vector<TrianglePair>> lists((count + triangles_per_task - 1) / triangles_per_task);
+  parallel_for(count, triangles_per_task, [&](int begin, int end) {
+    for (int s = begin; s < end; ++s)
+      for (const int* t = candidates.begin(s); t != candidates.end(s); ++t) {
+        std::array<int, 3> a = vertices(mesh, s), b = vertices(other, *t);
+        const int shared = same ? share_first(a, b) : 0;
+        if (meet(corners(mesh.vertices, a), corners(other.vertices, b), shared))
+          lists[begin / triangles_per_task].push_back(
+              {s, *t, middle_of_both(box_of(mesh, s), box_of(other, *t))});
+      }
+  });
+  std::vector<TrianglePair> all;
+  for (const auto& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
+
+std::unique_ptr<BroadPhase> broad_phase_of(const TriangleMesh& mesh) {
+  auto phase = make_broad_phase(BroadPhaseKind::bvh);
+  phase->update(boxes_of(mesh));
+  return phase;
+}
+
+constexpr long unlimited = std::numeric_limits<long>::max();
+
+}  // namespace
+
+std::vector<TrianglePair> self_intersections(const TriangleMesh& mesh) {
+  AdjacencyList candidates;
+  broad_phase_of(mesh)->overlaps(unlimited, candidates);
+  return meeting(mesh, mesh, true, candidates);
+}
+
+std::vector<TrianglePair> intersections(const TriangleMesh& mesh, const TriangleMesh& other) {
+  AdjacencyList candidates;
+  broad_phase_of(mesh)->overlaps(*broad_phase_of(other), unlimited, candidates);
+  return meeting(mesh, other, false, candidates);
+}
+
+std::optional<Eigen::Index> first_outside(const TriangleMesh& closed, const Positions& points) {
+  using Surface = CGAL::Surface_mesh<Point>;
+  Surface surface;
+  for (const auto& x : closed.vertices.rowwise()) surface.add_vertex(point(x));
+  for (const auto& t : closed.triangles.rowwise())
+    surface.add_face(Surface::Vertex_index(t[0]), Surface::Vertex_index(t[1]), Surface::Vertex_index(t[2]));
+  const CGAL::Side_of_triangle_mesh<Surface, Kernel> side_of(surface);
+  for (Eigen::Index i = 0; i < points.rows(); ++i)
+    if (side_of(point(points.row(i))) != CGAL::ON_BOUNDED_SIDE) return i;
+  return {};
+}
+
+}  // namespace drape

@@ -1,0 +1,176 @@
+#include "core/numerics/contact/candidates.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact/candidate_pairs.h"
+#include "core/numerics/contact/moving_pairs.h"
+#include "core/numerics/contact/pair_geometry.h"
+
+namespace drape {
+namespace {
+
+constexpr int rows_per_task = 256;
+
+/// One of the two surfaces of a search.
+struct Side {
+  const Surface& surface;
+  const SweptBoxes& boxes;
+};
+
+/// Calls found(v) for the vertices v that a's triangle s represents and whose boxes overlap b's triangle t.
+template <class Found>
+void represented_vertices(const Side& a, int s, const Side& b, int t, const Found& found) {
+  for (int k = 0; k < 3; ++k)
+    if (const int v = a.surface.triangles(s, k);
+        a.surface.represents_vertex(s, k) && a.boxes.vertices[v].overlaps(b.boxes.triangles[t]))
+      found(v);
+}
+
+/// Calls found(e, f) for the edges that the two triangles represent and whose boxes overlap.
+template <class Found>
+void represented_edges(const Side& a, int s, const Side& b, int t, const Found& found) {
+  for (int k = 0; k < 3; ++k) {
+    if (!a.surface.represents_edge(s, k)) continue;
+    const int e = a.surface.triangle_edges(s, k);
+    const Box& box = a.boxes.edges[e];
+    if (!box.overlaps(b.boxes.triangles[t])) continue;
+    for (int m = 0; m < 3; ++m)
+      if (const int f = b.surface.triangle_edges(t, m);
+          b.surface.represents_edge(t, m) && box.overlaps(b.boxes.edges[f]))
+        found(e, f);
+  }
+}
+
+/// Pairs of overlapping boxes, with the row that each is from.
+struct Untested {
+  std::vector<ContactPair> pairs;
+  std::vector<int> rows;
+  std::vector<int> surface_triangles;  ///< of a cloth vertex and an obstacle triangle this, of others -1
+
+  void add(const ContactPair& pair, int row, int surface_triangle = -1) {
+    pairs.push_back(pair);
+    rows.push_back(row);
+    surface_triangles.push_back(surface_triangle);
+  }
+};
+
+/// Marks the pairs of this kind that may come within d̂.
+template <PairKind kind>
+void mark_near(const std::vector<ContactPair>& pairs, const LinearMotion& motion, std::vector<char>& near) {
+  for_each_pack<kind>(pairs.data(), static_cast<int>(pairs.size()), motion,
+                      [&](const auto& moving, const int* indices, int size) {
+                        const auto reach = moving.speed + motion.dhat;
+                        const auto beyond = moving.beyond(reach), within = moving.within(reach);
+                        for (int lane = 0; lane < size; ++lane)
+                          near[indices[lane]] =
+                              within[lane] ||
+                              (!beyond[lane] && may_come_within_dhat(pairs[indices[lane]], motion));
+                      });
+}
+
+/// Appends those that may come within d̂.
+void append_near(const Untested& untested, const LinearMotion& motion, BroadPhasePairs& list) {
+  std::vector<char> near(untested.pairs.size());
+  mark_near<PairKind::point_triangle>(untested.pairs, motion, near);
+  mark_near<PairKind::edge_edge>(untested.pairs, motion, near);
+  std::ptrdiff_t row_begin = 0;
+  const auto sort_row = [&] {
+    std::stable_sort(list.vertex_triangles.begin() + row_begin, list.vertex_triangles.end(),
+                     [](const VertexTriangleCandidate& a, const VertexTriangleCandidate& b) {
+                       return a.vertex < b.vertex;
+                     });
+    row_begin = static_cast<std::ptrdiff_t>(list.vertex_triangles.size());
+  };
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    if (i > 0 && untested.rows[i] != untested.rows[i - 1]) sort_row();
+    if (!near[i]) continue;
+    list.pairs.push_back(untested.pairs[i]);
+    if (untested.surface_triangles[i] >= 0)
+      list.vertex_triangles.push_back({untested.pairs[i].vertices[0], untested.surface_triangles[i]});
+  }
+  sort_row();
+}
+
+/// Calls visit(s, t, untested) for every entry of the rows and concatenates the pairs that may come within d̂.
+template <class Visit>
+bool collect(const AdjacencyList& rows, const LinearMotion& motion, long limit, BroadPhasePairs& found,
+             const Visit& visit) {
+  const int count = static_cast<int>(rows.start.size()) - 1;
+  std::vector<BroadPhasePairs> lists((count + rows_per_task - 1) / rows_per_task);
+  std::atomic<long> number = found.count();
+  parallel_for(count, rows_per_task, [&](int begin, int end) {
+    if (number.load(std::memory_order_relaxed) > limit) return;
+    Untested untested;
+    for (int s = begin; s < end; ++s)
+      for (const int* t = rows.begin(s); t != rows.end(s); ++t) visit(s, *t, untested);
+    BroadPhasePairs& list = lists[begin / rows_per_task];
+    append_near(untested, motion, list);
+    number += list.count();
+  });
+  if (number > limit) return false;
+  found.pairs.reserve(number);
+  for (const BroadPhasePairs& list : lists) {
+    found.pairs.insert(found.pairs.end(), list.pairs.begin(), list.pairs.end());
+    found.vertex_triangles.insert(found.vertex_triangles.end(), list.vertex_triangles.begin(),
+                                  list.vertex_triangles.end());
+  }
+  return true;
+}
+
+/// The factor φ of the weight of a contact between the cloth's vertices, from the obstacle's sagitta there.
+double protrusion_factor(double sagitta, double dhat) { return std::min(1.0, 8 * sagitta / dhat); }
+
+}  // namespace
+
+bool may_come_within_dhat(const ContactPair& pair, const LinearMotion& motion) {
+  const PairPositions at = positions_of(pair, motion.x0, motion.obstacles0);
+  PairPositions displacement = positions_of(pair, motion.x1, motion.obstacles1) - at;
+  displacement.colwise() -= Eigen::Vector3d(displacement.rowwise().mean());
+  double largest[2] = {0, 0};
+  const int first_end = first_primitive_size(pair.kind);
+  for (int k = 0; k < 4; ++k)
+    largest[k >= first_end] = std::max(largest[k >= first_end], displacement.col(k).squaredNorm());
+  // The factor covers round-off.
+  const double reach = (motion.dhat + std::sqrt(largest[0]) + std::sqrt(largest[1])) * (1 + 1e-12);
+  if (box_distance(pair.kind, at) > reach) return false;
+  return connection(at, closest(pair.kind, at)).squaredNorm() <= reach * reach;
+}
+
+bool find_obstacle_pairs(const Surface& cloth, const SweptBoxes& boxes, const ObstacleSurface& obstacles,
+                         const SweptBoxes& obstacle_boxes, const AdjacencyList& rows,
+                         const LinearMotion& motion, double friction, long limit, BroadPhasePairs& found) {
+  const Surface& other = obstacles.surface;
+  const Dihedrals& dihedrals = obstacles.dihedrals;
+  const Side own{cloth, boxes}, obstacle{other, obstacle_boxes};
+  const auto first_other = static_cast<int>(motion.x0.rows());
+  return collect(rows, motion, limit, found, [&](int s, int t, Untested& untested) {
+    const auto add = [&](ContactPair pair, double weight, int surface_triangle = -1) {
+      pair.weight = weight;
+      pair.dhat = motion.dhat;
+      pair.obstacle = obstacles.body_of(other.triangles(t, 0));
+      pair.friction = obstacles.friction_of(pair.obstacle, friction);
+      untested.add(pair, s, surface_triangle);
+    };
+    represented_vertices(own, s, obstacle, t,
+                         [&](int v) { add(vertex_triangle(0, v, other, first_other, t), 0, t); });
+    represented_vertices(obstacle, t, own, s, [&](int v) {
+      // The side of an equilateral triangle of the same area.
+      const double length = std::sqrt(4 / std::sqrt(3.0) * cloth.triangle_area[s]);
+      add(vertex_triangle(first_other, v, cloth, 0, s),
+          0.5 * std::min(other.vertex_area[v], cloth.triangle_area[s]) *
+              protrusion_factor(dihedrals.vertex_sagitta(v, length), motion.dhat));
+    });
+    represented_edges(own, s, obstacle, t, [&](int e, int f) {
+      const double length = std::sqrt(cloth.edge_length_squared[e]);
+      ContactPair pair = edge_edge(cloth, 0, e, other, first_other, f);
+      pair.at_rim = dihedrals.edge_is_rim[f] != 0;
+      add(pair, 0.5 * std::min(cloth.edge_area[e], other.edge_area[f]) *
+                    protrusion_factor(dihedrals.edge_sagitta(f, length), motion.dhat));
+    });
+  });
+}
+
+}  // namespace drape

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+
+#include "core/kernel/plugin/bounds.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/numerics/contact_forces/barrier_parameters.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
+
+namespace drape {
+
+/// Parameters of every contact model with a barrier. A model's own struct derives from this one and calls
+/// declare_contact_parameters in its `declare`.
+struct ContactParameters {
+  double friction = 0;                        ///< μ
+  double dhat = 1e-3;                         ///< d̂
+  std::optional<double> stiffness;            ///< κ
+  double friction_smoothing_distance = 1e-4;  ///< ε_v h
+  double min_gap_fraction = 0.1;
+
+  /// With the default stiffness for this material where none is given.
+  BarrierParameters barrier(const Material& material) const {
+    return {dhat, stiffness.value_or(contact_stiffness(material)), friction_smoothing_distance,
+            stiffness.has_value()};
+  }
+};
+
+/// Declares `friction`: of an experiment, of a contact model, which takes the experiment's, or of an
+/// obstacle.
+template <class Struct>
+ParameterHandle declare_friction(Declaration<Struct>& d) {
+  return d.add("friction", &Struct::friction)
+      .unit("1")
+      .at_least(0)
+      .at_most(bounds::largest_friction)
+      .description("Coulomb's friction coefficient μ, where an obstacle does not have its own")
+      .source("Li et al. 2020, section 5");
+}
+
+template <class Derived>
+void declare_contact_parameters(Declaration<Derived>& d) {
+  declare_friction(d).from_experiment();
+  d.add("dhat", &Derived::dhat)
+      .unit("m")
+      .at_least(bounds::smallest_length)
+      .at_most(1e3)
+      .description("barrier activation distance d̂: the barrier acts on smaller gaps")
+      .source("Li et al. 2020, eq. 6");
+  d.add("stiffness", &Derived::stiffness)
+      .unit("Pa")
+      .at_least(1e-9)
+      .at_most(bounds::largest_modulus)
+      .description(
+          "barrier stiffness κ: the barrier's pressure is κ |b'(gap / d̂)|; null: ten times the cloth's "
+          "weight per area or the loads' pressure, raised where contacts carry far more")
+      .source("core/numerics/contact_forces/contact_stiffness.h");
+  d.add("friction_smoothing_distance", &Derived::friction_smoothing_distance)
+      .unit("m")
+      .at_least(1e-12)
+      .at_most(1e3)
+      .description("ε_v h: friction is smoothed at smaller tangential displacements, where a contact sticks")
+      .source("Li et al. 2020, eq. 14");
+  d.add("min_gap_fraction", &Derived::min_gap_fraction)
+      .unit("1")
+      .at_least(1e-6)
+      .at_most(0.99)
+      .description("fraction of every gap that a step must leave: s of additive CCD")
+      .source("Li et al. 2021");
+}
+
+}  // namespace drape

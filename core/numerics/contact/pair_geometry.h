@@ -1,0 +1,76 @@
+#pragma once
+
+#include "core/numerics/collision_detection/closest.h"
+#include "core/numerics/contact/pair_contacts.h"
+
+namespace drape {
+
+/// The positions of a pair's vertices, as columns [m].
+using PairPositions = Eigen::Matrix<double, 3, 4>;
+
+inline PairPositions positions_of(const ContactPair& pair, const Positions& x, const Positions& obstacles) {
+  const int n = static_cast<int>(x.rows());
+  PairPositions result;
+  for (int k = 0; k < 4; ++k) {
+    const int v = pair.vertices[k];
+    result.col(k) = v < n ? x.row(v) : obstacles.row(v - n);
+  }
+  return result;
+}
+
+inline Closest closest(PairKind kind, const PairPositions& x) {
+  const Eigen::Vector3d x0 = x.col(0), x1 = x.col(1), x2 = x.col(2), x3 = x.col(3);
+  switch (kind) {
+    case PairKind::point_triangle:
+      return closest_point_triangle(x0, x1, x2, x3);
+    case PairKind::edge_edge:
+      return closest_edge_edge(x0, x1, x2, x3);
+    case PairKind::edge_end:
+      return closest_edge_end(x0, x2, x3);
+    case PairKind::point_plane:
+      break;
+  }
+  return closest_point_plane(x0, x1, x2, x3);
+}
+
+/// Whether the vertices of a pair are two edges.
+inline bool has_two_edges(PairKind kind) { return kind == PairKind::edge_edge || kind == PairKind::edge_end; }
+
+/// The number of vertices of a pair's first primitive.
+inline int first_primitive_size(PairKind kind) { return has_two_edges(kind) ? 2 : 1; }
+
+/// The distance of the two primitives' bounding boxes, a lower bound of theirs; 0 for a plane [m].
+inline double box_distance(PairKind kind, const PairPositions& x) {
+  if (kind == PairKind::point_plane) return 0;
+  Eigen::Vector3d low_a = x.col(0), high_a = low_a, low_b = x.col(3), high_b = low_b;
+  const Eigen::Vector3d x1 = x.col(1), x2 = x.col(2);
+  Eigen::Vector3d& low = has_two_edges(kind) ? low_a : low_b;
+  Eigen::Vector3d& high = has_two_edges(kind) ? high_a : high_b;
+  low = low.cwiseMin(x1);
+  high = high.cwiseMax(x1);
+  low_b = low_b.cwiseMin(x2);
+  high_b = high_b.cwiseMax(x2);
+  return (low_b - high_a).cwiseMax(low_a - high_b).cwiseMax(0).norm();
+}
+
+/// r = Σ c_k x_k, computed relative to vertex 0.
+inline Eigen::Vector3d connection(const PairPositions& x, const Closest& closest) {
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();
+  for (int k = 1; k < 4; ++k) r += closest.c[k] * (x.col(k) - x.col(0));
+  return r;
+}
+
+/// r / |r|, orthogonalised against the free directions: r itself has few significant digits if the gap is
+/// small compared with the primitives.
+inline Eigen::Vector3d separating_direction(const PairPositions& x, const Closest& closest) {
+  Eigen::Vector3d n = connection(x, closest).normalized();
+  Eigen::Vector3d along[2];
+  for (int m = 0; m < closest.free; ++m) {
+    along[m] = (x * closest.direction.col(m)).eval();
+    if (m == 1) along[1] -= along[0].dot(along[1]) / along[0].squaredNorm() * along[0];
+    n -= along[m].dot(n) / along[m].squaredNorm() * along[m];
+  }
+  return n.normalized();
+}
+
+}  // namespace drape

@@ -1,0 +1,222 @@
+#include "core/numerics/contact_forces/friction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/threads/parallel.h"
+
+namespace drape {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int contacts_per_task = 1024;
+
+/// Σ c_k x_k over the cloth's vertices: their contribution to the relative position of the two sides.
+Vector3d position(const FrictionContact& contact, const Positions& x) {
+  Vector3d sum = Vector3d::Zero();
+  for (int k = 0; k < 4; ++k)
+    if (contact.vertices[k] >= 0) sum += contact.c[k] * x.row(contact.vertices[k]).transpose();
+  return sum;
+}
+
+/// Of a contact with an obstacle: 1 if Σ c_k x_k is the position of the cloth relative to the obstacle, -1 if
+/// it is that of the obstacle relative to the cloth.
+double side_of_cloth(const FrictionContact& contact) {
+  double sum = 0;
+  for (int k = 0; k < 4; ++k)
+    if (contact.vertices[k] >= 0) sum += contact.c[k];
+  return sum > 0 ? 1 : -1;
+}
+
+/// The key of a cloth vertex's mean displacement on an obstacle; contacts have other second numbers.
+ContactKey key_of_mean(int vertex, int obstacle) { return {vertex, -3, obstacle, 0, 0}; }
+
+const Vector3d* find(const ContactKey& key, const TangentialDisplacements& displacements) {
+  const auto found = std::ranges::lower_bound(displacements, key, {}, &TangentialDisplacement::contact);
+  return found != displacements.end() && found->contact == key ? &found->displacement : nullptr;
+}
+
+/// The stored displacement of a contact; for a new one that of its vertices on its obstacle, or zero.
+Vector3d displacement_of(const FrictionContact& contact, const TangentialDisplacements& displacements) {
+  if (const Vector3d* own = find(contact.key, displacements)) return *own;
+  Vector3d sum = Vector3d::Zero();
+  double weights = 0;
+  if (contact.touched.obstacle < 0) return sum;
+  for (int k = 0; k < 4; ++k) {
+    if (contact.vertices[k] < 0) continue;
+    const Vector3d* mean = find(key_of_mean(contact.vertices[k], contact.touched.obstacle), displacements);
+    if (!mean) continue;
+    sum += std::abs(contact.c[k]) * *mean;
+    weights += std::abs(contact.c[k]);
+  }
+  return weights > 0 ? Vector3d(side_of_cloth(contact) * sum / weights) : sum;
+}
+
+TangentialDisplacements sorted(TangentialDisplacements displacements) {
+  std::ranges::sort(displacements, {}, &TangentialDisplacement::contact);
+  return displacements;
+}
+
+}  // namespace
+
+LaggedFriction::LaggedFriction(FrictionContacts groups, const Positions& reference,
+                               const TangentialDisplacements& displacements,
+                               double friction_smoothing_distance)
+    : epsilon_(friction_smoothing_distance) {
+  for (std::vector<FrictionContact>& group : groups) {
+    if (contacts_.empty())
+      contacts_ = std::move(group);  // mostly there is no other
+    else
+      contacts_.insert(contacts_.end(), group.begin(), group.end());
+    group_ends_.push_back(size());
+  }
+  origin_.resize(contacts_.size());
+  parallel_for(size(), contacts_per_task, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      origin_[i] = position(contacts_[i], reference) - displacement_of(contacts_[i], displacements);
+  });
+}
+
+double LaggedFriction::value(const Positions& x) const {
+  double sum = 0;
+  int first = 0;
+  for (const int group_end : group_ends_) {
+    sum += parallel_sum(group_end - first, contacts_per_task, [&](int begin, int end) {
+      double part = 0;
+      for (int i = first + begin; i < first + end; ++i) part += potential(i, displacement(i, x).norm());
+      return part;
+    });
+    first = group_end;
+  }
+  return sum;
+}
+
+double LaggedFriction::add_gradient(const Positions& x, Positions& g) const {
+  for (int i = 0; i < size(); ++i) {
+    const Vector3d u = displacement(i, x), force = contacts_[i].force * ratio(u.norm()) * u;
+    for (int k = 0; k < 4; ++k)
+      if (contacts_[i].vertices[k] >= 0) g.row(contacts_[i].vertices[k]) += contacts_[i].c[k] * force;
+  }
+  return value(x);
+}
+
+Stencils LaggedFriction::stencils() const {
+  Stencils result(size(), 4);
+  for (int i = 0; i < size(); ++i)
+    for (int k = 0; k < 4; ++k) result(i, k) = contacts_[i].vertices[k];
+  return result;
+}
+
+void LaggedFriction::add_hessian(const Positions& x, Projection, BlockSink& sink) const {
+  for (int i = 0; i < size(); ++i) {
+    const FrictionContact& contact = contacts_[i];
+    const Eigen::Matrix3d h = stiffness(i, displacement(i, x));
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a <= b; ++a) {
+        if (contact.vertices[a] < 0 || contact.vertices[b] < 0) continue;
+        const Eigen::Matrix3d block = contact.c[a] * contact.c[b] * h;
+        sink.add(i, a, b, block.data());
+      }
+  }
+}
+
+template <class DisplacementOf>
+TangentialDisplacements LaggedFriction::collect(const DisplacementOf& displacement_of_contact) const {
+  TangentialDisplacements all;
+  all.reserve(contacts_.size());
+  for (int i = 0; i < size(); ++i) all.push_back({contacts_[i].key, displacement_of_contact(i)});
+  return all;
+}
+
+TangentialDisplacements LaggedFriction::tangential_displacements(const Positions& x) const {
+  return sorted(collect([&](int i) {
+    const Vector3d u = displacement(i, x);
+    return Vector3d(std::min(1.0, epsilon_ / u.norm()) * u);
+  }));
+}
+
+TangentialDisplacements LaggedFriction::advected_tangential_displacements(
+    const Positions& x, const ObstacleMotion& motion) const {
+  TangentialDisplacements all = collect([&](int i) {
+    Vector3d u = displacement(i, x);
+    if (const FrictionContact& contact = contacts_[i]; contact.touched.obstacle >= 0)
+      u -= side_of_cloth(contact) * tangential(i, motion(contact.touched));
+    return u;
+  });
+  append_means(all);
+  return sorted(std::move(all));
+}
+
+/// Means of the cloth's displacements relative to the obstacle, weighted by friction force.
+void LaggedFriction::append_means(TangentialDisplacements& of_contacts) const {
+  struct Part {
+    ContactKey mean;
+    double weight;
+    Vector3d displacement;
+  };
+  std::vector<Part> parts;
+  for (int i = 0; i < size(); ++i) {
+    const FrictionContact& contact = contacts_[i];
+    for (int k = 0; k < 4 && contact.touched.obstacle >= 0; ++k)
+      if (const double weight = std::abs(contact.c[k]) * contact.force;
+          contact.vertices[k] >= 0 && weight > 0)
+        parts.push_back({key_of_mean(contact.vertices[k], contact.touched.obstacle), weight,
+                         side_of_cloth(contact) * of_contacts[i].displacement});
+  }
+  std::ranges::stable_sort(parts, {}, &Part::mean);
+  for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
+    Vector3d sum = Vector3d::Zero();
+    double weights = 0;
+    for (; last < parts.size() && parts[last].mean == parts[first].mean; ++last) {
+      sum += parts[last].weight * parts[last].displacement;
+      weights += parts[last].weight;
+    }
+    of_contacts.push_back({parts[first].mean, sum / weights});
+  }
+}
+
+Vector3d LaggedFriction::tangential(int i, const Vector3d& u) const {
+  const Vector3d& n = contacts_[i].normal;
+  return u - n.dot(u) * n;
+}
+
+Vector3d LaggedFriction::displacement(int i, const Positions& x) const {
+  return tangential(i, position(contacts_[i], x) - origin_[i]);
+}
+
+double LaggedFriction::potential(int i, double y) const {
+  const double q = y / epsilon_;
+  return contacts_[i].force * (q < 1 ? y * q * (1 - q / 3) : y - epsilon_ / 3);
+}
+
+/// f₁(y) / y
+double LaggedFriction::ratio(double y) const { return y < epsilon_ ? (2 - y / epsilon_) / epsilon_ : 1 / y; }
+
+/// f₁/y (I - n nᵀ) + (f₁/y)' / y u uᵀ; symmetric, so row- and column-major agree.
+Eigen::Matrix3d LaggedFriction::stiffness(int i, const Vector3d& u) const {
+  const Vector3d& n = contacts_[i].normal;
+  const double y = u.norm(),
+               along = y < epsilon_ ? (y > 0 ? -1 / (epsilon_ * epsilon_ * y) : 0) : -1 / (y * y * y);
+  return contacts_[i].force *
+         (ratio(y) * (Eigen::Matrix3d::Identity() - n * n.transpose()) + along * u * u.transpose());
+}
+
+FrictionContacts friction_contacts(const Collisions& collisions) {
+  FrictionContacts groups;
+  collisions.append_friction_contacts(groups);
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
+std::unique_ptr<const LaggedFriction> lagged_friction(const Collisions& collisions, FrictionContacts contacts,
+                                                      const Positions& reference,
+                                                      const TangentialDisplacements& displacements) {
+  if (contacts.empty()) return nullptr;
+  return std::make_unique<const LaggedFriction>(std::move(contacts), reference, displacements,
+                                                collisions.friction_smoothing_distance());
+}
+
+}  // namespace drape

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/numerics/elements/buckling_membrane.h"
+#include "core/numerics/elements/element_energy.h"
+#include "core/numerics/elements/green_strain.h"
+#include "core/numerics/formulas/formula_law.h"
+#include "core/numerics/formulas/formula_properties.h"
+#include "core/numerics/formulas/formula_trace.h"
+
+namespace drape {
+
+/// A triangle's energy by the density [J/m²] that a Law returns, for ElementEnergy. `rest` has the first five
+/// numbers of a MaterialTriangle, or all eight for a law that depends on its place.
+template <class Law, int numbers>
+struct MembraneFormulaKernel {
+  static constexpr int vertices = 3;
+  static constexpr bool convex = false;
+  using Rest = Eigen::Matrix<double, numbers, 1>;
+  template <class T>
+  using Vector = Eigen::Matrix<T, 3, 1>;
+
+  Law law;
+
+  template <class T>
+  T value(const Vector<T>* e, const T* rest) const {
+    return jet<1>(GreenStrain<T>(e, rest), rest).value;
+  }
+
+  template <class T>
+  T gradient(const Vector<T>* e, const T* rest, Vector<T>* g) const {
+    const GreenStrain<T> s(e, rest);
+    const Jet<3, T> w = jet<3>(s, rest);
+    StrainDerivatives<T>::gradient(s.f1, s.f2, w.first, rest, g);
+    return w.value;
+  }
+
+  template <class T>
+  void hessian(const Vector<T>* e, const T* rest, Eigen::Matrix<T, 6, 6>& h) const {
+    const GreenStrain<T> s(e, rest);
+    const Jet<3, T> w = jet<3>(s, rest);
+    StrainDerivatives<T>::hessian(s.f1, s.f2, w.first, w.second, rest, h);
+  }
+
+ private:
+  /// The energy as a function of N strains; a compiler drops the derivatives that nothing reads.
+  template <int N, class T>
+  Jet<N, T> jet(const GreenStrain<T>& s, const T* rest) const {
+    using J = Jet<N, T>;
+    const auto variable = [](const T& value, int i) { return i < N ? J::variable(value, i) : J(value); };
+    T place[3] = {0.0, 0.0, 0.0};
+    for (int i = 5; i < numbers; ++i) place[i - 5] = rest[i];
+    return rest[4] * law(variable(s.g11, 0), variable(s.g22, 1), variable(s.g12, 2),
+                         area_ratio<N>(rounded(s.g11), rounded(s.g22), rounded(s.g12), s.det()), rest[4],
+                         place[0], place[1], place[2]);
+  }
+};
+
+/// An isotropic density by principal stretches, for BucklingLaw: numbers from the area of MaterialTriangle
+/// on.
+template <class Law>
+struct PrincipalFormula {
+  static constexpr int constants = 4;
+  Law law;
+
+  template <class T>
+  PrincipalDerivatives<T> operator()(const T& t1, const T& t2, const T* rest) const {
+    using J = Jet<2, T>;
+    const J s1 = J::variable(t1, 0), s2 = J::variable(t2, 1), ratio = s1 * s2;
+    const J w = rest[0] * law(0.5 * ((s1 - 1.0) * (s1 + 1.0)), 0.5 * ((s2 - 1.0) * (s2 + 1.0)), J(0.0),
+                              AreaRatio<J>{ratio, log(ratio)}, rest[0], rest[1], rest[2], rest[3]);
+    return {w.value, w.first[0], w.first[1], w.second_by(0, 0), w.second_by(1, 1), w.second_by(0, 1)};
+  }
+};
+
+/// The energy that DRAPE_MEMBRANE registers. A parameter `axis` turns the material's first axis, which is
+/// that of x otherwise.
+template <class Law>
+class MembraneFormula final : public Energy {
+ public:
+  using Parameters = typename Law::Parameters;
+
+  explicit MembraneFormula(const Parameters& parameters) : p_(parameters) {}
+  EnergyRole role() const override { return EnergyRole::membrane; }
+
+  // The four triangles have the strains of the whole, and a quarter of its area each.
+  std::optional<double> midpoint_factor() const override {
+    const Trace all = trace(Law(p_, Material()));
+    return all.place || all.size ? std::nullopt : std::optional(1.0);
+  }
+
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
+    const Law law(p_, material);
+    return trace(law).place ? bind_with<8>(law, level) : bind_with<5>(law, level);
+  }
+
+  std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
+                                             double s) const override {
+    const Law law(p_, material);
+    if (!is_isotropic([&](const Eigen::Vector3d& g) { return density(law, g); }))
+      return bind(level, material);
+    std::vector<Eigen::Vector4d> numbers;
+    for (const MaterialTriangle& triangle : triangles(level)) numbers.emplace_back(triangle.tail<4>());
+    return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers, s);
+  }
+
+ private:
+  static Trace trace(const Law& law) {
+    const Trace strain(1, false, false), place(0, true, false), size(0, false, true);
+    return law(strain, strain, strain, AreaRatio<Trace>{strain, strain}, size, place, place, place);
+  }
+
+  template <int numbers>
+  std::unique_ptr<BoundEnergy> bind_with(const Law& law, const Level& level) const {
+    using Kernel = MembraneFormulaKernel<Law, numbers>;
+    std::vector<typename Kernel::Rest> rest;
+    for (const MaterialTriangle& triangle : triangles(level))
+      rest.emplace_back(triangle.template head<numbers>());
+    return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order,
+                                                   Kernel{law});
+  }
+
+  /// The density of a triangle of 1 m² at the origin.
+  static double density(const Law& law, const Eigen::Vector3d& g) {
+    using J = Jet<1, double>;
+    const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
+    return law(J(g[0]), J(g[1]), J(g[2]), area_ratio<1>(g[0], g[1], g[2], det), 1.0, 0.0, 0.0, 0.0).value;
+  }
+
+  std::vector<MaterialTriangle> triangles(const Level& level) const {
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+    if constexpr (requires { p_.axis; }) axis = p_.axis;
+    return material_triangles(axis, level);
+  }
+
+  Parameters p_;
+};
+
+}  // namespace drape

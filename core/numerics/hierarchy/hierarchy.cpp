@@ -1,0 +1,102 @@
+#include "core/numerics/hierarchy/hierarchy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "core/numerics/hierarchy/midpoint.h"
+#include "core/numerics/hierarchy/rest_interpolation.h"
+#include "core/numerics/mesh/check.h"
+#include "core/numerics/mesh/texture_coordinates.h"
+
+namespace drape {
+namespace {
+
+Level checked_level(int index, TriangleMesh rest) {
+  const std::vector<std::string> faults = check_mesh(rest);
+  if (!faults.empty())
+    throw std::runtime_error(
+        "rest shape of level " + std::to_string(index) + ": " + faults[0] +
+        (faults.size() == 1 ? "" : " (and " + std::to_string(faults.size() - 1) + " more faults)"));
+  return Level::of(index, std::move(rest));
+}
+
+/// Refuses what only a faulty refiner returns, before anything is computed from it.
+void require_subdivision(const Level& coarse, const Refinement& finer) {
+  const auto fail = [&](const std::string& what) {
+    throw std::runtime_error("the refiner's result for level " + std::to_string(coarse.index) + ": " + what);
+  };
+  const Eigen::Index n = coarse.vertex_count(), edges = coarse.topology.edges.rows(),
+                     m = coarse.triangle_count();
+  if (finer.weights.rows() != n + edges || finer.weights.cols() != n)
+    fail("weights of " + std::to_string(finer.weights.rows()) + " × " + std::to_string(finer.weights.cols()) +
+         ", not " + std::to_string(n + edges) + " × " + std::to_string(n) +
+         ": a row for each vertex, then one for each edge, and a column for each vertex");
+  if (finer.triangles.rows() != 4 * m)
+    fail(std::to_string(finer.triangles.rows()) + " triangles, not " + std::to_string(4 * m) +
+         ": four for each of the level's");
+  for (Eigen::Index i = 0; i < n + edges; ++i) {
+    double sum = 0;
+    for (ProlongationMatrix::InnerIterator entry(finer.weights, i); entry; ++entry) sum += entry.value();
+    if (!(std::abs(sum - 1) <= 1e-9))
+      fail("row " + std::to_string(i) + " of its weights sums to " + std::to_string(sum) + ", not to 1");
+  }
+  for (Eigen::Index t = 0; t < 4 * m; ++t) {
+    const auto corners = coarse.rest.triangles.row(t / 4);
+    const auto sides = coarse.topology.triangle_edges.row(t / 4);
+    for (int k = 0; k < 3; ++k) {
+      const int v = finer.triangles(t, k);
+      if ((corners.array() != v).all() && (sides.array() + n != v).all())
+        fail("triangle " + std::to_string(t) + " has vertex " + std::to_string(v) +
+             ", which is neither a corner nor on an edge of triangle " + std::to_string(t / 4));
+    }
+  }
+}
+
+Refinement refined(const Level& coarse, const Refiner& refiner) {
+  try {
+    return refiner.refine(coarse);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string("the refiner: ") + error.what());
+  }
+}
+
+}  // namespace
+
+Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level_count) {
+  if (level_count < 1) throw std::runtime_error("hierarchy: at least one level is needed");
+  Hierarchy hierarchy;
+  hierarchy.levels.reserve(level_count);
+  hierarchy.levels.push_back(checked_level(0, std::move(coarsest)));
+  for (int l = 1; l < level_count; ++l) {
+    const Level& coarse = hierarchy.levels.back();
+    Refinement finer = refined(coarse, refiner);
+    require_subdivision(coarse, finer);
+    CornerUv uv = refined_uv(coarse.rest, coarse.topology, finer.triangles);
+    Level fine =
+        checked_level(l, {finer.weights * coarse.rest.vertices, std::move(finer.triangles), std::move(uv)});
+    hierarchy.midpoints.push_back(midpoint_refinement(coarse).weights);
+    hierarchy.linear.push_back(rest_interpolation(coarse, fine.rest.vertices));
+    hierarchy.prolongations.push_back(std::move(finer.weights));
+    hierarchy.levels.push_back(std::move(fine));
+  }
+  return hierarchy;
+}
+
+Positions Hierarchy::prolong(const Positions& x, int from, int to,
+                             const std::vector<ProlongationMatrix>& weights) const {
+  if (from < 0 || from > to || to >= level_count())
+    throw std::runtime_error("prolong: levels " + std::to_string(from) + " to " + std::to_string(to) +
+                             " of a hierarchy of " + std::to_string(level_count()));
+  if (x.rows() != levels[from].vertex_count())
+    throw std::runtime_error("prolong: " + std::to_string(x.rows()) + " positions for the " +
+                             std::to_string(levels[from].vertex_count()) + " vertices of level " +
+                             std::to_string(from));
+  Positions fine = x;
+  for (int l = from; l < to; ++l) fine = (weights[l] * fine).eval();
+  return fine;
+}
+
+}  // namespace drape

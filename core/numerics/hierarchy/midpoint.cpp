@@ -1,0 +1,24 @@
+#include "core/numerics/hierarchy/midpoint.h"
+
+#include <vector>
+
+#include "core/numerics/mesh/split_triangles.h"
+
+namespace drape {
+
+Refinement midpoint_refinement(const Level& coarse) {
+  const int n = coarse.vertex_count();
+  const auto edge_count = static_cast<int>(coarse.topology.edges.rows());
+  std::vector<Eigen::Triplet<double>> weights;
+  weights.reserve(n + 2 * static_cast<std::size_t>(edge_count));
+  for (int v = 0; v < n; ++v) weights.emplace_back(v, v, 1);
+  for (int e = 0; e < edge_count; ++e)
+    for (int end = 0; end < 2; ++end) weights.emplace_back(n + e, coarse.topology.edges(e, end), 0.5);
+
+  Refinement refinement{split_triangles(coarse.rest.triangles, coarse.topology),
+                        ProlongationMatrix(n + edge_count, n)};
+  refinement.weights.setFromTriplets(weights.begin(), weights.end());
+  return refinement;
+}
+
+}  // namespace drape

@@ -1,0 +1,168 @@
+#include "core/numerics/linear_algebra/block_matrix.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "core/kernel/threads/parallel.h"
+
+namespace drape {
+namespace {
+
+/// Rows of one stencil array that contain each vertex (a counting sort).
+struct VertexElements {
+  std::vector<int> start, rows;
+
+  VertexElements(int vertex_count, const Stencils& stencils)
+      : start(vertex_count + 1), rows(stencils.size()) {
+    for (Eigen::Index i = 0; i < stencils.size(); ++i)
+      if (stencils.data()[i] >= 0) ++start[stencils.data()[i] + 1];
+    for (int v = 0; v < vertex_count; ++v) start[v + 1] += start[v];
+    std::vector<int> end(start.begin(), start.end() - 1);
+    for (Eigen::Index e = 0; e < stencils.rows(); ++e)
+      for (Eigen::Index k = 0; k < stencils.cols(); ++k)
+        if (stencils(e, k) >= 0) rows[end[stencils(e, k)]++] = static_cast<int>(e);
+  }
+};
+
+void require_vertices(int vertex_count, const Stencils& stencils) {
+  for (Eigen::Index e = 0; e < stencils.rows(); ++e)
+    for (Eigen::Index a = 0; a < stencils.cols(); ++a) {
+      const int v = stencils(e, a);
+      if (v == -1) continue;
+      bool repeated = false;
+      for (Eigen::Index b = 0; b < a; ++b) repeated |= stencils(e, b) == v;
+      if (v < 0 || v >= vertex_count || repeated)
+        throw std::runtime_error("block pattern: element " + std::to_string(e) + " of " +
+                                 std::to_string(stencils.cols()) + " vertices " +
+                                 (repeated ? "repeats vertex " : "has vertex ") + std::to_string(v) +
+                                 (repeated ? "" : ", outside 0 … " + std::to_string(vertex_count - 1)));
+    }
+}
+
+/// Columns j ≥ i of some rows, and the end of each row among them.
+struct RowColumns {
+  std::vector<int> columns, ends;
+};
+
+RowColumns collect_rows(int begin, int end, int vertex_count, const std::vector<Stencils>& stencils,
+                        const std::vector<VertexElements>& elements) {
+  RowColumns out;
+  std::vector<int> last_row(vertex_count, -1);  // the last row that has the column
+  for (int i = begin; i < end; ++i) {
+    const std::size_t first = out.columns.size();
+    out.columns.push_back(i);
+    last_row[i] = i;
+    for (std::size_t s = 0; s < stencils.size(); ++s)
+      for (int r = elements[s].start[i]; r < elements[s].start[i + 1]; ++r) {
+        const int* row = stencils[s].data() + elements[s].rows[r] * stencils[s].cols();
+        for (Eigen::Index k = 0; k < stencils[s].cols(); ++k) {
+          if (row[k] <= i || last_row[row[k]] == i) continue;
+          last_row[row[k]] = i;
+          out.columns.push_back(row[k]);
+        }
+      }
+    std::sort(out.columns.begin() + first, out.columns.end());
+    out.ends.push_back(static_cast<int>(out.columns.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const BlockPattern> BlockPattern::of(int vertex_count,
+                                                     const std::vector<Stencils>& stencils) {
+  std::vector<VertexElements> elements;
+  for (const Stencils& s : stencils) {
+    require_vertices(vertex_count, s);
+    elements.emplace_back(vertex_count, s);
+  }
+  const int grain = std::max(4096, vertex_count / 16 + 1);
+  std::vector<RowColumns> parts((vertex_count + grain - 1) / grain);
+  parallel_for(vertex_count, grain, [&](int begin, int end) {
+    parts[begin / grain] = collect_rows(begin, end, vertex_count, stencils, elements);
+  });
+  std::vector<int> row_start = {0}, columns;
+  for (const RowColumns& part : parts) {
+    const int offset = static_cast<int>(columns.size());
+    for (const int end : part.ends) row_start.push_back(offset + end);
+    columns.insert(columns.end(), part.columns.begin(), part.columns.end());
+  }
+  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+}
+
+BlockPattern::BlockPattern(std::vector<int> row_start_in, std::vector<int> columns_in)
+    : row_start(std::move(row_start_in)), columns(std::move(columns_in)) {
+  if (row_start.empty() || row_start.front() != 0 || row_start.back() != blocks())
+    throw std::runtime_error("block pattern: row starts must run from 0 to the number of columns");
+  for (int i = 0; i < rows(); ++i) {
+    bool good = row_start[i] < row_start[i + 1] && columns[row_start[i]] == i;
+    for (int b = row_start[i] + 1; good && b < row_start[i + 1]; ++b)
+      good = columns[b - 1] < columns[b] && columns[b] < rows();
+    if (!good)
+      throw std::runtime_error("block pattern: row " + std::to_string(i) +
+                               " must have its diagonal first, then ascending columns");
+  }
+}
+
+int BlockPattern::find(int i, int j) const {
+  const auto begin = columns.begin() + row_start[i], end = columns.begin() + row_start[i + 1];
+  const auto found = std::lower_bound(begin, end, j);
+  return found != end && *found == j ? static_cast<int>(found - columns.begin()) : -1;
+}
+
+BlockMatrix::BlockMatrix(std::shared_ptr<const BlockPattern> p) : pattern(std::move(p)) {
+  if (pattern) values.assign(9 * static_cast<std::size_t>(pattern->blocks()), 0.0);
+}
+
+void BlockMatrix::set_zero() {
+  parallel_for(static_cast<int>(values.size() / 9), 65536,
+               [&](int begin, int end) { std::fill(block(begin), block(end), 0.0); });
+}
+
+void BlockMatrix::multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
+                           Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const {
+  if (x.rows() != pattern->rows())
+    throw std::runtime_error("block matrix of " + std::to_string(pattern->rows()) + " rows times " +
+                             std::to_string(x.rows()) + " vectors");
+  if (&x == &y) return multiply(Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>(x), y);
+  using Block = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+  y.setZero(x.rows(), 3);
+  for (int i = 0; i < pattern->rows(); ++i) {
+    const Eigen::RowVector3d xi = x.row(i);
+    int b = pattern->row_start[i];
+    Eigen::RowVector3d sum = xi * Block(block(b)).transpose();
+    for (++b; b < pattern->row_start[i + 1]; ++b) {
+      const int j = pattern->columns[b];
+      sum.noalias() += x.row(j) * Block(block(b)).transpose();
+      y.row(j).noalias() += xi * Block(block(b));
+    }
+    y.row(i) += sum;
+  }
+}
+
+BlockSlots::BlockSlots(const BlockPattern& pattern, const Stencils& stencils)
+    : pairs_(static_cast<int>(stencils.cols() * (stencils.cols() + 1) / 2)),
+      slots_(static_cast<std::size_t>(stencils.rows()) * pairs_) {
+  require_vertices(pattern.rows(), stencils);
+  parallel_for(static_cast<int>(stencils.rows()), 4096, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      int* slots = slots_.data() + static_cast<std::size_t>(e) * pairs_;
+      for (Eigen::Index b = 0; b < stencils.cols(); ++b)
+        for (Eigen::Index a = 0; a <= b; ++a) {
+          const int i = stencils(e, a), j = stencils(e, b);
+          if (i < 0 || j < 0) {
+            *slots++ = BlockSink::no_block;
+            continue;
+          }
+          const int slot = pattern.find(std::min(i, j), std::max(i, j));
+          if (slot < 0)
+            throw std::runtime_error("block pattern has no block for vertices " + std::to_string(i) +
+                                     " and " + std::to_string(j) + " of element " + std::to_string(e));
+          *slots++ = i <= j ? slot : ~slot;
+        }
+    }
+  });
+}
+
+}  // namespace drape

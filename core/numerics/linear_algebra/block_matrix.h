@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "core/kernel/interfaces/block_sink.h"
+
+namespace drape {
+
+/// Sparsity of a symmetric matrix of 3×3 blocks, one block row for each vertex. Stores blocks (i, j) with i ≤
+/// j row by row, columns ascending; every diagonal block is present. Immutable.
+class BlockPattern {
+ public:
+  /// All pairs (i, j) that occur together in a row of any of the stencils.
+  static std::shared_ptr<const BlockPattern> of(int vertex_count, const std::vector<Stencils>& stencils);
+
+  /// From rows of ascending columns j ≥ i, diagonal first.
+  BlockPattern(std::vector<int> row_start, std::vector<int> columns);
+
+  int rows() const { return static_cast<int>(row_start.size()) - 1; }
+  int blocks() const { return static_cast<int>(columns.size()); }
+  /// Index of block (i, j), i ≤ j; -1 if it is not in the pattern.
+  int find(int i, int j) const;
+
+  const std::vector<int> row_start;  ///< rows() + 1
+  const std::vector<int> columns;    ///< blocks()
+};
+
+/// A symmetric matrix over a BlockPattern; block b is values[9b … 9b + 8], row-major.
+struct BlockMatrix {
+  std::shared_ptr<const BlockPattern> pattern;
+  std::vector<double> values;
+
+  explicit BlockMatrix(std::shared_ptr<const BlockPattern> pattern = nullptr);
+  void set_zero();
+  double* block(int b) { return values.data() + 9 * static_cast<std::size_t>(b); }
+  const double* block(int b) const { return values.data() + 9 * static_cast<std::size_t>(b); }
+  /// y = A x for n×3 x and y.
+  void multiply(const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& x,
+                Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>& y) const;
+};
+
+/// Indices in a pattern of the blocks of one energy's elements, computed once.
+class BlockSlots {
+ public:
+  BlockSlots(const BlockPattern& pattern, const Stencils& stencils);
+  /// Adds to `matrix`, over the pattern, `factor` times what it is given. Refers to both.
+  BlockSink sink(BlockMatrix& matrix, double factor = 1) const {
+    return {slots_.data(), pairs_, matrix.values.data(), factor};
+  }
+
+ private:
+  int pairs_;               // k(k+1)/2 for each element
+  std::vector<int> slots_;  // as BlockSink takes them
+};
+
+}  // namespace drape

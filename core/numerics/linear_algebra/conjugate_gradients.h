@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+
+namespace drape {
+
+/// Preconditioned conjugate gradients in double precision (Hestenes and Stiefel 1952). Keeps its work space
+/// between solves. Gives the same bits with any number of threads.
+class ConjugateGradients {
+ public:
+  enum class End {
+    converged,
+    not_definite,  ///< a direction has no positive curvature, or the preconditioner is not definite
+    not_converged
+  };
+
+  /// z = M⁻¹ r for n×3 r and z, whose fixed rows are zero.
+  using Precondition = std::function<void(const Positions& r, Positions& z)>;
+
+  /// Solves (A + diag(shift_i I₃)) x = b on the vertices that are not `fixed` (one flag a vertex) until ‖b −
+  /// A x‖ ≤ tolerance ‖b‖, in at most max_iterations. Rows of x for fixed vertices are zero.
+  End solve(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed,
+            const Positions& b, const Precondition& precondition, double tolerance, int max_iterations,
+            Positions& x);
+
+ private:
+  Positions r_, z_, p_, ap_;
+};
+
+}  // namespace drape

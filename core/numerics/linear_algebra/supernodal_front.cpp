@@ -1,0 +1,166 @@
+#include "core/numerics/linear_algebra/supernodal_front.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace drape {
+namespace {
+
+/// Row panels of a tile: 192 rows. Two tiles of as many columns and their product share a second-level cache
+/// of 1 MB.
+template <class Scalar>
+constexpr int tile = 192 / row_panel_height<Scalar>;
+
+/// Consecutive rows of a child's row panel that are consecutive in a row panel of its parent too.
+template <class Scalar>
+struct Run {
+  const Scalar* from;
+  int from_height;
+  Scalar *panel, *update;  // the first row in the parent's row panels, at the first pivot and update column
+  int height;
+  int vertices;
+  int last;  // of the child's vertices
+};
+
+template <class Scalar>
+std::vector<Run<Scalar>> runs_of(const Front<Scalar>& child, const int* indices,
+                                 const Front<Scalar>& parent) {
+  std::vector<Run<Scalar>> runs;
+  for (int begin = 0, end; begin < child.updates; begin = end) {
+    const int row_panel = parent.row_panel_of(indices[begin]);
+    end = begin + 1;
+    while (end < child.updates && end % lanes<Scalar> != 0 && indices[end] == indices[end - 1] + 1 &&
+           parent.row_panel_of(indices[end]) == row_panel)
+      ++end;
+    const RowPanel<Scalar> from = child.update_rows(begin / lanes<Scalar>),
+                           panel = parent.panel_rows(row_panel);
+    const int row = parent.row_of(indices[begin]), skipped = parent.pivot_row_panels();
+    Scalar* update = row_panel < skipped ? nullptr : parent.update_rows(row_panel - skipped).data + row;
+    runs.push_back({from.data + 3 * (begin % lanes<Scalar>), from.height, panel.data + row, update,
+                    panel.height, end - begin, end - 1});
+  }
+  return runs;
+}
+
+/// Adds the run's rows of all columns up to the diagonal. N: rows of the run.
+template <class Scalar, int N>
+void add_run(const Run<Scalar>& run, const int* indices, int pivots) {
+  const Scalar* from = run.from;
+  for (int j = 0; j <= run.last; ++j) {
+    Scalar* to = indices[j] < pivots
+                     ? run.panel + static_cast<std::ptrdiff_t>(3 * indices[j]) * run.height
+                     : run.update + static_cast<std::ptrdiff_t>(3 * (indices[j] - pivots)) * run.height;
+    for (int c = 0; c < 3; ++c, to += run.height, from += run.from_height)
+      for (int r = 0; r < N; ++r) to[r] += from[r];
+  }
+}
+
+template <class Scalar, int... K>
+constexpr auto run_adders(std::integer_sequence<int, K...>) {
+  return std::array{&add_run<Scalar, 3 * (K + 1)>...};
+}
+
+template <class Scalar>
+void add_runs(const std::vector<Run<Scalar>>& runs, const int* indices, int pivots) {
+  static constexpr auto adders = run_adders<Scalar>(std::make_integer_sequence<int, lanes<Scalar>>());
+  parallel_kernels<Scalar>(static_cast<int>(runs.size()), 8, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) adders[runs[k].vertices - 1](runs[k], indices, pivots);
+  });
+}
+
+/// Cholesky of the pivot rows of row panels [begin, end).
+template <class Scalar>
+bool factorise_diagonal(const Front<Scalar>& f, int begin, int end) {
+  const int first = begin * row_panel_height<Scalar>,
+            last = std::min(end * row_panel_height<Scalar>, f.columns());
+  for (int column = first; column < last; column += tile_columns) {
+    const int s = column / row_panel_height<Scalar>, row = column % row_panel_height<Scalar>;
+    const RowPanel<Scalar> diagonal = f.panel_rows(s);
+    if (!factorise_columns_diagonal(diagonal, row, first, column)) return false;
+    for (int i = s + 1; i < end; ++i) factorise_columns_below(f.panel_rows(i), diagonal, row, first, column);
+  }
+  return true;
+}
+
+}  // namespace
+
+template <class Scalar>
+void add_update(const Front<Scalar>& child, const int* indices, const Front<Scalar>& parent) {
+  add_runs(runs_of(child, indices, parent), indices, parent.pivots);
+}
+
+template <class Scalar>
+bool eliminate(const Front<Scalar>& f) {
+  const int panels = f.row_panels(), pivot_panels = f.pivot_row_panels();
+  for (int begin = 0; begin < pivot_panels; begin += tile<Scalar>) {
+    const int end = std::min(begin + tile<Scalar>, pivot_panels);
+    if (!factorise_diagonal(f, begin, end)) return false;
+    const int first = begin * row_panel_height<Scalar>,
+              last = std::min(end * row_panel_height<Scalar>, 3 * f.pivots);
+    parallel_kernels<Scalar>(panels - end, 2, [&](int b, int e) {
+      for (int i = end + b; i < end + e; ++i)
+        for (int column = first; column < last; column += tile_columns)
+          factorise_columns_below(f.panel_rows(i), f.panel_rows(column / row_panel_height<Scalar>),
+                                  column % row_panel_height<Scalar>, first, column);
+    });
+    const int tiles = (panels - end + tile<Scalar> - 1) / tile<Scalar>;
+    parallel_kernels<Scalar>(tiles * (tiles + 1) / 2, 1, [&](int pair, int) {
+      int row = 0;
+      while ((row + 1) * (row + 2) / 2 <= pair) ++row;
+      const int column = pair - row * (row + 1) / 2;
+      const int row_begin = end + row * tile<Scalar>, column_begin = end + column * tile<Scalar>;
+      for (int i = row_begin; i < std::min(row_begin + tile<Scalar>, panels); ++i)
+        for (int k = column_begin; k < std::min(column_begin + tile<Scalar>, i + 1); ++k)
+          subtract_product(f.panel_rows(i), f.panel_rows(k), first, last, f.block(i, k));
+    });
+  }
+  return true;
+}
+
+template <class Scalar>
+void solve_forward(const Front<Scalar>& f, Scalar* x) {
+  const int pivot_panels = f.pivot_row_panels();
+  for (int i = 0; i < pivot_panels; ++i) {
+    const RowPanel<Scalar> a = f.panel_rows(i);
+    const int first = i * row_panel_height<Scalar>;
+    Scalar* rows = x + first;
+    subtract_times(a, first, x, rows);
+    solve_lower(a, first, std::min(a.height, 3 * f.pivots - first), rows);
+  }
+  parallel_kernels<Scalar>(f.row_panels() - pivot_panels, 4, [&](int begin, int end) {
+    for (int i = pivot_panels + begin; i < pivot_panels + end; ++i)
+      subtract_times(f.panel_rows(i), 3 * f.pivots, x, x + f.first_row(i));
+  });
+}
+
+template <class Scalar>
+void solve_backward(const Front<Scalar>& f, Scalar* x) {
+  const int pivot_panels = f.pivot_row_panels(), columns = f.columns(),
+            updates = padded<Scalar>(3 * f.updates);
+  parallel_kernels<Scalar>(columns / lanes<Scalar>, 3, [&](int begin, int end) {
+    for (int column = begin * lanes<Scalar>; column < end * lanes<Scalar>; column += lanes<Scalar>)
+      subtract_transposed_times(f.panel_rows(pivot_panels).data, updates, columns, column, x + columns,
+                                x + column);
+  });
+  for (int i = pivot_panels - 1; i >= 0; --i) {
+    const RowPanel<Scalar> a = f.panel_rows(i);
+    const int first = i * row_panel_height<Scalar>, end = first + a.height;
+    for (int column = first; column < end; column += lanes<Scalar>)
+      subtract_transposed_times(a.data + static_cast<std::ptrdiff_t>(a.height) * columns, columns - end,
+                                columns, column, x + end, x + column);
+    solve_lower_transposed(a, first, std::min(a.height, 3 * f.pivots - first), x + first);
+  }
+}
+
+// The scalars for which there are fronts.
+#define DRAPE_FRONTS(Scalar)                                                        \
+  template void add_update(const Front<Scalar>&, const int*, const Front<Scalar>&); \
+  template bool eliminate(const Front<Scalar>&);                                    \
+  template void solve_forward(const Front<Scalar>&, Scalar*);                       \
+  template void solve_backward(const Front<Scalar>&, Scalar*);
+DRAPE_FRONTS(double)
+DRAPE_FRONTS(float)
+#undef DRAPE_FRONTS
+
+}  // namespace drape

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/numerics/mesh/cut_polygon.h"
+
+namespace drape {
+
+/// A mesh that grows while a file is read.
+struct MeshBuilder {
+  std::vector<double> coordinates;  ///< 3n
+  std::vector<int> corners;         ///< 3m
+  std::vector<double> uv;           ///< 6m; shorter if the last faces have none
+  int face_count = 0;
+
+  int vertex_count() const { return static_cast<int>(coordinates.size() / 3); }
+
+  /// Adds the triangles of a face of at least three vertices, all of which are there, with the texture
+  /// coordinates u and v of each corner, or none. Calls refuse("face 7 (counted from 0) …") if it cannot be
+  /// cut.
+  template <class Refuse>
+  void add_face(const std::vector<int>& face, const std::vector<double>& face_uv, const Refuse& refuse) {
+    const int number = face_count++;
+    std::vector<Eigen::Vector3d> points;
+    if (face.size() > 3)
+      for (const int v : face) points.emplace_back(&coordinates[3 * static_cast<std::size_t>(v)]);
+    const CutPolygon cut = face.size() == 3 ? CutPolygon{{{0, 1, 2}}, {}} : cut_polygon(points);
+    if (!cut.fault.empty()) refuse("face " + std::to_string(number) + " (counted from 0) " + cut.fault);
+    if (!face_uv.empty()) uv.resize(2 * corners.size());  // (0, 0) for faces before that have none
+    for (const auto& triangle : cut.triangles)
+      for (const int k : triangle) {
+        corners.push_back(face[k]);
+        if (!face_uv.empty()) uv.insert(uv.end(), {face_uv[2 * k], face_uv[2 * k + 1]});
+      }
+  }
+
+  TriangleMesh mesh() const {
+    TriangleMesh mesh{
+        Eigen::Map<const Positions>(coordinates.data(), static_cast<Eigen::Index>(coordinates.size() / 3), 3),
+        Eigen::Map<const Triangles>(corners.data(), static_cast<Eigen::Index>(corners.size() / 3), 3)};
+    if (uv.empty()) return mesh;
+    mesh.uv.setZero(mesh.triangles.rows(), 6);
+    std::copy(uv.begin(), uv.end(), mesh.uv.data());
+    return mesh;
+  }
+};
+
+}  // namespace drape

@@ -1,0 +1,119 @@
+#include "core/numerics/mesh/mesh_faults.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/kernel/interfaces/half_edges.h"
+#include "core/kernel/plugin/bounds.h"
+#include "core/numerics/mesh/disjoint_sets.h"
+
+namespace drape {
+namespace {
+
+bool repeats_vertex(const Triangles& triangles, int t) {
+  const auto v = triangles.row(t);
+  return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
+
+bool has_no_area(const TriangleMesh& mesh, int t) {
+  const auto v = mesh.triangles.row(t);
+  const Eigen::RowVector3d a = mesh.vertices.row(v[0]), b = mesh.vertices.row(v[1]),
+                           c = mesh.vertices.row(v[2]);
+  const double longest = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+  return (b - a).cross(c - a).norm() <= bounds::smallest_height * longest;  // false where a coordinate is NaN
+}
+
+std::vector<MeshFaults::Pair> doubled(const Triangles& triangles) {
+  std::vector<std::pair<std::array<int, 3>, int>> sorted;
+  for (int t = 0; t < triangles.rows(); ++t) {
+    std::array<int, 3> v{triangles(t, 0), triangles(t, 1), triangles(t, 2)};
+    std::sort(v.begin(), v.end());
+    sorted.emplace_back(v, t);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<MeshFaults::Pair> pairs;
+  for (std::size_t i = 1, first = 0; i < sorted.size(); ++i) {
+    if (sorted[i].first == sorted[first].first)
+      pairs.push_back({sorted[i].second, sorted[first].second});
+    else
+      first = i;
+  }
+  std::ranges::sort(pairs, {}, &MeshFaults::Pair::element);
+  return pairs;
+}
+
+/// Corner of the half-edge's triangle at its start or end vertex.
+int corner_at(int half_edge, bool end) {
+  return half_edge - half_edge % 3 + (half_edge % 3 + (end ? 2 : 1)) % 3;
+}
+
+/// Calls visit(sides) with the half-edges of every edge, ascending.
+template <class Visit>
+void for_each_edge(const Triangles& triangles, int vertex_count, const std::vector<char>& ignored,
+                   const Visit& visit) {
+  std::vector<int> order = half_edges_by_edge(triangles, vertex_count), sides;
+  if (!ignored.empty()) std::erase_if(order, [&](int h) { return ignored[h / 3] != 0; });
+  for (std::size_t i = 0; i < order.size(); i += sides.size()) {
+    const HalfEdge e = HalfEdge::of(triangles, order[i]);
+    sides.clear();
+    for (std::size_t j = i; j < order.size() && HalfEdge::of(triangles, order[j]).same_edge(e); ++j)
+      sides.push_back(order[j]);
+    visit(sides);
+  }
+}
+
+}  // namespace
+
+MeshFaults MeshFaults::of_elements(const TriangleMesh& mesh) {
+  MeshFaults faults;
+  std::vector<char> used(mesh.vertices.rows(), 0);
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    for (int k = 0; k < 3; ++k) used[mesh.triangles(t, k)] = 1;
+    if (repeats_vertex(mesh.triangles, t))
+      faults.repeating_triangles.push_back(t);
+    else if (has_no_area(mesh, t))
+      faults.empty_triangles.push_back(t);
+  }
+  for (int v = 0; v < mesh.vertices.rows(); ++v)
+    if (!used[v]) faults.loose_vertices.push_back(v);
+  faults.doubled_triangles = doubled(mesh.triangles);
+  return faults;
+}
+
+void MeshFaults::find_connectivity(const Triangles& triangles, int vertex_count,
+                                   const std::vector<char>& ignored) {
+  const int corner_count = static_cast<int>(3 * triangles.rows());
+  DisjointSets fans(corner_count);  // corners that are connected across edges
+  for_each_edge(triangles, vertex_count, ignored, [&](const std::vector<int>& sides) {
+    const HalfEdge e = HalfEdge::of(triangles, sides[0]);
+    const bool inverted = sides.size() == 2 && HalfEdge::of(triangles, sides[1]).from == e.from;
+    if (sides.size() > 2 || inverted) {
+      FaultyEdge fault{e.smaller(), e.larger(), {}};
+      for (const int h : sides) fault.triangles.push_back(h / 3);
+      (inverted ? inverted_edges : crowded_edges).push_back(std::move(fault));
+    }
+    for (const int h : sides) {
+      const bool same_direction = HalfEdge::of(triangles, h).from == e.from;
+      fans.unite(corner_at(h, !same_direction), corner_at(sides[0], false));
+      fans.unite(corner_at(h, same_direction), corner_at(sides[0], true));
+    }
+  });
+  std::vector<int> fan_count(vertex_count, 0);
+  for (int c = 0; c < corner_count; ++c)
+    if (fans.find(c) == c && (ignored.empty() || !ignored[c / 3])) ++fan_count[triangles(c / 3, c % 3)];
+  for (int v = 0; v < vertex_count; ++v)
+    if (fan_count[v] > 1) shared_vertices.push_back({v, fan_count[v]});
+}
+
+std::vector<int> border_half_edges(const Triangles& triangles, int vertex_count) {
+  std::vector<int> border;
+  for_each_edge(triangles, vertex_count, {}, [&](const std::vector<int>& sides) {
+    if (sides.size() == 1) border.push_back(sides[0]);
+  });
+  std::sort(border.begin(), border.end());
+  return border;
+}
+
+}  // namespace drape

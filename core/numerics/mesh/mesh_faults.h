@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+
+namespace drape {
+
+/// An edge from a vertex to one of larger index, with its triangles.
+struct FaultyEdge {
+  int smaller, larger;
+  std::vector<int> triangles;  ///< ascending
+};
+
+/// The elements of a mesh that a sheet with one side up does not have, ascending. Its indices are in range.
+struct MeshFaults {
+  struct Pair {
+    int element, other;
+  };
+  std::vector<int> loose_vertices;         ///< of no triangle
+  std::vector<int> repeating_triangles;    ///< with a vertex twice
+  std::vector<int> empty_triangles;        ///< no area: height below 1e-12 of the longest edge
+  std::vector<Pair> doubled_triangles;     ///< with the vertices of another triangle, the first of that kind
+  std::vector<FaultyEdge> crowded_edges;   ///< more than two triangles
+  std::vector<FaultyEdge> inverted_edges;  ///< two triangles that run along it in the same direction
+  std::vector<Pair> shared_vertices;  ///< joins fans of triangles that share no edge there, and their number
+
+  /// Finds all but the last three kinds.
+  static MeshFaults of_elements(const TriangleMesh& mesh);
+  /// Finds the last three kinds. Triangles with `ignored` are left out; none may repeat a vertex otherwise.
+  void find_connectivity(const Triangles& triangles, int vertex_count, const std::vector<char>& ignored);
+};
+
+/// The sides of triangles that no other triangle shares, as half-edge numbers, ascending.
+std::vector<int> border_half_edges(const Triangles& triangles, int vertex_count);
+
+}  // namespace drape

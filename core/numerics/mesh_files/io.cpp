@@ -1,0 +1,59 @@
+#include "core/numerics/mesh_files/io.h"
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <stdexcept>
+
+#include "core/kernel/files/file.h"
+#include "core/numerics/mesh_files/io_formats.h"
+
+namespace drape {
+namespace {
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+std::runtime_error unknown_extension(const std::filesystem::path& path, const std::string& known) {
+  return std::runtime_error(path.string() + ": unknown mesh format '" + path.extension().string() +
+                            "'; known are " + known);
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".obj") return read_obj(path, read_file(path));
+  if (extension == ".off") return read_off(path, read_file(path));
+  if (extension == ".ply") return read_ply(path, read_file(path));
+  if (extension == ".stl") return read_stl(path, read_file(path));
+  throw unknown_extension(path, ".obj, .off, .ply, .stl");
+}
+
+void require_fields(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
+  std::set<std::string> names{"x", "y", "z"};
+  for (const VertexField& field : fields) {
+    const auto refuse = [&](const std::string& why) {
+      throw std::runtime_error("cannot write " + path.string() + ": field '" + field.name + "' " + why);
+    };
+    if (field.name.empty() || field.name.find_first_of(" \t\r\n\v\f") != std::string::npos)
+      refuse("needs a name without white space");
+    if (!names.insert(field.name).second) refuse("has the name of another field");
+    if (field.values.size() != mesh.vertices.rows())
+      refuse("has " + std::to_string(field.values.size()) + " values for " +
+             std::to_string(mesh.vertices.rows()) + " vertices");
+  }
+}
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".ply") return write_ply(path, mesh);
+  if (extension == ".obj") return write_file(path, obj_text(mesh));
+  throw unknown_extension(path, ".obj, .ply");
+}
+
+}  // namespace drape

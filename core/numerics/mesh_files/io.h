@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+
+namespace drape {
+
+/// A named scalar per vertex.
+struct VertexField {
+  std::string name;        ///< not empty, no white space
+  Eigen::VectorXd values;  ///< n
+};
+using VertexFields = std::vector<VertexField>;
+
+/// Reads a Wavefront OBJ (v and f), an OFF (text), a PLY (text, binary little or big endian) or an STL (text,
+/// binary), by extension. Faces with more than three corners are cut (cut_polygon.h). Vertices keep their
+/// order and are not merged, except those of an STL, which are the different points of its triangles.
+/// Coordinates are finite; check_mesh checks the rest of the geometry. Texture coordinates are the vt of an
+/// OBJ's faces, a PLY's `texcoord` of faces or `s` and `t` of vertices; a face without them has (0, 0) where
+/// others have some. Data beyond what the file declares are
+/// refused. Throws std::runtime_error with "file:line: fault" (in binary parts: the element).
+TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// All scalar vertex properties of a PLY other than x, y and z, in the file's order.
+VertexFields read_ply_fields(const std::filesystem::path& path);
+
+// Every writer writes path + ".part" and renames it. All throw std::runtime_error naming the path.
+
+/// Writes PLY (as write_ply) or OBJ by extension; either reads back to the same bits, texture coordinates
+/// included.
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+/// Writes a PLY, binary little endian, coordinates and fields in double; reads back to the same bits.
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
+
+/// Writes a VTK XML PolyData file, base64 inline, for ParaView; without texture coordinates, which VTK has
+/// no seams for.
+void write_vtp(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields = {});
+
+/// Writes a ParaView collection: time [s] and a .vtp path relative to the collection, one pair per frame.
+void write_pvd(const std::filesystem::path& path, const std::vector<std::pair<double, std::string>>& frames);
+
+}  // namespace drape

@@ -1,0 +1,176 @@
+// Wavefront OBJ and OFF.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <iterator>
+
+#include "core/kernel/files/message_text.h"
+#include "core/numerics/mesh/mesh_builder.h"
+#include "core/numerics/mesh/texture_coordinates.h"
+#include "core/numerics/mesh_files/io_formats.h"
+#include "core/numerics/mesh_files/text_reader.h"
+
+namespace drape {
+namespace {
+
+/// Numbers after those that are read: a weight, a colour, a normal.
+void check_further_numbers(const TextReader& reader, std::size_t first_word, std::size_t most) {
+  const auto& words = reader.words();
+  if (words.size() > first_word + most) reader.fail("the line has too many values");
+  for (std::size_t k = first_word; k < words.size(); ++k) reader.number(words[k]);
+}
+
+void read_vertex(const TextReader& reader, std::size_t first_word, std::size_t most_further,
+                 MeshBuilder& builder) {
+  if (reader.words().size() < first_word + 3) reader.fail("a vertex needs three coordinates");
+  for (std::size_t k = 0; k < 3; ++k)
+    builder.coordinates.push_back(reader.coordinate(reader.words()[first_word + k]));
+  check_further_numbers(reader, first_word + 3, most_further);
+}
+
+/// An index of an OBJ face, from 0: written from 1 or, negative, counted back from the last of `count` so
+/// far.
+int obj_index(const TextReader& reader, std::string_view word, int count, const std::string& one,
+              const std::string& several) {
+  const long long i = reader.integer(word);
+  if (i == 0 || i > count || i < -static_cast<long long>(count))
+    reader.fail("face names " + one + " " + std::to_string(i) + ", but " + std::to_string(count) + " " +
+                several + " precede it");
+  return static_cast<int>(i > 0 ? i - 1 : count + i);
+}
+
+/// The corner of an OBJ face: indices from 0 of its vertex and of its texture coordinates, -1 without.
+struct ObjCorner {
+  int vertex = 0, uv = -1;
+};
+
+/// Reads "v", "v/vt", "v//vn" or "v/vt/vn".
+ObjCorner obj_corner(const TextReader& reader, std::string_view word, int vertex_count, int uv_count) {
+  const std::size_t slash = std::min(word.find('/'), word.size());
+  ObjCorner corner{obj_index(reader, word.substr(0, slash), vertex_count, "vertex", "vertices")};
+  if (slash == word.size()) return corner;
+  const std::string_view further = word.substr(slash + 1);
+  const std::size_t second = std::min(further.find('/'), further.size());
+  if (second + 1 < further.size()) reader.integer(further.substr(second + 1));
+  if (second > 0) corner.uv = obj_index(reader, further.substr(0, second), uv_count, "vt", "vt lines");
+  return corner;
+}
+
+/// The u and v of a vt line; v is 0 if it has u alone.
+std::array<double, 2> obj_uv(const TextReader& reader) {
+  const auto& words = reader.words();
+  if (words.size() < 2) reader.fail("texture coordinates need one to three numbers");
+  std::array<double, 2> uv{};
+  for (std::size_t k = 0; k < std::min<std::size_t>(words.size() - 1, 2); ++k)
+    uv[k] = reader.coordinate(words[k + 1]);
+  check_further_numbers(reader, 3, 1);
+  return uv;
+}
+
+/// Whether OBJ defines such a keyword, other than those of vertices and faces.
+bool is_other_obj_line(std::string_view word) {
+  constexpr std::string_view known[] = {
+      "vn",       "vp",       "vc",     "p",      "l",      "g",          "s",         "o",
+      "mg",       "usemtl",   "mtllib", "usemap", "maplib", "shadow_obj", "trace_obj", "bevel",
+      "c_interp", "d_interp", "lod",    "cstype", "deg",    "bmat",       "step",      "curv",
+      "curv2",    "surf",     "parm",   "trim",   "hole",   "scrv",       "sp",        "end",
+      "con",      "ctech",    "stech",  "call",   "csh"};
+  return std::find(std::begin(known), std::end(known), word) != std::end(known);
+}
+
+}  // namespace
+
+TriangleMesh read_obj(const std::filesystem::path& path, std::string_view bytes) {
+  TextReader reader(path, bytes, '#', '\\');
+  MeshBuilder builder;
+  std::vector<int> face;
+  std::vector<std::array<double, 2>> uv;
+  std::vector<double> face_uv;
+  while (reader.next_line()) {
+    const auto& words = reader.words();
+    if (words[0] == "v") {
+      read_vertex(reader, 1, 4, builder);  // a weight, a colour
+    } else if (words[0] == "vt") {
+      uv.push_back(obj_uv(reader));
+    } else if (words[0] == "f") {
+      face.clear();
+      face_uv.clear();
+      for (std::size_t k = 1; k < words.size(); ++k) {
+        const ObjCorner corner =
+            obj_corner(reader, words[k], builder.vertex_count(), static_cast<int>(uv.size()));
+        face.push_back(corner.vertex);
+        if (corner.uv >= 0) face_uv.insert(face_uv.end(), uv[corner.uv].begin(), uv[corner.uv].end());
+      }
+      if (face.size() < 3) reader.fail("a face needs at least three vertices");
+      if (!face_uv.empty() && face_uv.size() < 2 * face.size())
+        reader.fail("a face has a vt at every corner or at none");
+      builder.add_face(face, face_uv, [&](const std::string& why) { reader.fail(why); });
+    } else if (!is_other_obj_line(words[0])) {
+      reader.fail("no line of an OBJ file begins with '" + excerpt(words[0]) + "'");
+    }
+  }
+  if (builder.coordinates.empty()) reader.fail("the file ends without a vertex");
+  return builder.mesh();
+}
+
+TriangleMesh read_off(const std::filesystem::path& path, std::string_view bytes) {
+  TextReader reader(path, bytes, '#');
+  const std::string_view magic = reader.next_word("OFF");
+  // Prefixes announce texture, colour and normals, which follow the coordinates and are skipped.
+  if (magic != "OFF" && magic != "COFF" && magic != "NOFF" && magic != "CNOFF" && magic != "STOFF")
+    reader.fail("an OFF file begins with OFF, not '" + excerpt(magic) + "'");
+  std::string_view word = reader.next_word("the number of vertices");
+  if (word == "BINARY") reader.fail("binary OFF is not read; convert it to text or to PLY");
+  const int vertex_count = reader.count(word, "vertices");
+  const int face_count = reader.count(reader.next_word("the number of faces"), "faces");
+  if (reader.has_words_left()) reader.integer(reader.next_word("the number of edges"));
+  if (reader.has_words_left()) reader.fail("the line has more than the numbers of vertices, faces and edges");
+  reader.set_note("the header declares " + std::to_string(vertex_count) + " vertices, " +
+                  std::to_string(face_count) + " faces");
+
+  MeshBuilder builder;
+  for (int v = 0; v < vertex_count; ++v) {
+    if (!reader.next_line()) reader.fail("the file ends before vertex " + std::to_string(v));
+    read_vertex(reader, 0, 9, builder);  // a normal, a colour, texture coordinates
+  }
+  std::vector<int> face;
+  for (int f = 0; f < face_count; ++f) {
+    if (!reader.next_line()) reader.fail("the file ends before face " + std::to_string(f));
+    const auto& words = reader.words();
+    const auto size = static_cast<std::size_t>(reader.count(words[0], "vertices of a face"));
+    if (size < 3) reader.fail("a face needs at least three vertices");
+    if (words.size() <= size) reader.fail("a face of " + std::to_string(size) + " vertices names fewer");
+    face.clear();
+    for (std::size_t k = 1; k <= size; ++k) face.push_back(reader.index(words[k], vertex_count, "vertex"));
+    check_further_numbers(reader, size + 1, 4);  // a colour
+    builder.add_face(face, {}, [&](const std::string& why) { reader.fail(why); });
+  }
+  if (reader.next_line()) reader.fail("the file has data after its last face");
+  return builder.mesh();
+}
+
+std::string exact_text(double value) {
+  char buffer[32];
+  return std::string(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+std::string obj_text(const TriangleMesh& mesh) {
+  std::string text;
+  for (int v = 0; v < mesh.vertices.rows(); ++v)
+    text += "v " + exact_text(mesh.vertices(v, 0)) + ' ' + exact_text(mesh.vertices(v, 1)) + ' ' +
+            exact_text(mesh.vertices(v, 2)) + '\n';
+  const UvVertices corners = split_at_seams(mesh);
+  for (Eigen::Index i = 0; i < corners.uv.rows(); ++i)
+    text += "vt " + exact_text(corners.uv(i, 0)) + ' ' + exact_text(corners.uv(i, 1)) + '\n';
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    text += 'f';
+    for (int k = 0; k < 3; ++k) {
+      text += ' ' + std::to_string(mesh.triangles(t, k) + 1);
+      if (corners.uv.rows() > 0) text += '/' + std::to_string(corners.triangles(t, k) + 1);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace drape

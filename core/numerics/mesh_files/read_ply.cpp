@@ -1,0 +1,331 @@
+// PLY in: text, binary little endian and binary big endian.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
+#include "core/numerics/mesh/mesh_builder.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/mesh_files/io_formats.h"
+#include "core/numerics/mesh_files/ply_header.h"
+
+namespace drape {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are decoded on a little-endian machine");
+
+template <class Number>
+double decode(std::array<char, 8> bytes) {
+  Number number;
+  std::memcpy(&number, bytes.data(), sizeof number);
+  return static_cast<double>(number);
+}
+
+/// The numbers behind the header, whatever their encoding.
+class PlyBody {
+ public:
+  PlyBody(TextReader& reader, std::string_view bytes, PlyFormat format, std::filesystem::path path)
+      : reader_(reader), bytes_(bytes.substr(reader.position())), format_(format), path_(std::move(path)) {}
+
+  void enter(const PlyElement& element, int number) {
+    end_line();
+    element_ = &element, number_ = number;
+  }
+
+  /// Nothing but white space may follow the last element.
+  void finish() {
+    end_line();
+    const bool more = format_ == PlyFormat::ascii ? reader_.next_line()
+                                                  : bytes_.find_first_not_of(" \t\r\n") != bytes_.npos;
+    if (!more) return;
+    const std::string message = "the file has data after the elements that its header declares";
+    if (format_ == PlyFormat::ascii) reader_.fail(message);
+    throw std::runtime_error(path_.string() + ": " + message + reader_.note());
+  }
+
+  double next(PlyType type) {
+    if (format_ == PlyFormat::ascii) {
+      const std::string_view word = reader_.next_word(place());
+      return type == PlyType::f32 || type == PlyType::f64 ? reader_.number(word)
+                                                          : static_cast<double>(reader_.integer(word));
+    }
+    const std::size_t size = ply_type_size[static_cast<int>(type)];
+    if (bytes_.size() < size) fail("the file ends");
+    std::array<char, 8> bytes;
+    std::copy_n(bytes_.data(), size, bytes.data());
+    if (format_ == PlyFormat::big_endian) std::reverse(bytes.begin(), bytes.begin() + size);
+    bytes_.remove_prefix(size);
+    switch (type) {
+      case PlyType::i8:
+        return decode<std::int8_t>(bytes);
+      case PlyType::u8:
+        return decode<std::uint8_t>(bytes);
+      case PlyType::i16:
+        return decode<std::int16_t>(bytes);
+      case PlyType::u16:
+        return decode<std::uint16_t>(bytes);
+      case PlyType::i32:
+        return decode<std::int32_t>(bytes);
+      case PlyType::u32:
+        return decode<std::uint32_t>(bytes);
+      case PlyType::f32:
+        return decode<float>(bytes);
+      default:
+        return decode<double>(bytes);
+    }
+  }
+
+  [[noreturn]] void fail(const std::string& message) const {
+    if (format_ == PlyFormat::ascii) reader_.fail(place() + ": " + message);
+    throw std::runtime_error(path_.string() + ": " + place() + ": " + message + reader_.note());
+  }
+
+ private:
+  /// An element of a text may take several lines, but shares none.
+  void end_line() const {
+    if (format_ == PlyFormat::ascii && reader_.has_words_left())
+      fail("its line has more values than the header declares");
+  }
+
+  std::string place() const { return excerpt(element_->name) + " " + std::to_string(number_); }
+
+  TextReader& reader_;
+  std::string_view bytes_;
+  PlyFormat format_;
+  std::filesystem::path path_;
+  const PlyElement* element_ = nullptr;
+  int number_ = 0;
+};
+
+/// Faces before they are cut, for which the vertices have to be known.
+struct PlyFaces {
+  std::vector<int> corners;
+  std::vector<std::size_t> end;         ///< of each face's corners
+  std::vector<std::vector<double>> uv;  ///< of each face's corners, u and v; empty for faces without
+
+  template <class Corners>
+  void add(const Corners& face, const std::vector<double>& face_uv) {
+    corners.insert(corners.end(), std::begin(face), std::end(face));
+    end.push_back(corners.size());
+    uv.push_back(face_uv);
+  }
+};
+
+struct PlyContent {
+  MeshBuilder mesh;
+  PlyFaces faces;
+  std::vector<std::string> names;            ///< scalar vertex properties
+  std::vector<std::vector<double>> columns;  ///< their values
+};
+
+void read_list(PlyBody& body, const PlyProperty& property, std::vector<double>& values) {
+  const auto count = static_cast<long long>(body.next(*property.count_type));
+  if (count < 0) body.fail("list '" + excerpt(property.name) + "' has a negative length");
+  values.clear();
+  for (long long i = 0; i < count; ++i) values.push_back(body.next(property.type));
+}
+
+void read_vertices(PlyBody& body, const PlyElement& element, PlyContent& content) {
+  for (const PlyProperty& p : element.properties)
+    if (!p.count_type) content.names.push_back(p.name);
+  content.columns.resize(content.names.size());
+  std::vector<double> ignored;
+  for (int v = 0; v < element.count; ++v) {
+    body.enter(element, v);
+    std::size_t column = 0;
+    for (const PlyProperty& p : element.properties) {
+      if (p.count_type)
+        read_list(body, p, ignored);
+      else
+        content.columns[column++].push_back(body.next(p.type));
+    }
+  }
+}
+
+bool holds_corners(const PlyProperty& p) {
+  return p.count_type && (p.name == "vertex_indices" || p.name == "vertex_index");
+}
+
+int corner(const PlyBody& body, double v, int vertex_count) {
+  if (!(v >= 0 && v < vertex_count && v == std::floor(v)))
+    body.fail("vertex " + exact_text(v) + " is not in 0 … " + std::to_string(vertex_count - 1));
+  return static_cast<int>(v);
+}
+
+void add_face(const PlyBody& body, const std::vector<double>& values, const std::vector<double>& uv,
+              int vertex_count, PlyFaces& faces) {
+  if (values.size() < 3) body.fail("a face needs at least three vertices");
+  std::vector<int> face;
+  for (const double v : values) face.push_back(corner(body, v, vertex_count));
+  const bool finite = std::all_of(uv.begin(), uv.end(), [](double number) { return std::isfinite(number); });
+  if (!uv.empty() && (uv.size() != 2 * face.size() || !finite))
+    body.fail("list 'texcoord' needs two finite numbers for each corner");
+  faces.add(face, uv);
+}
+
+/// Strips end with -1 or the list. Every second triangle of a strip is turned over, and one that repeats a
+/// vertex only joins its neighbours.
+void add_strips(const PlyBody& body, const std::vector<double>& values, const std::vector<double>&,
+                int vertex_count, PlyFaces& faces) {
+  std::vector<int> strip;
+  for (const double v : values) {
+    if (v == -1) {
+      strip.clear();
+      continue;
+    }
+    strip.push_back(corner(body, v, vertex_count));
+    if (strip.size() < 3) continue;
+    std::array<int, 3> t{strip.end()[-3], strip.end()[-2], strip.end()[-1]};
+    if (strip.size() % 2 == 0) std::swap(t[0], t[1]);
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) faces.add(t, {});
+  }
+}
+
+/// Reads an element of faces or of strips, whose lists of vertices and texture coordinates `add` takes.
+template <class Add>
+void read_faces(PlyBody& body, const PlyElement& element, int vertex_count, PlyFaces& faces, const Add& add) {
+  std::vector<double> values, corners, uv;
+  for (int f = 0; f < element.count; ++f) {
+    body.enter(element, f);
+    uv.clear();
+    for (const PlyProperty& p : element.properties) {
+      if (!p.count_type) {
+        body.next(p.type);
+        continue;
+      }
+      read_list(body, p, values);
+      if (holds_corners(p)) corners = values;
+      if (p.name == "texcoord") uv = values;
+    }
+    add(body, corners, uv, vertex_count, faces);
+  }
+}
+
+void skip(PlyBody& body, const PlyElement& element) {
+  std::vector<double> ignored;
+  for (int i = 0; i < element.count; ++i) {
+    body.enter(element, i);
+    for (const PlyProperty& p : element.properties) {
+      if (p.count_type)
+        read_list(body, p, ignored);
+      else
+        body.next(p.type);
+    }
+  }
+}
+
+std::string counts_of(const PlyHeader& header) {
+  std::string text;
+  for (const PlyElement& e : header.elements)
+    text += (text.empty() ? "" : ", ") + std::to_string(e.count) + " " + e.name;
+  return "the header declares " + excerpt(text);
+}
+
+void cut_faces(const std::filesystem::path& path, PlyContent& content) {
+  const PlyFaces& faces = content.faces;
+  std::vector<int> face;
+  for (std::size_t f = 0; f < faces.end.size(); ++f) {
+    face.assign(faces.corners.data() + (f == 0 ? 0 : faces.end[f - 1]), faces.corners.data() + faces.end[f]);
+    content.mesh.add_face(face, faces.uv[f], [&](const std::string& why) {
+      throw std::runtime_error(path.string() + ": " + why);
+    });
+  }
+}
+
+PlyContent read_content(const std::filesystem::path& path, std::string_view bytes) {
+  TextReader reader(path, bytes, '\0');
+  const PlyHeader header = read_ply_header(reader);
+  const auto named = [&](const char* name) {
+    return std::count_if(header.elements.begin(), header.elements.end(),
+                         [&](const auto& e) { return e.name == name; });
+  };
+  if (named("vertex") != 1) reader.fail("the header must have one element 'vertex'");
+  for (const PlyElement& e : header.elements)
+    if ((e.name == "face" || e.name == "tristrips") && e.count > 0 &&
+        std::count_if(e.properties.begin(), e.properties.end(), holds_corners) != 1)
+      reader.fail("element '" + e.name + "' must have one list 'vertex_indices'");
+  reader.set_note(counts_of(header));
+
+  PlyContent content;
+  int vertex_count = 0;
+  for (const PlyElement& element : header.elements)
+    if (element.name == "vertex") vertex_count = element.count;
+  PlyBody body(reader, bytes, header.format, path);
+  for (const PlyElement& element : header.elements) {
+    if (element.name == "vertex")
+      read_vertices(body, element, content);
+    else if (element.name == "face")
+      read_faces(body, element, vertex_count, content.faces, add_face);
+    else if (element.name == "tristrips")
+      read_faces(body, element, vertex_count, content.faces, add_strips);
+    else
+      skip(body, element);
+  }
+  body.finish();
+
+  content.mesh.coordinates.resize(3 * static_cast<std::size_t>(vertex_count));
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    const auto found = std::find(content.names.begin(), content.names.end(), name);
+    if (found == content.names.end())
+      throw std::runtime_error(path.string() + ": vertices have no property '" + name + "'");
+    const auto& column = content.columns[found - content.names.begin()];
+    for (std::size_t v = 0; v < column.size(); ++v) {
+      if (!std::isfinite(column[v]))
+        throw std::runtime_error(path.string() + ": vertex " + std::to_string(v) +
+                                 " (counted from 0) has a coordinate that is not finite");
+      content.mesh.coordinates[3 * v + axis] = column[v];
+    }
+  }
+  cut_faces(path, content);
+  return content;
+}
+
+/// Texture coordinates that the file has at vertices, under the names that Blender, MeshLab or PCL write.
+void set_uv_of_vertices(const PlyContent& content, TriangleMesh& mesh) {
+  const auto column = [&](const char* name) -> const std::vector<double>* {
+    const auto found = std::find(content.names.begin(), content.names.end(), name);
+    return found == content.names.end() ? nullptr : &content.columns[found - content.names.begin()];
+  };
+  for (const auto& [u, v] : {std::pair("s", "t"), {"texture_u", "texture_v"}, {"u", "v"}}) {
+    const std::vector<double>*us = column(u), *vs = column(v);
+    if (!us || !vs) continue;
+    mesh.uv.resize(mesh.triangles.rows(), 6);
+    for (Eigen::Index t = 0; t < mesh.uv.rows(); ++t)
+      for (int k = 0; k < 3; ++k)
+        mesh.uv.block<1, 2>(t, 2 * k) << (*us)[mesh.triangles(t, k)], (*vs)[mesh.triangles(t, k)];
+    if (mesh.uv.allFinite()) return;
+    mesh.uv.resize(0, 6);
+  }
+}
+
+}  // namespace
+
+TriangleMesh read_ply(const std::filesystem::path& path, std::string_view bytes) {
+  const PlyContent content = read_content(path, bytes);
+  TriangleMesh mesh = content.mesh.mesh();
+  if (mesh.uv.rows() == 0) set_uv_of_vertices(content, mesh);
+  return mesh;
+}
+
+VertexFields read_ply_fields(const std::filesystem::path& path) {
+  return read_ply_fields(path, read_file(path));
+}
+
+VertexFields read_ply_fields(const std::filesystem::path& path, std::string_view bytes) {
+  const PlyContent content = read_content(path, bytes);
+  VertexFields fields;
+  for (std::size_t i = 0; i < content.names.size(); ++i) {
+    const std::string& name = content.names[i];
+    const auto& column = content.columns[i];
+    if (name == "x" || name == "y" || name == "z") continue;
+    fields.push_back({name, Eigen::Map<const Eigen::VectorXd>(column.data(), column.size())});
+  }
+  return fields;
+}
+
+}  // namespace drape

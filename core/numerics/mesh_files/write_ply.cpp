@@ -1,0 +1,53 @@
+// PLY out: binary little endian, double.
+#include <bit>
+#include <cstdint>
+#include <cstring>
+
+#include "core/kernel/files/file.h"
+#include "core/numerics/mesh_files/io.h"
+#include "core/numerics/mesh_files/io_formats.h"
+
+namespace drape {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as memory holds them");
+
+template <class Number>
+void append(std::string& bytes, Number number) {
+  char raw[sizeof number];
+  std::memcpy(raw, &number, sizeof number);
+  bytes.append(raw, sizeof number);
+}
+
+}  // namespace
+
+std::string ply_bytes(const TriangleMesh& mesh, const VertexFields& fields) {
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(mesh.vertices.rows()) +
+                      "\nproperty double x\nproperty double y\nproperty double z\n";
+  for (const VertexField& field : fields) bytes += "property double " + field.name + "\n";
+  bytes +=
+      "element face " + std::to_string(mesh.triangles.rows()) + "\nproperty list uchar int vertex_indices\n";
+  const bool with_uv = mesh.uv.rows() > 0;
+  if (with_uv) bytes += "property list uchar double texcoord\n";
+  bytes += "end_header\n";
+  for (int v = 0; v < mesh.vertices.rows(); ++v) {
+    for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(v, k));
+    for (const VertexField& field : fields) append(bytes, field.values[v]);
+  }
+  for (int t = 0; t < mesh.triangles.rows(); ++t) {
+    append(bytes, std::uint8_t{3});
+    for (int k = 0; k < 3; ++k) append(bytes, std::int32_t{mesh.triangles(t, k)});
+    if (!with_uv) continue;
+    append(bytes, std::uint8_t{6});
+    for (int k = 0; k < 6; ++k) append(bytes, mesh.uv(t, k));
+  }
+  return bytes;
+}
+
+void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexFields& fields) {
+  require_fields(path, mesh, fields);
+  write_file(path, ply_bytes(mesh, fields));
+}
+
+}  // namespace drape

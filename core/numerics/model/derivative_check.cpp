@@ -1,0 +1,126 @@
+#include "core/numerics/model/derivative_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "core/kernel/files/number_text.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/patterns/generate.h"
+
+namespace drape {
+
+namespace {
+
+/// Σ_k weight_k f(x + offset_k h) / (12 h), for central differences of fourth order.
+constexpr double offsets[] = {-2, -1, 1, 2}, weights[] = {1, -8, 8, -1};
+
+Eigen::MatrixXd dense_hessian(const BoundEnergy& energy, const Positions& x, double& asymmetry) {
+  const auto size = static_cast<int>(x.size());
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+  const Stencils stencils = energy.stencils();
+  if (stencils.rows() == 0) return dense;
+  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
+  matrix.set_zero();
+  const BlockSlots slots(*matrix.pattern, stencils);
+  BlockSink sink = slots.sink(matrix);
+  energy.add_hessian(x, Projection::none, sink);
+  for (int i = 0; i < matrix.pattern->rows(); ++i)
+    for (int b = matrix.pattern->row_start[i]; b < matrix.pattern->row_start[i + 1]; ++b) {
+      const int j = matrix.pattern->columns[b];
+      const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> block(matrix.block(b));
+      dense.block<3, 3>(3 * i, 3 * j) = block;
+      if (i == j)
+        asymmetry = std::max(asymmetry, (block - block.transpose()).cwiseAbs().maxCoeff());
+      else
+        dense.block<3, 3>(3 * j, 3 * i) = block.transpose();
+    }
+  return dense;
+}
+
+void require_finite(bool finite, Eigen::Index coordinate) {
+  if (!finite)
+    throw std::runtime_error("the energy is not finite near x, where vertex " +
+                             std::to_string(coordinate / 3) + " moves; take another state or a smaller step");
+}
+
+/// The largest entry of |a - b| over that of |b|, or over `least` if that is larger; |a - b| itself where
+/// both are zero.
+DerivativeError largest_error(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double least = 0) {
+  Eigen::Index row = 0, column = 0;
+  const double error = (a - b).cwiseAbs().maxCoeff(&row, &column),
+               scale = std::max(b.cwiseAbs().maxCoeff(), least);
+  return {scale > 0 ? error / scale : error, static_cast<int>(row), static_cast<int>(column)};
+}
+
+/// Differences of derivatives do not show what add_gradient does to what is there already, nor what it
+/// returns.
+void require_contract(const BoundEnergy& energy, const Positions& x, const Positions& g, double h) {
+  const double largest = g.cwiseAbs().maxCoeff(), other = largest > 0 ? largest : 1;
+  Positions twice = Positions::Constant(x.rows(), 3, other);
+  const double returned = energy.add_gradient(x, twice), value = energy.value(x);
+  if (!((twice.array() - other - g.array()).abs().maxCoeff() <= 1e-9 * other))
+    throw std::runtime_error("add_gradient does not add to the numbers in g, but overwrites some");
+  if (!(std::abs(returned - value) <= 1e-8 * (std::max(std::abs(returned), std::abs(value)) + largest * h)))
+    throw std::runtime_error("add_gradient returns " + general_text(returned, 9) + ", but value " +
+                             general_text(value, 9) + "; both are the energy");
+}
+
+std::string place_of(int coordinate) { return std::to_string(coordinate / 3) + ", " + "xyz"[coordinate % 3]; }
+
+}  // namespace
+
+double DerivativeCheck::worst() const { return std::max({gradient.error, hessian.error, asymmetry}); }
+
+std::string DerivativeCheck::text() const {
+  return "gradient: largest error " + scientific_text(gradient.error, 2) + ", at vertex " +
+         place_of(gradient.row) + "\nhessian: largest error " + scientific_text(hessian.error, 2) +
+         ", at vertices " + place_of(hessian.row) + " and " + place_of(hessian.column) + "; asymmetry " +
+         scientific_text(asymmetry, 2) + "\n";
+}
+
+Level checked_level() { return Level::of(0, grid({0.02, 0.02}, 3, 3, Diagonals::one_way)); }
+
+Positions checked_state(const Level& level) {
+  const double edge = std::sqrt(2 * level.vertex_area.sum() / level.triangle_count());
+  Eigen::Matrix3d f;
+  f << 1.05, 0.03, 0, 0.01, 0.97, 0, 0.1, 0.2, 1;
+  Positions x = level.rest.vertices * f.transpose();
+  for (Eigen::Index i = 0; i < x.rows(); ++i)
+    for (int c = 0; c < 3; ++c) x(i, c) += 0.02 * edge * std::sin(static_cast<double>(7 * i + 3 * c + 1));
+  return x;
+}
+
+DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h) {
+  if (x.size() == 0 || !(h > 0)) throw std::runtime_error("a check needs vertices and a step above 0");
+  DerivativeCheck check;
+  Positions g = Positions::Zero(x.rows(), 3);
+  energy.add_gradient(x, g);
+  if (g.allFinite()) require_contract(energy, x, g, h);
+  const Eigen::MatrixXd hessian = dense_hessian(energy, x, check.asymmetry);
+  Eigen::VectorXd by_value = Eigen::VectorXd::Zero(x.size());
+  Eigen::MatrixXd by_gradient = Eigen::MatrixXd::Zero(x.size(), x.size());
+  Positions y = x, moved(x.rows(), 3);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    for (int k = 0; k < 4; ++k) {
+      y.data()[i] = x.data()[i] + offsets[k] * h;
+      moved.setZero();
+      energy.add_gradient(y, moved);
+      const double value = energy.value(y);
+      require_finite(std::isfinite(value) && moved.allFinite(), i);
+      by_value[i] += weights[k] * value / (12 * h);
+      by_gradient.col(i) +=
+          weights[k] / (12 * h) * Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size());
+    }
+    y.data()[i] = x.data()[i];
+  }
+  check.gradient = largest_error(Eigen::Map<const Eigen::VectorXd>(g.data(), g.size()), by_value);
+  // Where the forces are constant, their differences are round-off.
+  const double round_off = 1e-8 * g.cwiseAbs().maxCoeff() / h;
+  check.hessian = largest_error(hessian, by_gradient, round_off);
+  if (const double scale = hessian.cwiseAbs().maxCoeff(); scale > 0) check.asymmetry /= scale;
+  return check;
+}
+
+}  // namespace drape

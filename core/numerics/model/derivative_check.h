@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "core/kernel/interfaces/energy.h"
+
+namespace drape {
+
+/// The largest difference between a derivative and its finite difference, and where it is.
+struct DerivativeError {
+  double error = 0;  ///< relative to the largest entry of the finite differences [1]
+  int row = 0;       ///< 3 i + c: coordinate c of vertex i
+  int column = 0;    ///< likewise; of Hessians alone
+};
+
+struct DerivativeCheck {
+  DerivativeError gradient;  ///< against differences of value()
+  DerivativeError hessian;   ///< against differences of add_gradient(), without projection
+  double asymmetry = 0;      ///< of the Hessian's diagonal blocks, relative to its largest entry [1]
+
+  /// The largest of the three.
+  double worst() const;
+  /// Two lines that say how large the errors are, and at which vertices.
+  std::string text() const;
+};
+
+/// The level on which an energy is checked unless there is another: four flat square cells of 1 cm.
+Level checked_level();
+/// The level's rest shape stretched, sheared and bent (n×3) [m].
+Positions checked_state(const Level& level);
+/// The step of the differences, for lengths like the checked level's [m].
+inline constexpr double difference_step = 1e-5;
+
+/// Compares an energy's derivatives at x (n×3) [m] with central differences of fourth order, step h [m].
+/// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not
+/// finite near x, if add_gradient does not add, or if it returns another number than value().
+DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
+
+}  // namespace drape

@@ -1,0 +1,177 @@
+#include "core/numerics/model/hessian_assembler.h"
+
+#include <algorithm>
+
+#include "core/kernel/threads/parallel.h"
+
+namespace drape {
+
+namespace {
+
+/// When the pattern changes, extra blocks that were unused for more calls than this are dropped.
+constexpr int max_idle = 20;
+
+/// The pairs i < j of an element's vertices that the pattern has no block for, ascending, each once.
+std::vector<std::pair<int, int>> missing_in(const BlockPattern& pattern,
+                                            const std::vector<Stencils>& stencils) {
+  std::vector<std::pair<int, int>> missing;
+  for (const Stencils& s : stencils)
+    for (Eigen::Index e = 0; e < s.rows(); ++e)
+      for (Eigen::Index b = 1; b < s.cols(); ++b)
+        for (Eigen::Index a = 0; a < b; ++a) {
+          if (s(e, a) < 0 || s(e, b) < 0) continue;
+          const std::pair<int, int> pair = std::minmax(s(e, a), s(e, b));
+          if (pattern.find(pair.first, pair.second) < 0) missing.push_back(pair);
+        }
+  std::sort(missing.begin(), missing.end());
+  missing.erase(std::unique(missing.begin(), missing.end()), missing.end());
+  return missing;
+}
+
+std::vector<std::vector<int>> neighbours_in(const BlockPattern& pattern) {
+  std::vector<std::vector<int>> neighbours(pattern.rows());
+  for (int i = 0; i < pattern.rows(); ++i)
+    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
+      const int j = pattern.columns[b];
+      neighbours[i].push_back(j);
+      if (j != i) neighbours[j].push_back(i);
+    }
+  return neighbours;
+}
+
+/// Pads the pairs: adds those of each end with the neighbours of the other. Leaves out blocks of `base`.
+std::vector<std::pair<int, int>> padded_pairs(const std::vector<std::pair<int, int>>& pairs,
+                                              const std::vector<std::vector<int>>& neighbours,
+                                              const BlockPattern& base) {
+  std::vector<std::pair<int, int>> all;
+  const auto add = [&](int i, int j) {
+    if (i != j) all.emplace_back(std::min(i, j), std::max(i, j));
+  };
+  for (const auto& [i, j] : pairs) {
+    for (int k : neighbours[j]) add(i, k);
+    for (int k : neighbours[i]) add(k, j);
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  std::erase_if(all, [&](const auto& pair) { return base.find(pair.first, pair.second) >= 0; });
+  return all;
+}
+
+std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
+                                                const std::vector<std::pair<int, int>>& extra) {
+  std::vector<int> row_start = {0}, columns;
+  columns.reserve(base.columns.size() + extra.size());
+  std::size_t next = 0;
+  for (int i = 0; i < base.rows(); ++i) {
+    const auto first = static_cast<std::ptrdiff_t>(columns.size());
+    columns.insert(columns.end(), base.columns.begin() + base.row_start[i],
+                   base.columns.begin() + base.row_start[i + 1]);
+    const auto extra_begin = static_cast<std::ptrdiff_t>(columns.size());
+    for (; next < extra.size() && extra[next].first == i; ++next) columns.push_back(extra[next].second);
+    std::inplace_merge(columns.begin() + first, columns.begin() + extra_begin, columns.end());
+    row_start.push_back(static_cast<int>(columns.size()));
+  }
+  return std::make_shared<const BlockPattern>(std::move(row_start), std::move(columns));
+}
+
+}  // namespace
+
+void HessianAssembler::reset(const std::shared_ptr<const BlockPattern>& base) {
+  base_ = pattern_ = base;
+  base_slot_.clear();
+  extra_ = {};
+  persistent_slots_.clear();
+  neighbours_.clear();
+}
+
+const std::shared_ptr<const BlockPattern>& HessianAssembler::restore(
+    const std::shared_ptr<const BlockPattern>& base, ExtraPattern extra) {
+  reset(base);
+  extra_ = std::move(extra);
+  if (!extra_.blocks.empty()) build_pattern();
+  return pattern_;
+}
+
+void HessianAssembler::grow_pattern(const std::shared_ptr<const BlockPattern>& base,
+                                    const std::vector<Stencils>& stencils) {
+  if (base != base_) reset(base);
+  std::vector<std::pair<int, int>>& extra = extra_.blocks;
+  std::vector<int>& idle = extra_.idle;
+  const std::vector<std::pair<int, int>> needed = missing_in(*base_, stencils);
+  bool grows = false;
+  std::size_t k = 0;
+  for (const auto& pair : needed) {
+    while (k < extra.size() && extra[k] < pair) ++idle[k++];
+    if (k < extra.size() && extra[k] == pair)
+      idle[k++] = 0;
+    else
+      grows = true;
+  }
+  while (k < extra.size()) ++idle[k++];
+  if (!grows) return;
+
+  std::vector<std::pair<int, int>> retained;
+  std::vector<int> retained_idle;
+  for (std::size_t e = 0; e < extra.size(); ++e)
+    if (idle[e] <= max_idle) {
+      retained.push_back(extra[e]);
+      retained_idle.push_back(idle[e]);
+    }
+  if (neighbours_.empty()) neighbours_ = neighbours_in(*base_);
+  const std::vector<std::pair<int, int>> padded = padded_pairs(needed, neighbours_, *base_);
+  std::vector<std::pair<int, int>> all;
+  std::set_union(retained.begin(), retained.end(), padded.begin(), padded.end(), std::back_inserter(all));
+  idle.assign(all.size(), 0);
+  for (std::size_t a = 0, e = 0; a < all.size() && e < retained.size(); ++a)
+    if (all[a] == retained[e]) idle[a] = retained_idle[e++];
+  extra = std::move(all);
+  build_pattern();
+}
+
+void HessianAssembler::build_pattern() {
+  pattern_ = with_blocks(*base_, extra_.blocks);
+  persistent_slots_.clear();
+  base_slot_.resize(base_->columns.size());
+  parallel_for(base_->rows(), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      int to = pattern_->row_start[i];
+      for (int b = base_->row_start[i]; b < base_->row_start[i + 1]; ++b) {
+        while (pattern_->columns[to] != base_->columns[b]) ++to;
+        base_slot_[b] = to;
+      }
+    }
+  });
+}
+
+const BlockMatrix& HessianAssembler::add(BlockMatrix& smooth,
+                                         const std::vector<const BoundEnergy*>& persistent,
+                                         const std::vector<const BoundEnergy*>& transient, const Positions& x,
+                                         Projection projection) {
+  std::vector<Stencils> stencils;
+  for (const BoundEnergy* energy : transient) stencils.push_back(energy->stencils());
+  grow_pattern(smooth.pattern, stencils);
+  BlockMatrix* sum = &smooth;
+  if (!base_slot_.empty()) {
+    if (matrix_.pattern != pattern_) matrix_ = BlockMatrix(pattern_);
+    matrix_.set_zero();
+    parallel_for(static_cast<int>(base_slot_.size()), 8192, [&](int begin, int end) {
+      for (int b = begin; b < end; ++b) std::copy_n(smooth.block(b), 9, matrix_.block(base_slot_[b]));
+    });
+    sum = &matrix_;
+  }
+  if (persistent_slots_.empty())
+    for (const BoundEnergy* energy : persistent)
+      persistent_slots_.push_back(std::make_unique<BlockSlots>(*pattern_, energy->stencils()));
+  for (std::size_t k = 0; k < persistent.size(); ++k) {
+    BlockSink sink = persistent_slots_[k]->sink(*sum);
+    persistent[k]->add_hessian(x, projection, sink);
+  }
+  for (std::size_t k = 0; k < transient.size(); ++k) {
+    const BlockSlots slots(*pattern_, stencils[k]);
+    BlockSink sink = slots.sink(*sum);
+    transient[k]->add_hessian(x, projection, sink);
+  }
+  return *sum;
+}
+
+}  // namespace drape

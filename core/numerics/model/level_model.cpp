@@ -1,0 +1,306 @@
+#include "core/numerics/model/level_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "core/kernel/threads/parallel.h"
+#include "core/numerics/contact_forces/contact_stiffness.h"
+#include "core/numerics/linear_algebra/same_entries.h"
+
+namespace drape {
+
+namespace {
+
+constexpr int rows_at_once = 8192;  // per task
+constexpr const char* contact_part = "contact";
+
+double norm_where(const Positions& g, const std::vector<char>& flags, char flag) {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < g.rows(); ++i)
+    if (flags[i] == flag) sum += g.row(i).squaredNorm();
+  return std::sqrt(sum);
+}
+
+/// What `bind` returns. The message of a runtime_error begins with the name of what was bound; other
+/// exceptions, as of memory or of Python, pass.
+template <class Bind>
+auto bound(const std::string& name, const Bind& bind)
+    -> std::shared_ptr<const typename decltype(bind())::element_type> {
+  try {
+    return bind();
+  } catch (const std::runtime_error& error) {
+    const std::string message = error.what();
+    const bool named = message.starts_with(name.substr(name.find(' ') + 1));
+    throw std::runtime_error(named ? message : name + ": " + message);
+  }
+}
+
+}  // namespace
+
+double free_norm(const Positions& g, const std::vector<char>& fixed) { return norm_where(g, fixed, 0); }
+
+LevelModel::LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
+                       std::vector<DirichletVertex> dirichlet,
+                       const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before)
+    : level_(&level),
+      material_(material),
+      dirichlet_(std::move(dirichlet)),
+      fixed_(level.vertex_count(), 0),
+      masses_(material.area_density() * level.vertex_area) {
+  for (const DirichletVertex& d : dirichlet_) fixed_[d.vertex] = 1;
+  bind_energies(energies, before);
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external && !term.is_linear()) load_is_constant_ = false;
+  add_up_linear_energies();
+  bind_contacts(contacts, before);
+  if (load_is_constant_) constant_load_norm_ = external_force_norm(level.rest.vertices);
+  adapt_stiffness_to_load();
+}
+
+void LevelModel::adapt_stiffness_to_load() {
+  if (contacts_.empty()) return;
+  const double pressure = load_pressure(level_->rest.vertices);
+  ContactStiffness stiffness = stiffness_of(contacts_);
+  for (double& own : stiffness) own = stiffness_for_load(own, pressure);
+  contacts_ = stiffened(contacts_, stiffness);
+}
+
+LevelModel LevelModel::with_stiffness(const ContactStiffness& stiffness) const {
+  LevelModel model = *this;
+  model.contacts_ = stiffened(contacts_, stiffness);
+  return model;
+}
+
+double LevelModel::load_pressure(const Positions& x) const {
+  double square = 0;
+  for (int i = 0; i < level_->vertex_count(); ++i)
+    if (!fixed_[i]) square += std::pow(level_->vertex_area[i], 2);
+  return square > 0 ? load_norm(x) / std::sqrt(square) : 0;
+}
+
+std::string LevelModel::unused_name(const std::string& type) const {
+  const auto is_used = [&](const std::string& name) {
+    return name == contact_part ||
+           std::any_of(terms_.begin(), terms_.end(), [&](const Term& term) { return term.name == name; });
+  };
+  std::string name = type;
+  for (int number = 2; is_used(name); ++number) name = type + " " + std::to_string(number);
+  return name;
+}
+
+void LevelModel::bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before) {
+  std::vector<Stencils> stencils;
+  for (std::size_t t = 0; t < energies.size(); ++t) {
+    const NamedEnergy& e = energies[t];
+    const Term* old = before ? &before->terms_.at(t) : nullptr;
+    if (old && old->kind == e.energy && before->material_ == material_) {
+      terms_.push_back(*old);
+    } else {
+      Term term{unused_name(e.name), e.energy->role(), e.energy, nullptr, nullptr};
+      term.energy = bound("energy " + term.name, [&] { return e.energy->bind(*level_, material_); });
+      if (!term.energy)
+        throw std::runtime_error("energy " + term.name +
+                                 ": bind returned null; return an object, which may have no elements");
+      Stencils own = term.energy->stencils();
+      if (old && !same_entries(own, old->energy->stencils()))
+        throw std::runtime_error("energy " + term.name +
+                                 " changes its stencils with a parameter that a schedule changes; "
+                                 "stencils must stay the same");
+      if (old) term.slots = old->slots;
+      stencils.push_back(std::move(own));
+      terms_.push_back(std::move(term));
+    }
+    if (terms_.back().role == EnergyRole::limit) limits_.push_back(terms_.back().energy.get());
+  }
+  if (before) {
+    pattern_ = before->pattern_;
+    return;
+  }
+  pattern_ = BlockPattern::of(level_->vertex_count(), stencils);
+  for (std::size_t t = 0; t < terms_.size(); ++t)
+    if (stencils[t].rows() > 0 && terms_[t].role != EnergyRole::limit)
+      terms_[t].slots = std::make_shared<BlockSlots>(*pattern_, stencils[t]);
+}
+
+void LevelModel::bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts,
+                               const LevelModel* before) {
+  contact_kinds_ = contacts;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const BoundContact* old = before ? before->bound_.at(k).get() : nullptr;
+    const std::string name = "contact model " + std::to_string(k);
+    if (before && before->contact_kinds_[k] == contacts[k] && before->material_ == material_)
+      bound_.push_back(before->bound_[k]);
+    else
+      bound_.push_back(bound(name, [&] {
+        return old ? contacts[k]->rebind(*level_, material_, *old) : contacts[k]->bind(*level_, material_);
+      }));
+    if (before && (old == nullptr) != (bound_.back() == nullptr))
+      throw std::runtime_error(name +
+                               " has contacts under one load of the schedule and none under another; it "
+                               "must bind to an object under all, which may be far from the cloth");
+    if (bound_.back()) contacts_.push_back(bound_.back());
+  }
+}
+
+void LevelModel::add_up_linear_energies() {
+  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
+  for (const Term& term : terms_)
+    if (term.is_linear()) {
+      auto sum = std::find_if(linear_.begin(), linear_.end(),
+                              [&](const LinearSum& s) { return s.role == term.role; });
+      if (sum == linear_.end()) sum = linear_.insert(sum, {term.role, origin, 0});
+      sum->at_origin += term.energy->add_gradient(origin, sum->gradient);
+      if (!std::isfinite(sum->at_origin) || !sum->gradient.allFinite())
+        throw std::runtime_error(
+            "energy " + term.name +
+            ": its forces are too large to be computed with; are its parameters and the density in SI units? "
+            "(An energy without elements is linear, and must be finite where all vertices are at the "
+            "origin.)");
+      require_constant_forces(term.name, *term.energy);
+    }
+}
+
+/// An energy without elements counts as linear: its forces are evaluated once.
+void LevelModel::require_constant_forces(const std::string& name, const BoundEnergy& energy) const {
+  const Positions origin = Positions::Zero(level_->vertex_count(), 3);
+  Positions at_origin = origin, elsewhere = origin;
+  energy.add_gradient(origin, at_origin);
+  const Positions x = (1.1 * level_->rest.vertices).rowwise() + Eigen::RowVector3d(0.1, 0.2, 0.3);
+  energy.add_gradient(x, elsewhere);
+  const double scale = at_origin.cwiseAbs().maxCoeff();
+  if (!((elsewhere - at_origin).cwiseAbs().maxCoeff() <= 1e-9 * scale))
+    throw std::runtime_error("energy " + name +
+                             " has no elements, so it counts as linear, but its forces depend on the "
+                             "positions; return its elements from stencils()");
+}
+
+double LevelModel::linear_value(const Positions& x, Positions* g, Roles roles) const {
+  double value = 0;
+  bool first = true;
+  for (const LinearSum& sum : linear_) {
+    if (!roles.has(sum.role)) continue;
+    const auto add = [&](int begin, int end) {
+      const auto of = sum.gradient.middleRows(begin, end - begin);
+      if (g && first)
+        g->middleRows(begin, end - begin) = of;
+      else if (g)
+        g->middleRows(begin, end - begin) += of;
+      return of.cwiseProduct(x.middleRows(begin, end - begin)).sum();
+    };
+    value += sum.at_origin + parallel_sum(static_cast<int>(x.rows()), rows_at_once, add);
+    first = false;
+  }
+  if (g && first) g->setZero();
+  return value;
+}
+
+double LevelModel::value(const Positions& x, Roles roles) const {
+  double sum = linear_value(x, nullptr, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->value(x);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+double LevelModel::gradient(const Positions& x, Positions& g, Roles roles) const {
+  g.resize(x.rows(), 3);
+  double sum = linear_value(x, &g, roles);
+  for (const Term& term : terms_) {
+    if (!term.slots || !roles.has(term.role)) continue;
+    sum += term.energy->add_gradient(x, g);
+    if (!std::isfinite(sum)) return sum;
+  }
+  return sum;
+}
+
+void LevelModel::hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles) const {
+  matrix.set_zero();
+  add_hessian(x, projection, matrix, roles, 1);
+}
+
+void LevelModel::add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                             double factor) const {
+  for (const Term& term : terms_)
+    if (term.slots && roles.has(term.role)) {
+      BlockSink sink = term.slots->sink(matrix, factor);
+      term.energy->add_hessian(x, projection, sink);
+    }
+}
+
+std::optional<double> LevelModel::midpoint_factor(EnergyRole role) const {
+  std::optional<double> common = 1;
+  bool first = true;
+  for (const Term& term : terms_) {
+    if (term.role != role) continue;
+    const std::optional<double> own = term.kind->midpoint_factor();
+    if (!own || (!first && own != common)) return std::nullopt;
+    common = own;
+    first = false;
+  }
+  return common;
+}
+
+double LevelModel::barrier(const Positions& x) const {
+  double sum = 0;
+  for (const auto& contact : contacts_) sum += contact->build_candidates(x, x)->build_collisions(x)->value(x);
+  return sum;
+}
+
+double LevelModel::energy_without_contact(const Positions& x) const {
+  double sum = value(x);
+  for (const BoundEnergy* limit : limits_) sum += limit->value(x);
+  return sum;
+}
+
+double LevelModel::energy(const Positions& x) const { return energy_without_contact(x) + barrier(x); }
+
+std::vector<std::pair<std::string, double>> LevelModel::energy_parts(const Positions& x) const {
+  std::vector<std::pair<std::string, double>> parts;
+  for (const Term& term : terms_) parts.emplace_back(term.name, term.energy->value(x));
+  if (!contacts_.empty()) parts.emplace_back(contact_part, barrier(x));
+  return parts;
+}
+
+double LevelModel::load_norm(const Positions& x) const {
+  return load_is_constant_ ? constant_load_norm_ : external_force_norm(x);
+}
+
+double LevelModel::external_force_norm(const Positions& x) const {
+  double sum = 0;
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::external) {
+      Positions g = Positions::Zero(x.rows(), 3);
+      term.energy->add_gradient(x, g);
+      sum += free_norm(g, fixed_);
+    }
+  return sum;
+}
+
+namespace {
+
+/// Without a load the residual scale is at least this fraction of the cloth's weight under gravity.
+constexpr double min_weight_fraction = 1e-3;
+
+}  // namespace
+
+double LevelModel::residual_scale(const Positions& x, const Positions& gradient) const {
+  if (const double load = load_norm(x); load > 0) return load;
+  double weight = 0;
+  for (int i = 0; i < masses_.size(); ++i)
+    if (!fixed_[i]) weight += masses_[i] * masses_[i];
+  return std::max({norm_where(gradient, fixed_, 1),
+                   min_weight_fraction * standard_gravity * std::sqrt(weight),
+                   std::numeric_limits<double>::min()});
+}
+
+double LevelModel::force_residual(const Positions& x) const {
+  Positions g;
+  energy_gradient(x, g);
+  return free_norm(g, fixed_) / residual_scale(x, g);
+}
+
+}  // namespace drape

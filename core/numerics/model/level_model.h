@@ -1,0 +1,154 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/kernel/interfaces/contact_model.h"
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/interfaces/level.h"
+#include "core/kernel/interfaces/material.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+
+namespace drape {
+
+/// An energy and its type, as the experiment names it.
+struct NamedEnergy {
+  std::string name;
+  std::shared_ptr<const Energy> energy;
+};
+
+/// A vertex with a prescribed position.
+struct DirichletVertex {
+  int vertex = 0;
+  Eigen::Vector3d target = Eigen::Vector3d::Zero();  ///< [m]
+  int pin = 0;                                       ///< index of its pin in the experiment
+};
+
+/// The plain model of one level at one point of the pseudo-time: the sum E_l of its energies, its contacts,
+/// its lumped masses and its Dirichlet vertices (docs/theory/method.md, section 1). Immutable: load stepping
+/// makes another one. Refers to `level`, which must outlive it.
+class LevelModel {
+ public:
+  /// `dirichlet` must not list a vertex twice. Shares with `before`, a model of the same level at another
+  /// pseudo-time, all that is equal. Throws std::runtime_error if an energy's stencils differ from those in
+  /// `before`: the sparsity pattern must not change over time.
+  LevelModel(const Level& level, const Material& material, const std::vector<NamedEnergy>& energies,
+             std::vector<DirichletVertex> dirichlet,
+             const std::vector<std::shared_ptr<ContactModel>>& contacts = {},
+             const LevelModel* before = nullptr);
+
+  const Level& level() const { return *level_; }
+  const Material& material() const { return material_; }
+  const std::vector<DirichletVertex>& dirichlet() const { return dirichlet_; }
+  /// Moves the Dirichlet vertices of x (n×3) [m] to their targets.
+  void set_dirichlet(Positions& x) const {
+    for (const DirichletVertex& d : dirichlet_) x.row(d.vertex) = d.target.transpose();
+  }
+  /// One flag a vertex: 1 where it has a Dirichlet condition.
+  const std::vector<char>& fixed() const { return fixed_; }
+  const Eigen::VectorXd& masses() const { return masses_; }  ///< n, M_l [kg]
+
+  /// Ψ_l and the external energies, or those of the given roles; never the limits [J].
+  double value(const Positions& x, Roles roles = Roles::all()) const;
+  /// Overwrites g (n×3) with its gradient [N], fixed vertices included, and returns the value.
+  double gradient(const Positions& x, Positions& g, Roles roles = Roles::all()) const;
+  /// Overwrites `matrix`, which must be over pattern(), with its projected Hessian [N/m].
+  void hessian(const Positions& x, Projection projection, BlockMatrix& matrix,
+               Roles roles = Roles::all()) const;
+  /// Adds `factor` times that to the matrix.
+  void add_hessian(const Positions& x, Projection projection, BlockMatrix& matrix, Roles roles,
+                   double factor) const;
+  /// The common Energy::midpoint_factor of all energies of a role, 1 for a role without energies. None if the
+  /// factors differ or one is missing.
+  std::optional<double> midpoint_factor(EnergyRole role) const;
+  const std::shared_ptr<const BlockPattern>& pattern() const { return pattern_; }
+
+  /// This model with at least this barrier stiffness [Pa], empty or of each contact.
+  LevelModel with_stiffness(const ContactStiffness& stiffness) const;
+  /// Root mean square of the external forces per area over the free vertices at x [Pa].
+  double load_pressure(const Positions& x) const;
+
+  /// The model with membranes that buckle below the mesh (Energy::bind_buckling), for a level `levels_below`
+  /// ≥ 1 below the finest. Its contacts and other energies are shared with this model.
+  LevelModel with_buckling_membranes(int levels_below) const;
+
+  /// The energies of role `limit`, S_l.
+  const std::vector<const BoundEnergy*>& limits() const { return limits_; }
+  /// Empty without contact.
+  const BoundContacts& contacts() const { return contacts_; }
+
+  /// E_l with its limits and without contact [J].
+  double energy_without_contact(const Positions& x) const;
+  /// All of E_l: energies, limits and the contacts' barrier, without friction [J].
+  double energy(const Positions& x) const;
+  /// Overwrites g (n×3) with the gradient of energy(x) [N], fixed vertices included, and returns energy(x).
+  double energy_gradient(const Positions& x, Positions& g) const;
+  /// The Hessian of energy(x) [N/m], projected per element. Its pattern has the contacts at x, so every call
+  /// builds it anew: solvers take an Objective.
+  BlockMatrix energy_hessian(const Positions& x, Projection projection) const;
+  /// The parts of energy(x): each term in the order given, and the contacts, `contact`, if there are any [J].
+  /// No two have one name: the second energy of a type is `gravity 2`.
+  std::vector<std::pair<std::string, double>> energy_parts(const Positions& x) const;
+  /// Sum over the external energies of the norm of their forces on free vertices at x [N]. Loads that balance
+  /// each other still set the scale of the residual.
+  double load_norm(const Positions& x) const;
+  /// ‖∇E_l(x)‖ over the load, on free vertices [1], without friction (docs/theory/method.md, section 2); see
+  /// residual_scale.
+  double force_residual(const Positions& x) const;
+
+  /// Scale of the force residual [N]: the external load; without a load the reaction forces at fixed
+  /// vertices, but at least a thousandth of the cloth's weight.
+  double residual_scale(const Positions& x, const Positions& gradient) const;
+
+ private:
+  struct Term {
+    std::string name;
+    EnergyRole role;
+    std::shared_ptr<const Energy> kind;  // the energy that was bound
+    std::shared_ptr<const BoundEnergy> energy;
+    std::shared_ptr<const BlockSlots> slots;  // null for linear energies and limits
+
+    bool is_linear() const { return role != EnergyRole::limit && !slots; }
+  };
+  /// Sum of the linear energies of one role, so that one pass evaluates all of them.
+  struct LinearSum {
+    EnergyRole role;
+    Positions gradient;
+    double at_origin = 0;  // value at x = 0
+  };
+
+  std::string unused_name(const std::string& type) const;  // by terms_ and the contacts' part
+  void bind_energies(const std::vector<NamedEnergy>& energies, const LevelModel* before);
+  void bind_contacts(const std::vector<std::shared_ptr<ContactModel>>& contacts, const LevelModel* before);
+  void adapt_stiffness_to_load();
+  double external_force_norm(const Positions& x) const;
+  double barrier(const Positions& x) const;  // of the contacts [J]
+  void add_up_linear_energies();
+  void require_constant_forces(const std::string& name, const BoundEnergy& energy) const;
+  /// The value of the linear energies of these roles [J]. Overwrites g, unless it is null, with their
+  /// gradient.
+  double linear_value(const Positions& x, Positions* g, Roles roles) const;
+
+  const Level* level_;
+  Material material_;
+  std::vector<DirichletVertex> dirichlet_;
+  std::vector<char> fixed_;
+  Eigen::VectorXd masses_;
+  std::vector<Term> terms_;
+  std::vector<const BoundEnergy*> limits_;
+  std::vector<std::shared_ptr<ContactModel>> contact_kinds_;  // those that contacts_ come from
+  std::vector<std::shared_ptr<const BoundContact>> bound_;    // one for each kind; may be null
+  BoundContacts contacts_;                                    // the non-null ones
+  std::shared_ptr<const BlockPattern> pattern_;
+  std::vector<LinearSum> linear_;
+  bool load_is_constant_ = true;   // whether every external energy is linear
+  double constant_load_norm_ = 0;  // if so, the norm of their forces [N]
+};
+
+/// Norm of the rows of g whose vertex is free (fixed[i] == 0).
+double free_norm(const Positions& g, const std::vector<char>& fixed);
+
+}  // namespace drape

@@ -1,0 +1,42 @@
+// Membranes of coarse levels, below whose mesh the cloth buckles.
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/numerics/linear_algebra/same_entries.h"
+#include "core/numerics/model/level_model.h"
+
+namespace drape {
+
+namespace {
+
+/// Largest compressive stress of a coarse triangle, times its volume [J]. A wave between two vertices that
+/// leaves them and the surface's slopes there where they are is Euler's column with clamped ends: it buckles
+/// at σ d = 4 π² D / h², h = √(2 area). The finest level, with edges of h 2^-k, has longer waves itself, and
+/// so a triangle's area cancels in σ d area = 4 π² D area / (h² - h² 4^-k).
+double buckling_bound(double plate_stiffness, int levels_below) {
+  using std::numbers::pi;
+  return 2 * pi * pi * plate_stiffness / (1 - std::pow(4.0, -levels_below));
+}
+
+}  // namespace
+
+LevelModel LevelModel::with_buckling_membranes(int levels_below) const {
+  double stiffness = 0;
+  for (const Term& term : terms_)
+    if (term.role == EnergyRole::bending) stiffness += term.kind->plate_stiffness(material_);
+  const double s = buckling_bound(stiffness, levels_below);
+  LevelModel model = *this;
+  for (Term& term : model.terms_) {
+    if (term.role != EnergyRole::membrane) continue;
+    const Stencils plain = term.energy->stencils();
+    term.energy = term.kind->bind_buckling(*level_, material_, s);
+    if (!term.energy || !same_entries(term.energy->stencils(), plain))
+      throw std::runtime_error("energy " + term.name +
+                               ": bind_buckling must return an energy with the stencils of bind");
+  }
+  return model;
+}
+
+}  // namespace drape

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/kernel/interfaces/prolongation_matrix.h"
+#include "core/numerics/linear_algebra/block_cholesky.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/linear_algebra/conjugate_gradients.h"
+#include "core/numerics/multigrid/multigrid_mesh.h"
+
+namespace drape {
+
+/// Conjugate gradients on a block matrix plus a diagonal, without the rows and columns of fixed vertices,
+/// preconditioned by one V-cycle of multigrid over the meshes of a hierarchy.
+///
+/// Coarse matrices are Galerkin products Pᵀ A P, so contacts are in them too; the coarsest is factorised.
+/// Cycles are in single precision. Costs grow in proportion to the vertices, while those of a factorisation
+/// grow with their power of 1.5. Gives the same bits with any number of threads.
+class Multigrid {
+ public:
+  /// `prolongations` lead from the coarsest mesh to the matrix's own, at least one. Need not outlive the
+  /// object.
+  explicit Multigrid(std::span<const ProlongationMatrix> prolongations);
+
+  /// Forms the coarse matrices of A + diag(shift_i I₃); `fixed` has one flag a vertex. Refers to the matrix
+  /// until the next call. Returns false if a block of a vertex or the coarsest matrix is not positive
+  /// definite.
+  bool set(const BlockMatrix& matrix, const Eigen::VectorXd& shift, const std::vector<char>& fixed);
+  /// Whether the last call of set() has returned true.
+  bool is_set() const { return is_set_; }
+
+  /// Solves to a relative residual of 0.1, with which Newton takes about as many iterations as with exact
+  /// directions. Gives up, as not converged, where the cycles would take longer than a factorisation. n×3
+  /// right-hand side and solution, whose fixed rows are zero.
+  ConjugateGradients::End solve(const Positions& right_hand_side, Positions& solution);
+
+  /// Floating-point operations since the last call.
+  double take_flops();
+
+ private:
+  void cycle(int mesh);
+
+  std::vector<std::unique_ptr<MultigridMesh>> meshes_;  // finest first
+  BlockMatrix coarsest_matrix_;
+  BlockCholesky coarsest_;
+  Positions right_, solution_;  // of the coarsest
+  const BlockMatrix* matrix_ = nullptr;
+  Eigen::VectorXd shift_;
+  std::vector<char> fixed_;
+  ConjugateGradients gradients_;
+  bool is_set_ = false;
+  double flops_ = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,228 @@
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_mesh_face_base_2.h>
+#include <CGAL/Delaunay_mesh_size_criteria_2.h>
+#include <CGAL/Delaunay_mesher_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_2_algorithms.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "core/numerics/patterns/delaunay.h"
+
+namespace drape {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point2 = Kernel::Point_2;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
+using Structure = CGAL::Triangulation_data_structure_2<VertexBase, CGAL::Delaunay_mesh_face_base_2<Kernel>>;
+using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure>;
+using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Triangulation>;
+using Ring = std::vector<Point2>;
+
+std::string loop_name(std::size_t i) {
+  return "polygon: loop " + std::to_string(i) + (i == 0 ? " (the outer border)" : " (a hole)");
+}
+
+Kernel::Segment_2 side(const Ring& ring, std::size_t i) { return {ring[i], ring[(i + 1) % ring.size()]}; }
+
+bool cross(const Ring& a, const Ring& b) {
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = 0; j < b.size(); ++j)
+      if (CGAL::do_intersect(side(a, i), side(b, j))) return true;
+  return false;
+}
+
+bool is_simple(const Ring& ring) { return CGAL::is_simple_2(ring.begin(), ring.end(), Kernel()); }
+
+double area(const Ring& ring) { return std::abs(CGAL::polygon_area_2(ring.begin(), ring.end(), Kernel())); }
+
+bool contains(const Ring& ring, const Point2& p) {
+  return CGAL::bounded_side_2(ring.begin(), ring.end(), p, Kernel()) == CGAL::ON_BOUNDED_SIDE;
+}
+
+/// Validates the loops: simple polygons, holes inside the first and outside one another.
+std::vector<Ring> checked_rings(const std::vector<Polygon>& loops) {
+  if (loops.empty()) throw std::runtime_error("polygon: there is no loop");
+  std::vector<Ring> rings;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const auto refuse = [&](const std::string& why) { throw std::runtime_error(loop_name(i) + ' ' + why); };
+    if (loops[i].size() < 3) refuse("has fewer than three points");
+    Ring ring;
+    for (const Eigen::Vector2d& p : loops[i]) {
+      if (!p.allFinite()) refuse("has a coordinate that is not finite");
+      ring.emplace_back(p.x(), p.y());
+    }
+    if (!is_simple(ring) || area(ring) == 0) refuse("crosses or touches itself");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (cross(ring, rings[j])) refuse("crosses or touches loop " + std::to_string(j));
+      if (j == 0 && !contains(rings[0], ring[0])) refuse("lies outside loop 0");
+      if (j > 0 && (contains(rings[j], ring[0]) || contains(ring, rings[j][0])))
+        refuse("and loop " + std::to_string(j) + " lie one inside the other");
+    }
+    rings.push_back(std::move(ring));
+  }
+  return rings;
+}
+
+/// Whether p lies in the region to be meshed; not for points on a loop.
+bool encloses(const std::vector<Ring>& rings, const Point2& p) {
+  return contains(rings[0], p) &&
+         std::none_of(rings.begin() + 1, rings.end(), [&](const Ring& hole) { return contains(hole, p); });
+}
+
+/// The loops as constraints, every side divided evenly into segments of about `spacing`.
+void insert_loops(const std::vector<Polygon>& loops, double spacing, Triangulation& triangulation) {
+  for (const Polygon& loop : loops) {
+    std::vector<Point2> points;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Eigen::Vector2d& a = loop[i];
+      const Eigen::Vector2d along = loop[(i + 1) % loop.size()] - a;
+      const auto pieces = std::max(1L, std::lround(along.norm() / spacing));
+      for (long k = 0; k < pieces; ++k) {
+        const Eigen::Vector2d p = a + along * (static_cast<double>(k) / static_cast<double>(pieces));
+        points.emplace_back(p.x(), p.y());
+      }
+    }
+    triangulation.insert_constraint(points.begin(), points.end(), true);
+  }
+}
+
+/// Inserts one random point at least `spacing` from the boundary, if there is one.
+void insert_first_inner(const std::vector<Ring>& rings, double spacing, unsigned seed,
+                        Triangulation& triangulation) {
+  Random random(seed);
+  const auto box = CGAL::bbox_2(rings[0].begin(), rings[0].end());
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const double u = random.unit(), v = random.unit();
+    const Point2 p(box.xmin() + u * (box.xmax() - box.xmin()), box.ymin() + v * (box.ymax() - box.ymin()));
+    const bool far = std::all_of(rings.begin(), rings.end(), [&](const Ring& ring) {
+      for (std::size_t i = 0; i < ring.size(); ++i)
+        if (CGAL::squared_distance(p, side(ring, i)) <= spacing * spacing) return false;
+      return true;
+    });
+    if (!far || !encloses(rings, p)) continue;
+    triangulation.insert(p);
+    return;
+  }
+}
+
+/// A point well inside a ring whose sides are constraints: the centroid of the largest triangle in it.
+Point2 point_inside(const Ring& ring, const Triangulation& triangulation) {
+  Point2 inside;
+  double largest = 0;
+  for (auto f : triangulation.finite_face_handles()) {
+    const auto triangle = triangulation.triangle(f);
+    const Point2 c = CGAL::centroid(triangle);
+    const double area = std::abs(triangle.area());
+    if (area <= largest || !contains(ring, c)) continue;
+    inside = c;
+    largest = area;
+  }
+  return inside;
+}
+
+/// Rotated so that the smallest index comes first, and sorted: independent of CGAL's order.
+Triangles in_order(std::vector<std::array<int, 3>> triangles) {
+  for (auto& t : triangles) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
+  std::sort(triangles.begin(), triangles.end());
+  return Eigen::Map<const Triangles>(triangles.data()->data(), static_cast<Eigen::Index>(triangles.size()),
+                                     3);
+}
+
+TriangleMesh inside(Triangulation& triangulation) {
+  std::vector<double> coordinates;
+  std::vector<std::array<int, 3>> triangles;
+  for (auto v : triangulation.finite_vertex_handles()) {
+    v->info() = static_cast<int>(coordinates.size() / 3);
+    coordinates.insert(coordinates.end(), {v->point().x(), v->point().y(), 0.0});
+  }
+  for (auto f : triangulation.finite_face_handles())
+    if (f->is_in_domain())
+      triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+  return {
+      Eigen::Map<const Positions>(coordinates.data(), static_cast<Eigen::Index>(coordinates.size() / 3), 3),
+      in_order(std::move(triangles))};
+}
+
+/// Empty if the corners and angles require more than so many vertices.
+std::optional<TriangleMesh> refined(const std::vector<Polygon>& loops, const std::vector<Ring>& rings,
+                                    double spacing, double longest_edge, unsigned seed, double most) {
+  Triangulation triangulation;
+  insert_loops(loops, spacing, triangulation);
+  insert_first_inner(rings, spacing, seed, triangulation);
+  std::vector<Point2> hole_points;  // CGAL finds what is outside the outer border itself
+  for (auto ring = rings.begin() + 1; ring != rings.end(); ++ring)
+    hole_points.push_back(point_inside(*ring, triangulation));
+  // sin² of the smallest angle, 20.7°: refinement terminates for certain.
+  constexpr double shape_bound = 0.125;
+  CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(triangulation, Criteria(shape_bound, longest_edge));
+  mesher.set_seeds(hole_points.begin(), hole_points.end(), false);
+  mesher.init();
+  // A step adds a vertex or prepares one. If round-off makes it add an existing one, it never terminates.
+  constexpr double steps_each = 20;
+  double steps = 0;
+  while (mesher.try_one_step_refine_mesh())
+    if (++steps > steps_each * most || static_cast<double>(triangulation.number_of_vertices()) > most)
+      return std::nullopt;
+  return inside(triangulation);
+}
+
+}  // namespace
+
+double even_spacing(double area, double border_length, int vertices) {
+  // 2 n h² − border h − 4 area/√3 = 0
+  const double root = std::sqrt(border_length * border_length + 32 * vertices * area / std::numbers::sqrt3);
+  return (border_length + root) / (4 * vertices);
+}
+
+Triangles delaunay_triangulation(const std::vector<Eigen::Vector2d>& points) {
+  Triangulation triangulation;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    triangulation.insert(Point2(points[i].x(), points[i].y()))->info() = static_cast<int>(i);
+  std::vector<std::array<int, 3>> triangles;
+  for (auto f : triangulation.finite_face_handles())
+    triangles.push_back({f->vertex(0)->info(), f->vertex(1)->info(), f->vertex(2)->info()});
+  return in_order(std::move(triangles));
+}
+
+TriangleMesh delaunay_polygon(const std::vector<Polygon>& loops, int vertices_about, unsigned seed) {
+  const std::vector<Ring> rings = checked_rings(loops);
+  if (vertices_about < 3) throw std::runtime_error("polygon: at least three vertices are needed");
+  double inner_area = 0, border = 0;
+  for (const Ring& ring : rings) {
+    inner_area += &ring == &rings[0] ? area(ring) : -area(ring);
+    for (std::size_t i = 0; i < ring.size(); ++i) border += std::sqrt(side(ring, i).squared_length());
+  }
+
+  const auto refuse = [&](const std::string& nearest) {
+    throw std::runtime_error("polygon: about " + std::to_string(vertices_about) +
+                             " vertices are not possible; the nearest number is " + nearest +
+                             " (corners and angles ask for that many)");
+  };
+  const double most = 1e4 + 20.0 * vertices_about;  // well above the overshoot of a first attempt
+  const double spacing = even_spacing(inner_area, border, vertices_about);
+  double longest_edge = 1.4 * spacing;
+  TriangleMesh best;
+  const auto miss = [&](const TriangleMesh& mesh) {
+    return std::abs(static_cast<double>(mesh.vertices.rows()) / vertices_about - 1);
+  };
+  for (int attempt = 0; attempt < 12; ++attempt) {
+    std::optional<TriangleMesh> mesh = refined(loops, rings, spacing, longest_edge, seed, most);
+    if (!mesh) refuse("above " + std::to_string(std::llround(most)));
+    longest_edge *= std::sqrt(static_cast<double>(mesh->vertices.rows()) / vertices_about);
+    if (attempt == 0 || miss(*mesh) < miss(best)) best = std::move(*mesh);
+    if (miss(best) < 0.02) break;
+  }
+  if (miss(best) > 0.15) refuse(std::to_string(best.vertices.rows()));
+  return best;
+}
+
+}  // namespace drape

@@ -1,0 +1,164 @@
+#include "core/numerics/solve/dirichlet_enforcer.h"
+
+#include <cmath>
+#include <map>
+
+#include "core/kernel/files/message_text.h"
+
+namespace drape {
+
+namespace {
+
+/// A doubling helps only if it leaves less than this fraction of the distance …
+constexpr double max_remaining = 0.95;
+/// … and gains more than this fraction of the patch's width. Against contact or a strain limit every doubling
+/// gains a little, and the target is never reached.
+constexpr double min_gain = 1e-4;
+/// Idle doublings after which targets count as infeasible, once the penalty exceeds what the cloth can hold …
+constexpr int max_idle_doublings = 4;
+/// … by this factor over the membrane's stiffness.
+constexpr double excess_stiffness = 10;
+/// Smallest initial penalty, as a fraction of the membrane's stiffness: on fine meshes vertices have little
+/// mass.
+constexpr double min_initial_stiffness = 0.1;
+
+/// A move by less than this fraction of the way gains nothing …
+constexpr double min_move = 5e-3;
+/// … and after so many of them in a row the penalty takes over.
+constexpr int max_idle_moves = 4;
+
+}  // namespace
+
+void DirichletEnforcer::begin(const Positions& x) {
+  fixed_ = model_->fixed();
+  unsatisfied_.clear();
+  penalty_.reset();
+  infeasible_ = false;
+  idle_ = 0;
+  const auto& vertices = model_->dirichlet();
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    if (x.row(vertices[k].vertex) != vertices[k].target.transpose())
+      unsatisfied_.push_back(static_cast<int>(k));
+}
+
+Positions DirichletEnforcer::displacement_to_targets(const Positions& x) const {
+  Positions displacement = Positions::Zero(x.rows(), 3);
+  for (int k : unsatisfied_) {
+    const DirichletVertex& d = model_->dirichlet()[k];
+    displacement.row(d.vertex) = d.target.transpose() - x.row(d.vertex);
+  }
+  return displacement;
+}
+
+void DirichletEnforcer::set_satisfied() {
+  fixed_ = model_->fixed();
+  blocked_by_.clear();
+  unsatisfied_.clear();
+  penalty_.reset();
+}
+
+bool DirichletEnforcer::note_move(double fraction) {
+  idle_ = fraction < min_move ? idle_ + 1 : 0;
+  return idle_ < max_idle_moves;
+}
+
+void DirichletEnforcer::begin_penalty(const std::string& blocked_by) {
+  blocked_by_ = blocked_by;
+  // The number of the modulus, as in the supplement, but not below what the membrane would notice
+  // (departure).
+  stiffness_ = std::max(model_->material().membrane_modulus,
+                        min_initial_stiffness * membrane_stiffness() / smallest_mass());
+  best_ = INFINITY;
+  idle_ = 0;
+  release();
+}
+
+double DirichletEnforcer::membrane_stiffness() const {
+  return model_->material().membrane_modulus * model_->material().thickness;
+}
+
+double DirichletEnforcer::smallest_mass() const {
+  double least = INFINITY;
+  for (int k : unsatisfied_) least = std::min(least, model_->masses()[model_->dirichlet()[k].vertex]);
+  return least;
+}
+
+double DirichletEnforcer::patch_width() const {
+  return std::sqrt(smallest_mass() / (model_->material().density * model_->material().thickness));
+}
+
+void DirichletEnforcer::restore(const State& s) {
+  fixed_ = model_->fixed();
+  unsatisfied_ = s.unsatisfied;
+  for (const int k : unsatisfied_)
+    if (static_cast<std::size_t>(k) >= model_->dirichlet().size())
+      throw std::runtime_error("the checkpoint has a pinned vertex that its load does not have");
+  stiffness_ = s.stiffness;
+  best_ = s.best;
+  idle_ = s.idle;
+  infeasible_ = s.infeasible;
+  blocked_by_ = s.blocked_by;
+  if (s.released) release();
+}
+
+void DirichletEnforcer::release() {
+  for (int k : unsatisfied_) fixed_[model_->dirichlet()[k].vertex] = 0;
+  make_penalty();
+}
+
+void DirichletEnforcer::make_penalty() {
+  std::vector<PositionPenalty::Term> terms;
+  for (int k : unsatisfied_) {
+    const DirichletVertex& d = model_->dirichlet()[k];
+    terms.push_back({d.vertex, d.target, stiffness_ * model_->masses()[d.vertex]});
+  }
+  penalty_ = std::make_unique<PositionPenalty>(std::move(terms));
+}
+
+bool DirichletEnforcer::increase_penalty(const Positions& x, const std::string& blocked_by) {
+  blocked_by_ = blocked_by;
+  const double distance = max_violation(x);
+  if (distance <= max_remaining * best_ && best_ - distance > min_gain * patch_width()) {
+    best_ = distance;
+    idle_ = 0;
+  } else {
+    ++idle_;
+  }
+  if (idle_ >= max_idle_doublings && stiffness_ * smallest_mass() > excess_stiffness * membrane_stiffness()) {
+    infeasible_ = true;
+    fixed_ = model_->fixed();
+    penalty_.reset();
+    return false;
+  }
+  stiffness_ *= 2;
+  make_penalty();
+  return true;
+}
+
+double DirichletEnforcer::violation(const Positions& x, int unsatisfied) const {
+  const DirichletVertex& d = model_->dirichlet()[unsatisfied];
+  return (x.row(d.vertex) - d.target.transpose()).norm();
+}
+
+double DirichletEnforcer::max_violation(const Positions& x) const {
+  double most = 0;
+  for (int k : unsatisfied_) most = std::max(most, violation(x, k));
+  return most;
+}
+
+std::string DirichletEnforcer::message(const Positions& x) const {
+  std::map<int, int> worst_of_pin;
+  for (int k : unsatisfied_) {
+    const auto [it, first] = worst_of_pin.try_emplace(model_->dirichlet()[k].pin, k);
+    if (!first && violation(x, k) > violation(x, it->second)) it->second = k;
+  }
+  std::string text;
+  for (const auto& [pin, k] : worst_of_pin) {
+    text += (text.empty() ? "" : ", ") + ("pin " + std::to_string(pin)) + " stopped " +
+            three_digits(violation(x, k)) + " m short of its target (vertex " +
+            std::to_string(model_->dirichlet()[k].vertex) + ")";
+  }
+  return text + (blocked_by_.empty() ? "" : ", blocked by " + blocked_by_);
+}
+
+}  // namespace drape

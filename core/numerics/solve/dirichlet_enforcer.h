@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/numerics/model/level_model.h"
+#include "core/numerics/model/position_penalty.h"
+
+namespace drape {
+
+/// Moves the Dirichlet vertices of a level to their targets (supplement, section 4).
+///
+/// Vertices that a filtered move does not bring to their targets are, under a schedule, held where they are
+/// and moved again after further steps. Where moves gain nothing, or without a schedule, they are released,
+/// and a penalty κ_B/2 m_k ‖x_k − x̃_k‖² pulls them. κ_B doubles while that reduces the distance. Once all
+/// targets are reached the vertices are fixed and the penalty is dropped.
+class DirichletEnforcer {
+ public:
+  /// Refers to `model` until set_model replaces it.
+  explicit DirichletEnforcer(const LevelModel& model) : model_(&model) { fixed_ = model.fixed(); }
+  /// Replaces the model by that of the same level under another load. Call begin() next, which finds the
+  /// targets that x has not reached.
+  void set_model(const LevelModel& model) { model_ = &model; }
+
+  /// Everything that does not follow from the model; units as of the members of the same names.
+  struct State {
+    std::vector<int> unsatisfied;
+    double stiffness = 0, best = 0;
+    int idle = 0;  ///< doublings of the penalty, or without one moves, since one last helped
+    bool infeasible = false, released = false;
+    std::string blocked_by;
+  };
+  State state() const {
+    return {unsatisfied_, stiffness_, best_, idle_, infeasible_, penalty_ != nullptr, blocked_by_};
+  }
+  void restore(const State& state);
+
+  /// Starts over at x: the model has new targets, or a new level begins.
+  void begin(const Positions& x);
+  /// n×3 [m]: from x to the targets for vertices that are not there, zero elsewhere.
+  Positions displacement_to_targets(const Positions& x) const;
+  bool active() const { return !unsatisfied_.empty() && !infeasible_; }
+  /// Whether some targets were found to be out of reach. Their vertices stay fixed where they are.
+  bool infeasible() const { return infeasible_; }
+
+  /// Whether vertices are held on the way to their targets.
+  bool is_moving() const { return active() && !penalty_; }
+  /// Records a move by this fraction of the way that remained. Returns false once moves have long gained
+  /// nothing.
+  bool note_move(double fraction);
+
+  /// Records that x has been set to all targets: fixes all Dirichlet vertices and drops the penalty.
+  void set_satisfied();
+  /// Releases the unsatisfied vertices and adds the penalty; `blocked_by` names what stopped the filtered
+  /// move, and may be empty.
+  void begin_penalty(const std::string& blocked_by);
+  /// Doubles the penalty. Once doublings have long stopped reducing the distance, fixes the vertices where
+  /// they are instead and returns false: the targets are infeasible.
+  bool increase_penalty(const Positions& x, const std::string& blocked_by);
+
+  /// One flag a vertex: 1 where it is fixed now.
+  const std::vector<char>& fixed() const { return fixed_; }
+  /// The penalty; null where there is none.
+  const BoundEnergy* penalty() const { return penalty_.get(); }
+  /// Largest distance of a Dirichlet vertex from its target [m].
+  double max_violation(const Positions& x) const;
+  /// "pin 0 stopped 0.012 m short of its target (vertex 7), blocked by …": each pin's farthest vertex.
+  std::string message(const Positions& x) const;
+
+ private:
+  void release();
+  double violation(const Positions& x, int unsatisfied) const;
+  void make_penalty();
+  double membrane_stiffness() const;  // [N/m]
+  double smallest_mass() const;       // of the unsatisfied vertices [kg]
+  double patch_width() const;         // of the cloth that one such vertex stands for [m]
+
+  const LevelModel* model_;
+  std::vector<char> fixed_;
+  std::vector<int> unsatisfied_;  // indices into model_->dirichlet()
+  std::unique_ptr<PositionPenalty> penalty_;
+  double stiffness_ = 0;  // κ_B [1/s²]
+  double best_ = 0;       // violation when a doubling last helped [m]
+  int idle_ = 0;          // doublings, or without a penalty moves, since one last helped
+  bool infeasible_ = false;
+  std::string blocked_by_;
+};
+
+}  // namespace drape

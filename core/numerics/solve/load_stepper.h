@@ -1,0 +1,84 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/kernel/threads/stopwatch.h"
+#include "core/numerics/solve/dirichlet_enforcer.h"
+#include "core/numerics/step/iterate.h"
+
+namespace drape {
+
+/// When the current increment began.
+struct IncrementStart {
+  int steps = 0, iterations = 0;  ///< of the level
+  double seconds = 0;             ///< of the method
+};
+
+/// Motion of the cloth in answer to a partly applied increment; the predictor extrapolates it.
+struct IncrementResponse {
+  Positions from;       ///< the equilibrium before (n×3) [m]
+  Positions predicted;  ///< where the predictor moved it (n×3) [m]
+  double fraction = 0;  ///< applied of what remained of the increment; 0 without a response
+};
+
+/// Applies the increments of load stepping to a level that is being solved. An increment that the cloth does
+/// not allow at once is applied in parts, with the cloth's response extrapolated (docs/guide/schedules.md).
+class LoadStepper {
+ public:
+  struct State {
+    IncrementStart start;  ///< of the current increment
+    IncrementResponse response;
+    /// Consecutive attempts at the current increment that applied almost nothing.
+    int blocked_increments = 0;
+  };
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
+
+  /// Refers to all arguments; without load stepping (null) there are no increments. `clock` is the method's.
+  LoadStepper(LoadStepping* load_stepping, Iterate& iterate, DirichletEnforcer& dirichlet,
+              const Stopwatch& clock, Observer& observer);
+
+  bool has_schedule() const { return load_stepping_ != nullptr; }
+  /// Whether increments remain.
+  bool loading() const { return load_stepping_ && !load_stepping_->finished(); }
+  /// Whether the next increment begins without equilibrium. The remainder of an increment waits for
+  /// equilibrium: each partial increment shrinks gaps tenfold, and a step widens them only twofold.
+  bool advances_at_once() const {
+    return loading() && !load_stepping_->equilibrates() && load_stepping_->complete();
+  }
+  /// Steps of the current increment so far.
+  int steps() const { return iterate_.result().steps - s_.start.steps; }
+  /// Pseudo-time of the current increment; none without a schedule.
+  std::optional<double> time() const;
+  /// Stores how far load stepping has come.
+  void store_progress(LevelResult& result) const;
+
+  /// Begins the next increment or continues the current one, as far as limits and contact allow. Does not
+  /// evaluate the iterate.
+  void advance(bool at_equilibrium);
+  /// Whether the current increment cannot be completed.
+  bool blocked() const;
+  /// What limited the last advance, as Iterate::limit_text().
+  const std::string& limit_text() const { return limit_text_; }
+  /// Reports the current increment to the observer; does nothing without a schedule.
+  void report_increment();
+
+ private:
+  double trust_factor() const;
+  double extrapolate();
+  StepLimit advance_alone();
+  bool advance_with(const Positions& trial, double fraction);
+  bool is_finite_at(const Positions& x);
+  void update_model(const Positions& from);
+
+  LoadStepping* load_stepping_;
+  Iterate& iterate_;
+  DirichletEnforcer& dirichlet_;
+  const Stopwatch& clock_;
+  Observer& observer_;
+  State s_;
+  std::string limit_text_;
+};
+
+}  // namespace drape

@@ -1,0 +1,50 @@
+#include "core/numerics/step/equilibrium_check.h"
+
+#include <algorithm>
+
+namespace drape {
+
+EquilibriumCheck::State EquilibriumCheck::state() const {
+  return {decrements_,
+          {initial_centroid_.x(), initial_centroid_.y(), initial_centroid_.z()},
+          idle_.state(),
+          cycle_.state()};
+}
+
+void EquilibriumCheck::restore(const State& s) {
+  decrements_ = s.decrements;
+  initial_centroid_ << s.initial_centroid[0], s.initial_centroid[1], s.initial_centroid[2];
+  idle_.restore(s.idle);
+  cycle_.restore(s.cycle);
+}
+
+bool EquilibriumCheck::is_within(double times) const {
+  if (!(iterate_.force_residual() <= times * p_.force_tolerance)) return false;  // also false for NaN
+  return p_.decrement_tolerance == 0 || *std::ranges::max_element(decrements_) <= p_.decrement_tolerance;
+}
+
+bool EquilibriumCheck::in_tolerance() {
+  if (!is_within(1)) return false;
+  iterate_.update_friction();
+  return iterate_.force_residual() <= p_.force_tolerance;
+}
+
+bool EquilibriumCheck::is_at_rounding_floor(FactorCache& factor) {
+  idle_.restart();
+  iterate_.update_friction();
+  const RoundingFloor floor =
+      rounding_floor(factor.plain_hessian(), iterate_.x(), iterate_.gradient(), iterate_.fixed());
+  rounding_residual_ = floor.norm / iterate_.residual_scale();
+  return floor.reached;
+}
+
+double EquilibriumCheck::drift() const {
+  return (iterate_.free_centroid() - initial_centroid_).norm() / iterate_.rest_diagonal();
+}
+
+void EquilibriumCheck::note_step(double inertia) {
+  idle_.note(iterate_.energy(), iterate_.force_residual(), iterate_.energy_noise(inertia));
+  cycle_.note(iterate_.energy_without_friction(), iterate_.force_residual());
+}
+
+}  // namespace drape

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "core/numerics/step/cycle_detector.h"
+#include "core/numerics/step/factor_cache.h"
+#include "core/numerics/step/iterate.h"
+#include "core/numerics/step/newton_parameters.h"
+#include "core/numerics/step/rounding_floor.h"
+
+namespace drape {
+
+/// Decides whether the iterate is at equilibrium, within the tolerances or as near as round-off allows, and
+/// measures how far the cloth has drifted.
+class EquilibriumCheck {
+ public:
+  struct State {
+    /// Of the last three iterations, +∞ before there are as many; iteration k is at k mod 3 [m/s].
+    std::array<double, 3> decrements = unknown_decrements();
+    std::array<double, 3> initial_centroid{};  ///< of the free vertices where the drift begins [m]
+    IdleSteps::State idle;
+    CycleDetector::State cycle;
+  };
+  State state() const;
+  void restore(const State& state);
+
+  /// Refers to both arguments.
+  EquilibriumCheck(Iterate& iterate, const NewtonParameters& parameters)
+      : iterate_(iterate), p_(parameters) {}
+
+  /// Whether the force residual is at most this many times its tolerance, and the decrement within its own.
+  bool is_within(double times) const;
+  /// Whether the tolerances are met. If they seem to be, lags friction at the iterate and checks them again.
+  bool in_tolerance();
+  /// Whether progress has stopped: many idle steps.
+  bool is_idle() const { return idle_.many(); }
+  /// Whether steps lead round and round.
+  bool is_cycling() const { return cycle_.cycling(); }
+  /// Looks for a new cycle, after the solver has done something about the last one.
+  void restart_cycle() { cycle_.restart(); }
+  /// Whether all forces are within their round-off bounds. Lags friction at the iterate first, and restarts
+  /// the count of idle steps. Call it only once progress has stopped: it invalidates the factor.
+  bool is_at_rounding_floor(FactorCache& factor);
+  /// Bound on the force residual by round-off at the last such check [1].
+  double rounding_residual() const { return rounding_residual_; }
+  /// Distance of the free vertices' centroid from where the drift begins, in diagonals of the rest shape.
+  double drift() const;
+
+  /// Notes the decrement of an iteration, before the iteration is counted.
+  void note_decrement(double decrement) { decrements_[iterate_.result().iterations % 3] = decrement; }
+  /// Notes the end of a step with this `inertia` [J].
+  void note_step(double inertia);
+  /// For another objective: restarts the count of idle steps, and forgets cycles and decrements.
+  void restart() {
+    idle_.restart();
+    cycle_.restart();
+    decrements_ = unknown_decrements();
+  }
+  /// Measures the drift from here on.
+  void restart_drift() { initial_centroid_ = iterate_.free_centroid(); }
+
+ private:
+  static constexpr std::array<double, 3> unknown_decrements() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return {infinity, infinity, infinity};
+  }
+
+  Iterate& iterate_;
+  const NewtonParameters& p_;
+  std::array<double, 3> decrements_ = unknown_decrements();
+  Eigen::RowVector3d initial_centroid_ = Eigen::RowVector3d::Zero();
+  IdleSteps idle_;
+  CycleDetector cycle_;
+  double rounding_residual_ = 0;
+};
+
+}  // namespace drape

@@ -1,0 +1,176 @@
+#include "core/numerics/step/factor_cache.h"
+
+#include <stdexcept>
+
+namespace drape {
+
+namespace {
+
+/// Updates of the Hessian for which another solver stays in use after the preferred one has failed.
+constexpr int fallback_updates = 10;
+/// Vertices from which on multigrid takes less time than a factorisation.
+constexpr int multigrid_from = 50'000;
+
+std::unique_ptr<Multigrid> multigrid_for(const Level& level, const NewtonParameters& p,
+                                         const Hierarchy* hierarchy) {
+  const bool wanted =
+      p.form == NewtonForm::quasistatic &&
+      (p.linear_solver == LinearSolver::multigrid ||
+       (p.linear_solver == LinearSolver::automatic && level.vertex_count() >= multigrid_from));
+  if (!wanted || !hierarchy || level.index == 0) return nullptr;
+  return std::make_unique<Multigrid>(
+      std::span(hierarchy->prolongations).first(static_cast<std::size_t>(level.index)));
+}
+
+LinearSolver direct_solver(const NewtonParameters& p) {
+  return p.linear_solver == LinearSolver::cholmod ? LinearSolver::cholmod : LinearSolver::supernodal;
+}
+
+LinearSolver factorising_solver(const NewtonParameters& p) {
+  const LinearSolver direct = direct_solver(p);
+  return p.form == NewtonForm::statics || p.linear_solver == direct ? direct : LinearSolver::mixed;
+}
+
+}  // namespace
+
+FactorCache::FactorCache(Iterate& iterate, const NewtonParameters& parameters, const Hierarchy* hierarchy)
+    : iterate_(iterate),
+      interval_(parameters.hessian_update_interval),
+      direct_(direct_solver(parameters)),
+      multigrid_(multigrid_for(iterate.model().level(), parameters, hierarchy)),
+      preferred_(multigrid_ ? LinearSolver::multigrid : factorising_solver(parameters)),
+      modification_(parameters),
+      cholesky_(factorising_solver(parameters)),
+      solver_(preferred_) {}
+
+void FactorCache::use(LinearSolver solver) {
+  solver_ = solver;
+  // What multigrid fell back on does not follow the pattern any more: a resumed run could not restore it.
+  if (solver == LinearSolver::multigrid)
+    cholesky_.forget();
+  else
+    cholesky_.use(solver);
+}
+
+bool FactorCache::solve(const std::vector<char>& fixed, double mass_shift, double step_length,
+                        const Positions& right_hand_side, Positions& solution) {
+  if (has_fresh_factor() && solve_with_factor(right_hand_side, solution)) return true;
+  age_ = 0;
+  use(fallback_updates_ > 0 ? fallback_ : preferred_);
+  if (fallback_updates_ > 0) --fallback_updates_;
+  bool has_whole_projection = false;
+  fault_ = modification_.factorise(
+      [&](Projection projection) -> const BlockMatrix& {
+        has_whole_projection = projection.kind == Projection::none || projection.blend == 1;
+        return iterate_.hessian(projection);
+      },
+      [&](const BlockMatrix& matrix, double shift) {
+        while (!factorise(matrix, fixed, mass_shift + shift) ||
+               !solve_with_factor(right_hand_side, solution)) {
+          const bool may_be_definite = has_whole_projection || too_slow_;
+          if (solver_ == direct_ || !may_be_definite) return false;
+          fallback_ = solver_ == LinearSolver::multigrid ? LinearSolver::mixed : direct_;
+          fallback_updates_ = fallback_updates;
+          use(fallback_);
+        }
+        return true;
+      },
+      fixed, step_length == 1);
+  return fault_.empty();
+}
+
+bool FactorCache::solve_with_factor(const Positions& right_hand_side, Positions& solution) {
+  LevelResult& result = iterate_.result();
+  PhaseTimer t(result.seconds_by_phase, "solve");
+  if (solver_ != LinearSolver::multigrid) return cholesky_.solve(right_hand_side, solution);
+  const auto end = multigrid_->solve(right_hand_side, solution);
+  result.flops += multigrid_->take_flops();
+  too_slow_ = end == ConjugateGradients::End::not_converged;
+  return end == ConjugateGradients::End::converged;
+}
+
+bool FactorCache::update(const std::vector<char>& fixed, double mass_shift, double step_length) {
+  if (has_fresh_factor() && solver_ == direct_) return true;
+  age_ = 0;
+  use(direct_);
+  fault_ = modification_.factorise(
+      [&](Projection projection) -> const BlockMatrix& { return iterate_.hessian(projection); },
+      [&](const BlockMatrix& matrix, double shift) { return factorise(matrix, fixed, mass_shift + shift); },
+      fixed, step_length == 1);
+  return fault_.empty();
+}
+
+bool FactorCache::factorise(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
+  LevelResult& result = iterate_.result();
+  too_slow_ = false;
+  ++result.factorisations;
+  if (solver_ != LinearSolver::multigrid) analyse(matrix, fixed);
+  PhaseTimer t(result.seconds_by_phase, "factorise");
+  const bool is_definite = set_matrix(matrix, fixed, shift);
+  result.flops += solver_ == LinearSolver::multigrid ? multigrid_->take_flops() : cholesky_.flops();
+  return is_definite;
+}
+
+bool FactorCache::set_matrix(const BlockMatrix& matrix, const std::vector<char>& fixed, double shift) {
+  factored_ = &matrix;
+  shift_ = shift;
+  const Eigen::VectorXd shifts = shift * iterate_.model().masses();
+  return solver_ == LinearSolver::multigrid ? multigrid_->set(matrix, shifts, fixed)
+                                            : cholesky_.factorise(matrix, shifts);
+}
+
+void FactorCache::analyse(const BlockMatrix& matrix, const std::vector<char>& fixed) {
+  PhaseTimer t(iterate_.result().seconds_by_phase, "analyse");
+  cholesky_.analyse(matrix.pattern, fixed);
+}
+
+const BlockMatrix& FactorCache::plain_hessian() {
+  const BlockMatrix& matrix = iterate_.hessian(Projection::none);
+  // New contacts may have added blocks. They are analysed now and not with the next factorisation: a
+  // checkpoint stores the pattern of the last matrix, and a resumed run takes that for the one that was
+  // analysed.
+  if (cholesky_.is_analysed()) analyse(matrix, iterate_.fixed());
+  invalidate();
+  return matrix;
+}
+
+void FactorCache::end_iteration(double step_length) {
+  const bool stale = age_ > 0 && step_length < 1;
+  age_ = stale ? interval_ : age_ + 1;
+}
+
+FactorCache::State FactorCache::state() const {
+  State s;
+  s.modification = modification_.state();
+  s.pattern = iterate_.objective().pattern_state();
+  s.analysis = cholesky_.analysis();
+  s.age = age_;
+  s.fallback = fallback_;
+  s.fallback_updates = fallback_updates_;
+  if (has_fresh_factor()) {
+    s.solver = solver_;
+    s.shift = shift_;
+    s.values = factored_->values;
+  }
+  return s;
+}
+
+void FactorCache::restore(const State& s) {
+  modification_.restore(s.modification);
+  age_ = s.age;
+  fallback_ = s.fallback;
+  fallback_updates_ = s.fallback_updates;
+  const std::shared_ptr<const BlockPattern> pattern = iterate_.objective().restore(s.pattern, iterate_.x());
+  if (s.analysis.count > 0) cholesky_.restore(pattern, s.analysis);
+  if (s.values.empty()) return;
+  BlockMatrix matrix(pattern);
+  if (s.values.size() != matrix.values.size())
+    throw std::runtime_error("the checkpoint's factor belongs to another matrix; run the experiment again");
+  matrix.values = s.values;
+  restored_ = std::move(matrix);
+  use(s.solver);
+  set_matrix(restored_, iterate_.fixed(), s.shift);
+  if (multigrid_) multigrid_->take_flops();  // they were counted when the factor was made
+}
+
+}  // namespace drape

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/step/newton_parameters.h"
+
+namespace drape {
+
+/// Names the first block with an entry that is not finite, as in "the block of vertices 3 and 7". Skips the
+/// rows and columns of fixed vertices (one flag a vertex). Empty if all other entries are finite.
+std::string first_not_finite(const BlockMatrix& matrix, const std::vector<char>& fixed);
+
+/// The first multiple of the masses that is added to a matrix which is not positive definite [1/s²].
+double first_mass_shift(const NewtonParameters& parameters);
+
+/// Makes the Newton matrix positive definite: blends in the PSD projection of element Hessians (`psd_blend`),
+/// then adds multiples of the masses.
+class HessianModification {
+ public:
+  /// Fractions of the PSD projection that `adaptive` tries, in this order.
+  static constexpr double blends[] = {0, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
+  static constexpr int blend_count = std::size(blends);
+
+  struct State {
+    int blend = blend_count - 1;  ///< index of the fraction that worked last
+  };
+  State state() const { return s_; }
+  void restore(const State& state) { s_ = state; }
+
+  explicit HessianModification(const NewtonParameters& parameters);
+
+  /// Returns the Hessian [N/m], with its element Hessians projected as asked. It stays valid until the next
+  /// call.
+  using Assemble = std::function<const BlockMatrix&(Projection)>;
+  /// Factorises the matrix with `shift` [1/s²] times the masses added. Returns false if that is not positive
+  /// definite.
+  using Factorise = std::function<bool(const BlockMatrix&, double shift)>;
+
+  /// Assembles and factorises with the least modification that suffices; after a full step a smaller blend
+  /// than the last is tried first. Returns why no modification suffices; empty if one does.
+  std::string factorise(const Assemble& assemble, const Factorise& factorise, const std::vector<char>& fixed,
+                        bool after_full_step);
+
+ private:
+  /// Null once a blend is positive definite; if none is, the matrix with the whole projection.
+  const BlockMatrix* blend_until_definite(const Assemble& assemble, const Factorise& factorise,
+                                          bool after_full_step);
+
+  State s_;
+  Projection::Kind projection_;
+  bool adaptive_;
+  double first_shift_;  // [1/s²]
+};
+
+}  // namespace drape

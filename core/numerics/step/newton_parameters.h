@@ -1,0 +1,36 @@
+#pragma once
+
+#include "core/kernel/interfaces/energy.h"
+#include "core/kernel/plugin/parameters.h"
+#include "core/numerics/linear_algebra/numeric_factor.h"
+
+namespace drape {
+
+/// Damped gradient flow in implicit steps, or one minimisation (docs/theory/method.md, sections 2, 3).
+enum class NewtonForm { quasistatic, statics };
+
+/// How much of the PSD projection of element Hessians goes into the Newton matrix.
+enum class PsdBlend {
+  full,     ///< all of it, in every iteration (projected Newton)
+  adaptive  ///< as little as keeps the matrix positive definite (HessianModification)
+};
+
+/// Settings of the Newton solver. All methods share one implementation, so their comparison compares methods.
+struct NewtonParameters {
+  NewtonForm form = NewtonForm::quasistatic;
+  double step_size = 0.1;
+  double step_growth = 1.5;
+  double step_size_limit = 1e3;
+  int iterations_per_step = 1;
+  int max_steps = 5000;
+  double force_tolerance = 1e-3;
+  double decrement_tolerance = 0;
+  Projection::Kind projection = Projection::clamp;
+  PsdBlend psd_blend = PsdBlend::adaptive;
+  int hessian_update_interval = 1;
+  LinearSolver linear_solver = LinearSolver::automatic;
+
+  static void declare(Declaration<NewtonParameters>& d);
+};
+
+}  // namespace drape

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/numerics/step/equilibrium_check.h"
+#include "core/numerics/step/factor_cache.h"
+#include "core/numerics/step/implicit_step.h"
+#include "core/numerics/step/line_search.h"
+#include "core/numerics/step/step_controller.h"
+
+namespace drape {
+
+/// Solves one implicit step after another by Newton iterations: direction from the factorised matrix, line
+/// search, damping.
+class NewtonStep {
+ public:
+  /// At the beginning of a step.
+  struct State {
+    ImplicitStep::State implicit_step;
+    StepController::State controller;
+    LineSearch::State line_search;
+    FactorCache::State factor;
+  };
+  State state() const { return {step_.state(), controller_.state(), line_search_.state(), factor_.state()}; }
+  /// The iterate must have been evaluated.
+  void restore(const State& state);
+
+  /// Refers to all arguments; `hierarchy` may be null. `report` is called after iteration k of a step and its
+  /// check, and `interrupt` between two iterations of one step: true ends it.
+  NewtonStep(Iterate& iterate, EquilibriumCheck& check, const NewtonParameters& parameters,
+             std::function<void(int k)> report, std::function<bool()> interrupt,
+             const Hierarchy* hierarchy = nullptr);
+
+  /// Begins a step at the iterate; lags friction there.
+  void begin();
+  /// Solves the step that begin() began, to a fraction of the force tolerance or its iteration limit. Returns
+  /// false if no iterate with less energy can be found; failure() then says why.
+  bool solve();
+  const std::string& failure() const { return failure_; }
+  /// Whether `interrupt` ended the last step.
+  bool interrupted() const { return interrupted_; }
+  /// Resets the damping of a step without descent.
+  void abandon() { controller_.abandon_step(); }
+  /// Limits h, since steps repeat each other; until end_limit().
+  void limit_step_size() { controller_.limit_step_size(); }
+  void end_limit() { controller_.end_limit(); }
+  /// Starts over, for another objective.
+  void restart();
+
+  /// Factorises the matrix at the iterate anew, without the rows and columns of fixed vertices,
+  /// `with_inertia` of a step or with that of the longest. Returns false if that fails; factor().fault() then
+  /// says why.
+  bool factorise(const std::vector<char>& fixed, bool with_inertia);
+  FactorCache& factor() { return factor_; }
+  const FactorCache& factor() const { return factor_; }
+
+  double step_length() const { return line_search_.step_length(); }  ///< α of the last line search
+  double step_size() const;  ///< h [s]; +∞ for a step without inertia
+
+ private:
+  bool iterate();
+  bool is_solved_to(double fraction) const;
+  bool fail(const std::string& why);
+
+  Iterate& iterate_;
+  EquilibriumCheck& check_;
+  const NewtonParameters& p_;
+  std::function<void(int)> report_;
+  std::function<bool()> interrupt_;
+  bool interrupted_ = false;
+  ImplicitStep step_;
+  StepController controller_;
+  LineSearch line_search_;
+  FactorCache factor_;
+  Positions direction_;
+  std::string failure_;
+};
+
+}  // namespace drape

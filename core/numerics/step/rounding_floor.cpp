@@ -1,0 +1,46 @@
+#include "core/numerics/step/rounding_floor.h"
+
+#include <cmath>
+
+namespace drape {
+
+namespace {
+
+constexpr double unit_roundoff = std::numeric_limits<double>::epsilon() / 2;
+
+}  // namespace
+
+Eigen::VectorXd rounding_bounds(const BlockMatrix& hessian, const Positions& x) {
+  const BlockPattern& pattern = *hessian.pattern;
+  Eigen::VectorXd bounds = Eigen::VectorXd::Zero(x.rows());
+  for (int i = 0; i < pattern.rows(); ++i)
+    for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) {
+      const int j = pattern.columns[b];
+      const double norm = unit_roundoff * Eigen::Map<const Eigen::Matrix3d>(hessian.block(b)).norm();
+      bounds[i] += norm * x.row(j).norm();
+      if (j != i) bounds[j] += norm * x.row(i).norm();
+    }
+  return bounds;
+}
+
+RoundingFloor rounding_floor(const BlockMatrix& hessian, const Positions& x, const Positions& gradient,
+                             const std::vector<char>& fixed) {
+  const Eigen::VectorXd bounds = rounding_bounds(hessian, x);
+  RoundingFloor floor{0, true};
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    if (fixed[i]) continue;
+    floor.norm = std::hypot(floor.norm, bounds[i]);
+    floor.reached = floor.reached && gradient.row(i).norm() <= bounds[i];
+  }
+  return floor;
+}
+
+void IdleSteps::note(double energy, double residual, double noise) {
+  const bool idle = std::abs(energy - s_.energy) <= noise && residual > 0.5 * s_.residual;
+  if (idle)
+    ++s_.steps;
+  else
+    s_ = {0, energy, residual};
+}
+
+}  // namespace drape
