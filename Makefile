@@ -18,6 +18,7 @@
 # make hard     the study of the hard cases (docs/results/hard-cases.md)
 # make pictures the pictures of README and docs, from the runs of the study sphere that `make results` has left (FROM=
 #               results/studies/COMMIT/ chooses the build, the newest otherwise) and from some runs of its own, minutes
+# make api      pages of the headers that plugins include, by Doxygen: build/api/html/index.html
 # make format   check the layout of the sources;  make fix-format  rewrites them
 # make lint     static analysis of core and plugins, or of one folder (LINT=core/app/sweep), each source checked by itself
 # make clean    remove what was built
@@ -32,10 +33,10 @@ LINT =
 # A folder is checked as one unit, which has its name.
 LINTED := $(if $(LINT),/(unity|lint)_$(notdir $(LINT:/=))(_cxx)?\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
-SOURCES = $(shell find core plugins tests benchmarks -name '*.cpp' -o -name '*.h')
+SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
 .PHONY: all setup configure build build-tests benchmarks python demo table1 scenes test fuzz extremes data bench hard results figures \
-        pictures format fix-format lint clean
+        pictures api format fix-format lint clean
 all: build
 
 setup:
@@ -122,6 +123,10 @@ pictures: benchmarks data
 	$(foreach m,pcs pcs_loop unrelaxed cascadic,$(foreach l,0 1 2,cp results/pictures/locking/pictures/$(m)_l$(l).png docs/pictures/locking_$(m)_l$(l).png;))
 	$(BUILD)/bin/drape run configs/bunny_shawl.yaml --method pcs -o results/pictures/shawl --overwrite
 	$(foreach l,0 2,$(BUILD)/bin/drape export results/pictures/shawl --to docs/pictures/shawl_l$(l).png --level $(l) --view=-0.5,-1,0.6 --width 900 --overwrite;)
+
+api: setup
+	@doxygen docs/Doxyfile
+	@echo "build/api/html/index.html"
 
 format: setup
 	@clang-format --dry-run -Werror $(SOURCES)

@@ -9,6 +9,6 @@ std::string source();
 std::string commands();         ///< of drape and its companions
 std::string plugins();          ///< that drape is shipped with
 std::string test_plugins();     ///< a folder for each plugin of tests/plugins
-std::string example_plugins();  ///< of the documents (tests/out_of_tree)
+std::string example_plugins();  ///< of the documents (examples/)
 std::string tests();            ///< of the test programs
 }  // namespace folders

@@ -187,7 +187,7 @@ TEST_CASE("Any changed, missing or additional byte of a checkpoint is detected")
   other[8] = 77;
   CHECK(
       error_of(other) ==
-      "is a checkpoint of format 77, but this drape reads format 16; resume it with the drape that wrote it");
+      "is a checkpoint of format 77, but this drape reads format 1; resume it with the drape that wrote it");
 }
 
 TEST_CASE("A value that its type does not have is refused") {

@@ -21,9 +21,9 @@ std::vector<std::string> lines_of(const fs::path& file) {
   return lines;
 }
 
-/// The folders of the two tables of core/README.md, from the lowest upwards: "core/kernel/mesh", …
+/// The folders of the tables of core/README.md, from the lowest upwards: "core/kernel/files", …
 std::vector<std::string> folders_of_core() {
-  static const std::regex heading("## (kernel|app)/.*"), row("\\| `([a-z_]+)/` \\|.*");
+  static const std::regex heading("## (kernel|numerics|app)/.*"), row("\\| `([a-z_]+)/` \\|.*");
   std::vector<std::string> order;
   std::string library;
   std::smatch match;
@@ -61,7 +61,7 @@ bool is_internal(const fs::path& header) {
     const std::size_t begin = text.find("set(internal ");
     return text.substr(begin, text.find(')', begin) - begin) + " ";
   }();
-  const fs::path name = header.lexically_relative("core/kernel").replace_extension();
+  const fs::path name = header.lexically_relative("core").replace_extension();
   return build.find(" " + name.generic_string() + " ") != std::string::npos;
 }
 
@@ -79,7 +79,7 @@ TEST_CASE("the tables of core/README.md name every folder of the core") {
     CAPTURE(folder);
     CHECK(fs::is_directory(fs::path(folders::source()) / folder));
   }
-  for (const char* library : {"core/kernel", "core/app"})
+  for (const char* library : {"core/kernel", "core/numerics", "core/app"})
     for (const fs::path& file : sources_in(library)) {
       CAPTURE(file);
       CHECK((rank(order, file) < order.size() || file == "core/kernel/version.h"));
@@ -99,27 +99,40 @@ TEST_CASE("no include of the core leads to a folder above its own") {
   CHECK(counted > 500);
 }
 
-TEST_CASE("a plugin includes the kernel and its own folder, nothing else of the project") {
+TEST_CASE("a plugin includes the kernel, the numerics and its own folder, nothing else of the project") {
   for (const fs::path& file : sources_in("plugins")) {
     if (file.filename().string().rfind("test_", 0) == 0) continue;
     for (const std::string& included : includes_of(file)) {
       CAPTURE(file, included);
-      CHECK(
-          (included.rfind("core/kernel/", 0) == 0 || fs::path(included).parent_path() == file.parent_path()));
+      CHECK((included.rfind("core/kernel/", 0) == 0 || included.rfind("core/numerics/", 0) == 0 ||
+             fs::path(included).parent_path() == file.parent_path()));
     }
   }
 }
 
 TEST_CASE(
-    "the kernel's installed headers include Eigen and the standard library, nothing else from outside") {
+    "the library's installed headers include Eigen and the standard library, nothing else from outside") {
   static const std::regex outside("#include <([A-Za-z0-9_]+/|[a-z_]+\\.h>).*");
   std::smatch match;
-  for (const fs::path& file : sources_in("core/kernel")) {
-    if (file.extension() != ".h" || is_internal(file)) continue;
-    for (const std::string& line : lines_of(fs::path(folders::source()) / file))
-      if (std::regex_match(line, match, outside)) {
-        CAPTURE(file, line);
-        CHECK((match[1] == "Eigen/" || match[1] == "immintrin.h>"));
-      }
+  for (const char* part : {"core/kernel", "core/numerics"})
+    for (const fs::path& file : sources_in(part)) {
+      if (file.extension() != ".h" || is_internal(file)) continue;
+      for (const std::string& line : lines_of(fs::path(folders::source()) / file))
+        if (std::regex_match(line, match, outside)) {
+          CAPTURE(file, line);
+          CHECK((match[1] == "Eigen/" || match[1] == "immintrin.h>"));
+        }
+    }
+}
+
+TEST_CASE("the kernel stays small, and no folder of the core has more files than a reader takes in") {
+  int lines = 0;
+  for (const fs::path& file : sources_in("core/kernel"))
+    lines += static_cast<int>(lines_of(fs::path(folders::source()) / file).size());
+  CHECK(lines <= 4300);
+  for (const std::string& folder : folders_of_core()) {
+    if (folder.rfind("core/app/", 0) == 0) continue;
+    CAPTURE(folder);
+    CHECK(sources_in(folder).size() <= 25);
   }
 }

@@ -50,9 +50,10 @@ constexpr DrapePluginDescriptor ours = DRAPE_ABI_DESCRIPTOR(nullptr);
 
 }  // namespace
 
-TEST_CASE("whoever changes a class that plugins see is told to raise the ABI number") {
-  // If a size differs: raise DRAPE_ABI_NUMBER, then write the new number and the new size here.
-  CHECK(DRAPE_ABI_NUMBER == 16);
+TEST_CASE("whoever changes a class that plugins see is told of the ABI number") {
+  // If a size differs: raise DRAPE_ABI_NUMBER unless that was done since the last release, then write the new
+  // number and the new size here.
+  CHECK(DRAPE_ABI_NUMBER == 1);
   CHECK(sizeof(ConfigNode) == 192);
   CHECK(sizeof(Parameter) == 464);
   CHECK(sizeof(TriangleMesh) == 48);

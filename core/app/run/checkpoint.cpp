@@ -12,7 +12,7 @@ bool is_value(LinearSolver solver) {
   return solver >= LinearSolver::automatic && solver <= LinearSolver::cholmod;
 }
 
-// Fields of a checkpoint's structs. Increment `format` with every change.
+// Fields of a checkpoint's structs; `format` below says which they are.
 
 template <class A>
 void fields(A& a, LoadSteppingState& s) {
@@ -193,7 +193,8 @@ void fields(A& a, Checkpoint& c) {
 namespace {
 
 constexpr std::string_view magic = "drapestt";
-constexpr std::uint32_t format = 17;
+/// Raise it with the first change after a release to what a checkpoint holds.
+constexpr std::uint32_t format = 1;
 
 struct Header {
   std::uint32_t format = drape::format, checksum = 0;

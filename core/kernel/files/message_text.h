@@ -7,7 +7,7 @@
 namespace drape {
 
 /// A text from a user or a file, safe for a one-line message: control characters, bidirectional controls and
-/// bytes that are not UTF-8 appear as \xNN. A long text loses its middle.
+/// bytes that are not UTF-8 appear as `\xNN`. A long text loses its middle.
 std::string printable(std::string_view text, std::size_t most_bytes = 2000);
 
 /// The same for every line of a text.

@@ -24,8 +24,8 @@ struct DrapePluginDescriptor {
 // library's copy, and every plugin would seem to match.
 
 #define DRAPE_ABI_MAGIC 0x50415244u  // "DRAP"
-/// Increment with every change to a class that crosses the library boundary.
-#define DRAPE_ABI_NUMBER 16u
+/// Raise it with the first change after a release to a class that crosses the library boundary.
+#define DRAPE_ABI_NUMBER 1u
 
 #define DRAPE_TEXT_(x) #x
 #define DRAPE_TEXT(x) DRAPE_TEXT_(x)
