@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/kernel/elements/element_formula.h"
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/formulas/element_formula.h"
 #include "core/numerics/formulas/fold_formula.h"
 #include "core/numerics/formulas/membrane_formula.h"
 #include "core/numerics/formulas/vertex_formula.h"
