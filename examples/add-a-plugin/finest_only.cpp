@@ -4,17 +4,12 @@
 namespace {
 
 /// Newton on the finest level alone, from the scene's start.
-class FinestOnly : public drape::Solver {
- public:
-  struct Parameters {
-    drape::NewtonParameters newton;
+struct FinestOnly : drape::Solver {
+  drape::NewtonParameters newton;
 
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add_section("newton", &Parameters::newton).description("settings of the Newton solve");
-    }
-  };
-
-  explicit FinestOnly(const Parameters& parameters) : p_(parameters) {}
+  static void declare(drape::Declaration<FinestOnly>& d) {
+    d.add_section("newton", &FinestOnly::newton).description("settings of the Newton solve");
+  }
 
   std::vector<drape::LevelResult> solve(const drape::Problem& problem,
                                         drape::Observer& observer) const override {
@@ -22,15 +17,11 @@ class FinestOnly : public drape::Solver {
     const int finest = problem.finest();
     observer.level_started(finest);
     drape::PlainObjective objective(problem.model(finest));
-    drape::LevelResult result =
-        drape::minimise(objective, problem.starts[finest], p_.newton, {clock, observer});
+    drape::LevelResult result = drape::minimise(objective, problem.starts[finest], newton, {clock, observer});
     result.from_initial_state = true;
     observer.level_finished(result);
     return {result};
   }
-
- private:
-  Parameters p_;
 };
 
 }  // namespace

@@ -6,26 +6,14 @@ namespace {
 
 using drape::Positions;
 
-struct FloorParameters : drape::ContactParameters {
-  double height = 0;
-
-  static void declare(drape::Declaration<FloorParameters>& d) {
-    d.add("height", &FloorParameters::height)
-        .unit("m")
-        .at_least(-1e3)
-        .at_most(1e3)
-        .description("z of the floor");
-    declare_contact_parameters(d);
-  }
-};
-
 /// The floor and what a level's cloth brings.
 struct Floor {
-  FloorParameters p;
+  double height;  // [m]
+  drape::ContactParameters p;
   drape::BarrierParameters barrier;
   Eigen::VectorXd area;  // of each vertex [m²]
 
-  double gap(const Positions& x, int i) const { return x(i, 2) - p.height; }
+  double gap(const Positions& x, int i) const { return x(i, 2) - height; }
 };
 
 struct FloorCandidates : drape::CollisionCandidates {
@@ -73,16 +61,18 @@ struct BoundFloor : drape::BoundContact {
 };
 
 /// A floor that vertices rest on.
-struct FloorModel : drape::ContactModel {
-  using Parameters = FloorParameters;
-  explicit FloorModel(const Parameters& parameters) : p(parameters) {}
+struct FloorModel : drape::ContactModel, drape::ContactParameters {
+  double height = 0;
+
+  static void declare(drape::Declaration<FloorModel>& d) {
+    d.add("height", &FloorModel::height).unit("m").at_least(-1e3).at_most(1e3).description("z of the floor");
+    declare_contact_parameters(d);
+  }
 
   std::unique_ptr<drape::BoundContact> bind(const drape::Level& level,
                                             const drape::Material& material) const override {
-    return std::make_unique<BoundFloor>(Floor{p, p.barrier(material), level.vertex_area});
+    return std::make_unique<BoundFloor>(Floor{height, *this, barrier(material), level.vertex_area});
   }
-
-  const Parameters p;
 };
 
 }  // namespace

@@ -4,16 +4,7 @@
 namespace {
 
 /// How high and how low a state reaches.
-class Height : public drape::Metric {
- public:
-  struct Parameters {
-    static void declare(drape::Declaration<Parameters>&) {}
-  };
-
-  explicit Height(const Parameters&) {}
-
-  drape::MetricScope scope() const override { return drape::MetricScope::state; }
-
+struct Height : drape::Metric {
   drape::MetricDeclaration declaration() const override {
     using drape::Better;
     return {
@@ -21,7 +12,6 @@ class Height : public drape::Metric {
                     {.name = "highest", .label = "highest point", .unit = "m", .better = Better::neither}}};
   }
 
- private:
   drape::MetricResult measure(const drape::MetricInput& input) const override {
     const auto z = input.x.col(2);
     return {{{"lowest", z.minCoeff()}, {"highest", z.maxCoeff()}}, {}};

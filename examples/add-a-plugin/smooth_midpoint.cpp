@@ -4,20 +4,15 @@
 namespace {
 
 /// Old vertices stay; an edge's new one is pulled from its middle towards the two vertices opposite it.
-class SmoothMidpoint : public drape::Refiner {
- public:
-  struct Parameters {
-    double pull = 0.0625;
+struct SmoothMidpoint : drape::Refiner {
+  double pull = 0.0625;
 
-    static void declare(drape::Declaration<Parameters>& d) {
-      d.add("pull", &Parameters::pull)
-          .at_least(0)
-          .at_most(0.25)
-          .description("weight of each opposite vertex; 1/8 is Loop's");
-    }
-  };
-
-  explicit SmoothMidpoint(const Parameters& parameters) : p_(parameters) {}
+  static void declare(drape::Declaration<SmoothMidpoint>& d) {
+    d.add("pull", &SmoothMidpoint::pull)
+        .at_least(0)
+        .at_most(0.25)
+        .description("weight of each opposite vertex; 1/8 is Loop's");
+  }
 
   drape::Refinement refine(const drape::Level& coarse) const override {
     drape::Refinement refinement = drape::midpoint_refinement(coarse);
@@ -28,17 +23,14 @@ class SmoothMidpoint : public drape::Refiner {
         const int edge = topology.triangle_edges(t, k);  // opposite vertex k
         if (topology.edge_triangles(edge, 1) < 0) continue;
         const int row = coarse.vertex_count() + edge;
-        change.emplace_back(row, coarse.rest.triangles(t, k), p_.pull);
-        for (int end = 0; end < 2; ++end) change.emplace_back(row, topology.edges(edge, end), -p_.pull / 2);
+        change.emplace_back(row, coarse.rest.triangles(t, k), pull);
+        for (int end = 0; end < 2; ++end) change.emplace_back(row, topology.edges(edge, end), -pull / 2);
       }
     drape::ProlongationMatrix pulled(refinement.weights.rows(), refinement.weights.cols());
     pulled.setFromTriplets(change.begin(), change.end());
     refinement.weights += pulled;
     return refinement;
   }
-
- private:
-  Parameters p_;
 };
 
 }  // namespace

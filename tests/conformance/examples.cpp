@@ -19,6 +19,7 @@ TEST_CASE("The documents' examples are among the plugins of the conformance test
   REQUIRE(with_examples);
   for (const auto& [kind, name] :
        std::initializer_list<std::pair<const char*, const char*>>{{"energy", "orthotropic"},
+                                                                  {"energy", "springs"},
                                                                   {"energy", "spring_to_plane"},
                                                                   {"refiner", "smooth_midpoint"},
                                                                   {"contact", "floor"},

@@ -41,6 +41,60 @@ struct Spring {
 };
 DRAPE_VERTEX(spring, "To the ground.", Spring) { return 200 * mass * z * z; }
 
+struct Loaded {
+  static constexpr auto role = drape::EnergyRole::external;
+  double pressure = 3;
+  static void declare(drape::Declaration<Loaded>& d) { d.add("pressure", &Loaded::pressure); }
+};
+struct Rubber {
+  double alpha = 1.8;
+  static void declare(drape::Declaration<Rubber>& d) { d.add("alpha", &Rubber::alpha); }
+};
+DRAPE_MEMBRANE(ogden, "By principal stretches.", Rubber) {
+  return thickness * mu * (pow(s1, alpha) + pow(s2, alpha) + pow(J, -alpha) - 3);
+}
+DRAPE_MEMBRANE(stretches_of_stvk, "As strains_of_stvk.") {
+  const S e1 = 0.5 * (s1 * s1 - 1), e2 = 0.5 * (s2 * s2 - 1);
+  return thickness * (mu * (e1 * e1 + e2 * e2) + lambda / 2 * square(e1 + e2));
+}
+DRAPE_MEMBRANE(strains_of_stvk, "As stretches_of_stvk.") {
+  return thickness * (mu * (g11 * g11 + g22 * g22 + 2 * g12 * g12) + lambda / 2 * square(g11 + g22));
+}
+DRAPE_MEMBRANE(mixed, "By strains and stretches.") { return g11 * s1; }
+DRAPE_ELEMENT(springs, edges, "Along edges.", Rubber) {
+  const T length = rest[0].norm();
+  return alpha * square(d[0].norm() / length - 1) * length;
+}
+namespace drape::elements {
+/// Each vertex and the one after the next.
+struct every_second {
+  static constexpr int vertices = 2;
+  static constexpr EnergyRole role = EnergyRole::position;
+  static Stencils of(const Level& level) {
+    Stencils pairs(level.vertex_count() - 2, 2);
+    for (int i = 0; i < pairs.rows(); ++i) pairs.row(i) << i, i + 2;
+    return pairs;
+  }
+  static ElementOrder order(const Level& level) { return ElementOrder::of(of(level), level.rest.vertices); }
+};
+}  // namespace drape::elements
+DRAPE_ELEMENT(seams, every_second, "Pulled together.") { return 5 * d[0].squaredNorm(); }
+DRAPE_ELEMENT(stvk_by_edges, triangles, "As strains_of_stvk.") {
+  const T a = rest[0].squaredNorm(), b = rest[0].dot(rest[1]), c = rest[1].squaredNorm(), det = a * c - b * b;
+  const S p = 0.5 * (d[0].squaredNorm() - a), q = 0.5 * (d[0].dot(d[1]) - b),
+          r = 0.5 * (d[1].squaredNorm() - c);
+  const S trace = (c * p - 2 * b * q + a * r) / det, minor = (p * r - q * q) / det;
+  return 0.5 * sqrt(det) * thickness * (mu * (trace * trace - 2 * minor) + lambda / 2 * trace * trace);
+}
+DRAPE_ELEMENT(quadratic, hinges, "As quadratic_bending.") {
+  const T length = rest[0].norm(), u = rest[0].cross(rest[1]).norm(), v = rest[0].cross(rest[2]).norm();
+  const T at_u = length / u, at_v = length / v, squared = length * length;
+  const T at_e = (rest[0].dot(rest[1]) * at_u + rest[0].dot(rest[2]) * at_v) / squared;
+  const Vector<S> curvature = d[0] * at_e - d[1] * at_u - d[2] * at_v;
+  return 6 * k * squared / (u + v) * curvature.squaredNorm();
+}
+DRAPE_ELEMENT(volume, triangles, "A load.", Loaded) { return pressure * d[0].cross(d[1]).norm(); }
+
 using namespace drape;
 
 namespace {
@@ -51,6 +105,10 @@ Positions wrinkled(const Level& level, double size = 0.02) {
   Positions x = level.rest.vertices;
   const Eigen::VectorXd noise = size * normal_numbers(static_cast<int>(x.size()), 3);
   return x + Eigen::Map<const Positions>(noise.data(), x.rows(), 3);
+}
+
+Eigen::VectorXd flat_values(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
 /// Derivatives agree with differences of the value, and the gradient's value is the value.
@@ -79,6 +137,12 @@ TEST_CASE("energy_formula: derivatives of membranes, folds and loads follow from
   check_derivatives(MembraneFormula<formulas::woven>({}));
   check_derivatives(MembraneFormula<formulas::every_function>({}));
   check_derivatives(MembraneFormula<formulas::seam>({}));
+  check_derivatives(MembraneFormula<formulas::ogden>({}));
+  check_derivatives(ElementFormula<formulas::springs, elements::edges>({}));
+  check_derivatives(ElementFormula<formulas::seams, elements::every_second>({}));
+  check_derivatives(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}));
+  check_derivatives(ElementFormula<formulas::quadratic, elements::hinges>({}));
+  check_derivatives(ElementFormula<formulas::volume, elements::triangles>({}));
   check_derivatives(FoldFormula<formulas::crease>({}));
   check_derivatives(VertexFormula<formulas::wind>({}));
   check_derivatives(VertexFormula<formulas::gust>({}));
@@ -90,6 +154,16 @@ TEST_CASE("energy_formula: role and midpoint factor follow from the kind and the
   CHECK(MembraneFormula<formulas::woven>({}).midpoint_factor() == 1);
   CHECK_FALSE(MembraneFormula<formulas::seam>({}).midpoint_factor());
   CHECK_FALSE(MembraneFormula<formulas::sized>({}).midpoint_factor());
+  CHECK(MembraneFormula<formulas::ogden>({}).midpoint_factor() == 1);
+  CHECK(ElementFormula<formulas::springs, elements::edges>({}).role() == EnergyRole::membrane);
+  CHECK_FALSE(ElementFormula<formulas::springs, elements::edges>({}).midpoint_factor());
+  CHECK(ElementFormula<formulas::stvk_by_edges, elements::triangles>({}).midpoint_factor() == 1);
+  CHECK(ElementFormula<formulas::seams, elements::every_second>({}).role() == EnergyRole::position);
+  CHECK(ElementFormula<formulas::volume, elements::triangles>({}).role() == EnergyRole::external);
+  CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).role() == EnergyRole::bending);
+  CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).midpoint_factor() == 2);
+  CHECK(ElementFormula<formulas::quadratic, elements::hinges>({}).plate_stiffness(Material()) ==
+        Approx(FoldFormula<formulas::fold>({}).plate_stiffness(Material())).epsilon(1e-3));
   CHECK(FoldFormula<formulas::fold>({}).role() == EnergyRole::bending);
   CHECK(FoldFormula<formulas::fold>({}).midpoint_factor() == 2);
   CHECK_FALSE(FoldFormula<formulas::crease>({}).midpoint_factor());
@@ -136,6 +210,31 @@ TEST_CASE("energy_formula: an axis turns warp; only an isotropic membrane buckle
   CHECK(woven == woven_buckling);
   const auto [own, buckling] = plain_and_buckling(MembraneFormula<formulas::every_function>({}));
   CHECK(buckling < 0.5 * own);
+}
+
+TEST_CASE("energy_formula: a law by strains, by stretches and by edge vectors is one energy") {
+  const Level level = sheet();
+  const Material material;
+  const auto strains = MembraneFormula<formulas::strains_of_stvk>({}).bind(level, material),
+             stretches = MembraneFormula<formulas::stretches_of_stvk>({}).bind(level, material),
+             edges = ElementFormula<formulas::stvk_by_edges, elements::triangles>({}).bind(level, material);
+  for (const double size : {0.002, 0.02}) {
+    const Positions x = wrinkled(level, size), g = gradient_of(*strains, x);
+    const auto h = hessian_of(*strains, x, Projection::clamp).values;
+    for (const BoundEnergy* other : {stretches.get(), edges.get()}) {
+      CHECK(other->stencils() == strains->stencils());
+      CHECK(other->value(x) == Approx(strains->value(x)).epsilon(1e-11));
+      CHECK((gradient_of(*other, x) - g).norm() <= 1e-11 * g.norm());
+      const auto own = hessian_of(*other, x, Projection::clamp).values;
+      CHECK((flat_values(own) - flat_values(h)).norm() <= 1e-9 * flat_values(h).norm());
+    }
+  }
+  CHECK_THROWS_WITH(MembraneFormula<formulas::mixed>({}),
+                    Catch::Contains("uses Green strains (g11, g22, g12) and principal stretches (s1, s2)"));
+  const Positions narrow = 0.9 * level.rest.vertices;
+  const MembraneFormula<formulas::ogden> ogden({});
+  CHECK(ogden.bind_buckling(level, material, 0)->value(narrow) <
+        0.5 * ogden.bind(level, material)->value(narrow));
 }
 
 TEST_CASE("energy_formula: log(J) keeps the digits of small strains") {

@@ -45,11 +45,14 @@ class Loop final : public Ballast, public Refiner {
 };
 
 struct Linear final : Refiner {
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-  explicit Linear(const Parameters&) {}
   Refinement refine(const Level&) const override { return {}; }
+};
+
+/// Its parameters are its own members.
+struct Columns final : Ballast, Refiner {
+  int columns = 1;
+  static void declare(Declaration<Columns>& d) { d.add("columns", &Columns::columns).at_least(1); }
+  Refinement refine(const Level&) const override { return {{}, ProlongationMatrix(columns, 1)}; }
 };
 
 /// Shares a number with the object that it is made from.
@@ -100,6 +103,21 @@ TEST_CASE("entries are found by kind and name, and listed by name") {
   CHECK(refiners[0]->name == "linear");
   CHECK(refiners[1]->name == "loop");
   CHECK(registry.of_kind("energy").empty());
+}
+
+TEST_CASE("a plugin's own members are its parameters where it declares them") {
+  Registry registry;
+  registry.add<Refiner, Columns>("columns", "Columns.");
+  ConfigErrors errors;
+  ConfigNode resolved;
+  const auto refiner =
+      make_from<Refiner>(registry, node_of("{type: columns, columns: 4}"), errors, &resolved);
+  REQUIRE(errors.empty());
+  CHECK(refiner->refine({}).weights.rows() == 4);
+  CHECK(resolved.one_line() == "{type: columns, columns: 4}");
+  CHECK_FALSE(make_from<Refiner>(registry, node_of("{type: columns, columns: 0}"), errors));
+  CHECK(errors.size() == 1);
+  CHECK(registry.find("refiner", "columns")->schema.parameters.size() == 1);
 }
 
 TEST_CASE("a name can be registered once") {

@@ -49,7 +49,7 @@ struct MetricInput {
 class Metric {
  public:
   virtual ~Metric() = default;
-  virtual MetricScope scope() const = 0;
+  virtual MetricScope scope() const { return MetricScope::state; }
   /// How reports show the values and fields.
   virtual MetricDeclaration declaration() const = 0;
   /// Checks the states, measures them and checks the result. Throws std::runtime_error if a pair's second

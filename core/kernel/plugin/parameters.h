@@ -170,6 +170,11 @@ class Declaration;
 template <class Struct>
 Schema schema_of(const std::string& name = "");
 
+/// Of a plugin without parameters.
+struct NoParameters {
+  static void declare(Declaration<NoParameters>&) {}
+};
+
 }  // namespace drape
 
 #include "core/kernel/plugin/parameters_impl.h"

@@ -5,7 +5,7 @@
 
 namespace drape {
 
-/// Declares `unit` and `up`: how a mesh file that the struct names is read (core/kernel/mesh/
+/// Declares `unit` and `up`: how a mesh file that the struct names is read (numerics/mesh_files/
 /// file_coordinates.h).
 template <class Struct>
 void declare_file_coordinates(Declaration<Struct>& d) {

@@ -31,12 +31,13 @@ Schema section_schema(const RegistryEntry& entry);
 /// All plugins. The loader fills it, the experiment reads it.
 class Registry {
  public:
-  /// Registers `Implementation` (constructible from `const Implementation::Parameters&`) under a name. An
-  /// implementation that is costly to make can have a second constructor, from the parameters and a `const
-  /// Implementation&`: when a schedule changes its parameters, that one is given the object before, to share
-  /// what stays the same. A static function `details()` of it, if there is one, gives the entry's details.
-  /// Interface is one of the five of core/kernel/model. Throws std::runtime_error on a repeated name, with
-  /// the paths of both libraries.
+  /// Registers `Implementation` under a name. Its parameters are members of its own that its static function
+  /// `declare` declares; or those of a struct `Implementation::Parameters`, which its constructor takes; or
+  /// none. In the second case one that is costly to make can have another constructor, from the parameters
+  /// and a `const Implementation&`: when a schedule changes its parameters, that one is given the object
+  /// before, to share what stays the same. A static function `details()`, if there is one, gives the entry's
+  /// details. Interface is one of the five of core/kernel/model. Throws std::runtime_error on a repeated
+  /// name, with the paths of both libraries.
   template <class Interface, class Implementation>
   void add(const std::string& name, const std::string& summary);
 

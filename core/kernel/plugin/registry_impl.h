@@ -36,9 +36,25 @@ struct Kind<Solver> {
   static constexpr const char* name = "solver";
 };
 
+/// What a plugin's parameters are read into.
+template <class Implementation>
+struct ParametersOf {
+  using Type = NoParameters;
+};
+template <class Implementation>
+requires requires { &Implementation::declare; }
+struct ParametersOf<Implementation> {
+  using Type = Implementation;
+};
+template <class Implementation>
+requires requires { typename Implementation::Parameters; }
+struct ParametersOf<Implementation> {
+  using Type = typename Implementation::Parameters;
+};
+
 template <class Interface, class Implementation>
 void Registry::add(const std::string& name, const std::string& summary) {
-  using Parameters = typename Implementation::Parameters;
+  using Parameters = typename ParametersOf<Implementation>::Type;
   auto entry = std::make_unique<RegistryEntry>();
   entry->kind = Kind<Interface>::name;
   entry->name = name;
@@ -55,7 +71,10 @@ void Registry::add(const std::string& name, const std::string& summary) {
       if (before)
         object = std::make_shared<Implementation>(
             p, dynamic_cast<const Implementation&>(*static_cast<const Interface*>(before)));
-    if (!object) object = std::make_shared<Implementation>(p);
+    if constexpr (std::is_same_v<Parameters, NoParameters> && std::is_default_constructible_v<Implementation>)
+      object = std::make_shared<Implementation>();
+    else if (!object)
+      object = std::make_shared<Implementation>(p);
     return object;
   };
   add_entry(std::move(entry));

@@ -169,21 +169,32 @@ struct BucklingLaw {
   }
 };
 
+/// Binds a law of StretchKernel to all triangles of a level, with the constants of each. Throws
+/// std::runtime_error naming a triangle without area.
+template <class Law>
+std::unique_ptr<BoundEnergy> bind_stretches(
+    const Law& law, const Level& level,
+    const std::vector<Eigen::Matrix<double, Law::constants, 1>>& constants) {
+  using Kernel = StretchKernel<Law>;
+  std::vector<typename Kernel::Rest> rest;
+  for (int t = 0; t < level.triangle_count(); ++t) {
+    const RestTriangle triangle = RestTriangle::of(level, t);
+    rest.emplace_back() << triangle.a, triangle.b, triangle.c, constants[t];
+  }
+  return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order,
+                                                 Kernel{law});
+}
+
 /// Binds a law to all triangles of a level on which the cloth buckles below the mesh, with Plain's constants
-/// of each; s [J] as in Buckling, which is the same for all triangles. Throws std::runtime_error naming a
-/// triangle without area.
+/// of each; s [J] as in Buckling, which is the same for all triangles.
 template <class Plain>
 std::unique_ptr<BoundEnergy> bind_buckling_membrane(
     const Plain& plain, const Level& level,
     const std::vector<Eigen::Matrix<double, Plain::constants, 1>>& numbers, double s) {
-  using Kernel = StretchKernel<BucklingLaw<Plain>>;
-  const Kernel kernel{{plain}};
-  std::vector<typename Kernel::Rest> rest;
-  for (int t = 0; t < level.triangle_count(); ++t) {
-    const RestTriangle triangle = RestTriangle::of(level, t);
-    rest.emplace_back() << triangle.a, triangle.b, triangle.c, kernel.law.constants_of(numbers[t].data(), s);
-  }
-  return std::make_unique<ElementEnergy<Kernel>>(level.rest.triangles, rest, level.triangle_order, kernel);
+  const BucklingLaw<Plain> law{plain};
+  std::vector<Eigen::Matrix<double, BucklingLaw<Plain>::constants, 1>> constants;
+  for (const auto& own : numbers) constants.push_back(law.constants_of(own.data(), s));
+  return bind_stretches(law, level, constants);
 }
 
 }  // namespace drape

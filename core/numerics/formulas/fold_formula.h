@@ -80,10 +80,7 @@ class FoldFormula final : public Energy {
   std::optional<double> midpoint_factor() const override {
     const Law law(p_, Material());
     if (reads_place(law)) return std::nullopt;
-    return fold_midpoint_factor([&](double bend, double length, double h1, double h2) {
-      const double rest[] = {0, length, h1, h2, length * (h1 + h2) / 2};
-      return FoldFormulaKernel<Law, 5>{law}.jet(bend, rest).value;
-    });
+    return sampled_midpoint_factor([&](const Level& level) { return bind_with<5>(law, level); });
   }
 
   double plate_stiffness(const Material& material) const override {
@@ -97,8 +94,8 @@ class FoldFormula final : public Energy {
 
  private:
   static bool reads_place(const Law& law) {
-    const Trace angle(1, false, false), place(0, true, false), other;
-    return law(angle, angle, other, other, other, other, other, place, place, place).place;
+    const Trace angle(1, 0), place(0, Trace::place), other;
+    return law(angle, angle, other, other, other, other, other, place, place, place).reads != 0;
   }
 
   template <int numbers>

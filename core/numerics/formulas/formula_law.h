@@ -31,11 +31,6 @@ struct MaterialSymbols {
         thickness(m.thickness) {}
 };
 
-/// Of an energy without parameters.
-struct NoParameters {
-  static void declare(Declaration<NoParameters>&) {}
-};
-
 /// What the formulas of core/numerics/formulas/energy_formula.h are functions of, beside their element: their
 /// own parameters and the material. A name that both have is an error where it is used.
 template <class Own = NoParameters>

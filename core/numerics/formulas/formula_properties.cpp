@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/patterns/generate.h"
 
 namespace drape {
@@ -27,26 +28,35 @@ bool is_isotropic(const std::function<double(const Eigen::Vector3d&)>& density) 
   return true;
 }
 
-// Of a hinge that is split at midpoints, both halves keep its angles, with half its lengths. The new hinges
-// inside a triangle are flat.
-std::optional<double> fold_midpoint_factor(
-    const std::function<double(double bend, double length, double h1, double h2)>& energy) {
-  constexpr double lengths[][3] = {{0.01, 0.013, 0.007}, {0.2, 0.11, 0.14}};
+std::optional<double> sampled_midpoint_factor(const BindEnergy& bind) {
   std::optional<double> factor;
-  for (const auto& l : lengths) {
-    const double most = std::abs(energy(1, l[0], l[1], l[2]));
-    if (!(std::abs(energy(0, l[0] / 2, l[1] / 2, l[2] / 2)) <= 1e-14 * most)) return std::nullopt;
-    for (const double bend : {-2.0, -0.3, 0.1, 0.7, 1.9}) {
-      const double own = 2 * energy(bend, l[0] / 2, l[1] / 2, l[2] / 2) / energy(bend, l[0], l[1], l[2]);
-      if (!factor) factor = std::round(own * 1e9) / 1e9;
-      if (!(std::abs(own - *factor) <= 1e-9 * std::abs(own))) return std::nullopt;
+  for (const double cell : {0.01, 0.3}) {
+    TriangleMesh mesh = grid({3 * cell, 2 * cell}, 4, 3, Diagonals::criss_cross);
+    const auto noise = [&](double size) {
+      Positions x = mesh.vertices;
+      for (Eigen::Index i = 0; i < x.size(); ++i)
+        x.data()[i] = size * cell * std::sin(static_cast<double>(37 * i + 1));
+      return x;
+    };
+    mesh.vertices.leftCols(2) += noise(0.1).leftCols(2);
+    const Level level = Level::of(0, mesh);
+    const Refinement split = midpoint_refinement(level);
+    const auto coarse = bind(level),
+               fine = bind(Level::of(1, {split.weights * level.rest.vertices, split.triangles}));
+    for (const double size : {0.001, 0.03, 0.3}) {
+      const Positions x = mesh.vertices + noise(size);
+      const double own = coarse->value(x), halved = fine->value(split.weights * x);
+      if (!std::isfinite(own) && !std::isfinite(halved)) continue;  // outside the energy's domain
+      if (own == 0 && halved == 0) continue;
+      if (!factor) factor = std::round(halved / own * 1e9) / 1e9;
+      if (!(std::abs(halved - *factor * own) <= 1e-9 * std::abs(halved))) return std::nullopt;
     }
   }
-  return factor;
+  return factor.value_or(1);
 }
 
 // What the borders have cancels between four sheets. Bent to both sides, so that forces at rest cancel too.
-double fold_plate_stiffness(const std::function<std::unique_ptr<BoundEnergy>(const Level&)>& bind) {
+double fold_plate_stiffness(const BindEnergy& bind) {
   constexpr double cell = 0.01, radius = 100 * cell;
   constexpr int n = 3;
   const auto excess = [&](int columns, int rows) {
@@ -67,13 +77,6 @@ double fold_plate_stiffness(const std::function<std::unique_ptr<BoundEnergy>(con
   const double inner = excess(2 * n, 2 * n) - excess(n, 2 * n) - excess(2 * n, n) + excess(n, n);
   const double stiffness = inner / std::pow(n * cell, 2) * (radius * radius);
   return std::isfinite(stiffness) ? std::max(stiffness, 0.0) : 0;
-}
-
-std::optional<double> load_midpoint_factor(
-    const std::function<Eigen::Vector4d(double area, double mass)>& energy_and_gradient) {
-  const Eigen::Vector4d one = energy_and_gradient(1e-4, 0.7e-4), three = energy_and_gradient(3e-4, 2.1e-4);
-  if (!((three - 3 * one).norm() <= 1e-12 * three.norm())) return std::nullopt;
-  return 1;
 }
 
 }  // namespace drape

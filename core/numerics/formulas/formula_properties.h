@@ -16,17 +16,14 @@ bool is_isotropic(const std::function<double(const Eigen::Vector3d& strains)>& d
 /// Green strains of a triangle with these principal stretches, at an angle in the material's frame.
 Eigen::Vector3d green_strains(double s1, double s2, double angle);
 
-/// Energy::midpoint_factor of a fold's energy that is flat at rest and does not depend on its place; none if
-/// no factor holds for all angles.
-std::optional<double> fold_midpoint_factor(
-    const std::function<double(double bend, double length, double h1, double h2)>& energy);
+/// How an energy is bound to a level.
+using BindEnergy = std::function<std::unique_ptr<BoundEnergy>(const Level&)>;
+
+/// Energy::midpoint_factor of an energy that does not depend on where an element is at rest, as its values
+/// show on small meshes of two sizes and on those meshes split; none if no factor holds for all.
+std::optional<double> sampled_midpoint_factor(const BindEnergy& bind);
 
 /// Energy::plate_stiffness of a fold's energy, on a grid of right-angled triangles of 1 cm.
-double fold_plate_stiffness(const std::function<std::unique_ptr<BoundEnergy>(const Level&)>& bind);
-
-/// Energy::midpoint_factor of an energy that is linear in a vertex's position: 1 for energies at the origin
-/// and forces, returned together, in proportion to area and mass.
-std::optional<double> load_midpoint_factor(
-    const std::function<Eigen::Vector4d(double area, double mass)>& energy_and_gradient);
+double fold_plate_stiffness(const BindEnergy& bind);
 
 }  // namespace drape

@@ -7,12 +7,13 @@ namespace drape {
 /// What a formula depends on: evaluated on traces in place of numbers, it returns one. A comparison is a
 /// trace too.
 struct Trace {
+  /// What it may read: where an element is at rest, how large it is, its strains, its principal stretches.
+  enum Symbols : unsigned { place = 1, size = 2, strains = 4, stretches = 8 };
   int degree = 0;      ///< in the variables: 0 constant, 1 linear, 2 anything else
-  bool place = false;  ///< whether it reads where the element is at rest
-  bool size = false;   ///< whether it reads how large the element is
+  unsigned reads = 0;  ///< Symbols, joined
 
   Trace(double = 0) {}
-  Trace(int degree_in, bool place_in, bool size_in) : degree(degree_in), place(place_in), size(size_in) {}
+  Trace(int degree_in, unsigned reads_in) : degree(degree_in), reads(reads_in) {}
 
   friend Trace operator+(const Trace& a, const Trace& b) {
     return joined(a, b, std::max(a.degree, b.degree));
@@ -61,9 +62,9 @@ struct Trace {
 
  private:
   static Trace joined(const Trace& a, const Trace& b, int degree) {
-    return {std::min(degree, 2), a.place || b.place, a.size || b.size};
+    return {std::min(degree, 2), a.reads | b.reads};
   }
-  static Trace of_function(const Trace& a) { return {a.degree ? 2 : 0, a.place, a.size}; }
+  static Trace of_function(const Trace& a) { return {a.degree ? 2 : 0, a.reads}; }
 };
 
 }  // namespace drape

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "core/numerics/elements/buckling_membrane.h"
@@ -52,26 +54,41 @@ struct MembraneFormulaKernel {
     const auto variable = [](const T& value, int i) { return i < N ? J::variable(value, i) : J(value); };
     T place[3] = {0.0, 0.0, 0.0};
     for (int i = 5; i < numbers; ++i) place[i - 5] = rest[i];
-    return rest[4] * law(variable(s.g11, 0), variable(s.g22, 1), variable(s.g12, 2),
+    const J none(0.0);
+    return rest[4] * law(variable(s.g11, 0), variable(s.g22, 1), variable(s.g12, 2), none, none,
                          area_ratio<N>(rounded(s.g11), rounded(s.g22), rounded(s.g12), s.det()), rest[4],
                          place[0], place[1], place[2]);
   }
 };
 
-/// An isotropic density by principal stretches, for BucklingLaw: numbers from the area of MaterialTriangle
-/// on.
+/// An isotropic density by principal stretches, for StretchKernel and BucklingLaw: numbers from the area of
+/// MaterialTriangle on.
 template <class Law>
 struct PrincipalFormula {
   static constexpr int constants = 4;
+  static constexpr bool convex = false;
   Law law;
 
   template <class T>
   PrincipalDerivatives<T> operator()(const T& t1, const T& t2, const T* rest) const {
     using J = Jet<2, T>;
     const J s1 = J::variable(t1, 0), s2 = J::variable(t2, 1), ratio = s1 * s2;
-    const J w = rest[0] * law(0.5 * ((s1 - 1.0) * (s1 + 1.0)), 0.5 * ((s2 - 1.0) * (s2 + 1.0)), J(0.0),
-                              AreaRatio<J>{ratio, log(ratio)}, rest[0], rest[1], rest[2], rest[3]);
+    const J w = rest[0] * law(0.5 * ((s1 - 1.0) * (s1 + 1.0)), 0.5 * ((s2 - 1.0) * (s2 + 1.0)), J(0.0), s1,
+                              s2, AreaRatio<J>{ratio, log(ratio)}, rest[0], rest[1], rest[2], rest[3]);
     return {w.value, w.first[0], w.first[1], w.second_by(0, 0), w.second_by(1, 1), w.second_by(0, 1)};
+  }
+  template <class T>
+  T value(const T& s1, const T& s2, const T* rest) const {
+    return (*this)(s1, s2, rest).energy;
+  }
+  template <class T>
+  CoupledSlopes<T> slopes(const T& s1, const T& s2, const T* rest) const {
+    const PrincipalDerivatives<T> w = (*this)(s1, s2, rest);
+    CoupledSlopes<T> slopes;
+    slopes.first1 = w.first1, slopes.first2 = w.first2;
+    slopes.second1 = w.second1, slopes.second2 = w.second2, slopes.mixed = w.mixed;
+    slopes.divide(s1, s2);
+    return slopes;
   }
 };
 
@@ -82,34 +99,45 @@ class MembraneFormula final : public Energy {
  public:
   using Parameters = typename Law::Parameters;
 
-  explicit MembraneFormula(const Parameters& parameters) : p_(parameters) {}
+  /// Throws std::runtime_error for a law by strains and stretches at once.
+  explicit MembraneFormula(const Parameters& parameters) : p_(parameters) {
+    constexpr unsigned both = Trace::strains | Trace::stretches;
+    if ((reads(Law(p_, Material())) & both) == both)
+      throw std::runtime_error(
+          "the formula uses Green strains (g11, g22, g12) and principal stretches (s1, s2): use either, in "
+          "two energies if need be");
+  }
   EnergyRole role() const override { return EnergyRole::membrane; }
 
   // The four triangles have the strains of the whole, and a quarter of its area each.
   std::optional<double> midpoint_factor() const override {
-    const Trace all = trace(Law(p_, Material()));
-    return all.place || all.size ? std::nullopt : std::optional(1.0);
+    const bool fixed = (reads(Law(p_, Material())) & (Trace::place | Trace::size)) != 0;
+    return fixed ? std::nullopt : std::optional(1.0);
   }
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
     const Law law(p_, material);
-    return trace(law).place ? bind_with<8>(law, level) : bind_with<5>(law, level);
+    if (reads(law) & Trace::stretches)
+      return bind_stretches(PrincipalFormula<Law>{law}, level, numbers(level));
+    return reads(law) & Trace::place ? bind_with<8>(law, level) : bind_with<5>(law, level);
   }
 
   std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                              double s) const override {
     const Law law(p_, material);
-    if (!is_isotropic([&](const Eigen::Vector3d& g) { return density(law, g); }))
-      return bind(level, material);
-    std::vector<Eigen::Vector4d> numbers;
-    for (const MaterialTriangle& triangle : triangles(level)) numbers.emplace_back(triangle.tail<4>());
-    return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers, s);
+    const bool isotropic = (reads(law) & Trace::stretches) ||
+                           is_isotropic([&](const Eigen::Vector3d& g) { return density(law, g); });
+    if (!isotropic) return bind(level, material);
+    return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
   }
 
  private:
-  static Trace trace(const Law& law) {
-    const Trace strain(1, false, false), place(0, true, false), size(0, false, true);
-    return law(strain, strain, strain, AreaRatio<Trace>{strain, strain}, size, place, place, place);
+  static unsigned reads(const Law& law) {
+    const Trace strain(1, Trace::strains), stretch(1, Trace::stretches), ratio(1, 0), place(0, Trace::place),
+        size(0, Trace::size);
+    return law(strain, strain, strain, stretch, stretch, AreaRatio<Trace>{ratio, ratio}, size, place, place,
+               place)
+        .reads;
   }
 
   template <int numbers>
@@ -126,7 +154,17 @@ class MembraneFormula final : public Energy {
   static double density(const Law& law, const Eigen::Vector3d& g) {
     using J = Jet<1, double>;
     const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
-    return law(J(g[0]), J(g[1]), J(g[2]), area_ratio<1>(g[0], g[1], g[2], det), 1.0, 0.0, 0.0, 0.0).value;
+    const J none(0.0);
+    return law(J(g[0]), J(g[1]), J(g[2]), none, none, area_ratio<1>(g[0], g[1], g[2], det), 1.0, 0.0, 0.0,
+               0.0)
+        .value;
+  }
+
+  /// Of PrincipalFormula.
+  std::vector<Eigen::Vector4d> numbers(const Level& level) const {
+    std::vector<Eigen::Vector4d> numbers;
+    for (const MaterialTriangle& triangle : triangles(level)) numbers.emplace_back(triangle.tail<4>());
+    return numbers;
   }
 
   std::vector<MaterialTriangle> triangles(const Level& level) const {

@@ -56,15 +56,9 @@ class VertexFormula final : public Energy {
   }
 
   std::optional<double> midpoint_factor() const override {
-    const VertexFormulaKernel<Law> kernel{Law(p_, Material())};
-    const Trace all = trace(kernel.law);
-    if (all.place || all.degree > 1) return std::nullopt;
-    return load_midpoint_factor([&](double area, double mass) {
-      const double x[3] = {}, rest[] = {0, 0, 0, area, mass};
-      double g[3];
-      const double energy = kernel.gradient(x, rest, g);
-      return Eigen::Vector4d(energy, g[0], g[1], g[2]);
-    });
+    const Trace all = trace(Law(p_, Material()));
+    if (all.reads || all.degree > 1) return std::nullopt;
+    return sampled_midpoint_factor([&](const Level& level) { return bind(level, Material()); });
   }
 
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
@@ -77,7 +71,7 @@ class VertexFormula final : public Energy {
 
  private:
   static Trace trace(const Law& law) {
-    const Trace x(1, false, false), place(0, true, false), size(0, false, true);
+    const Trace x(1, 0), place(0, Trace::place), size;
     return law(x, x, x, place, place, place, size, size);
   }
 

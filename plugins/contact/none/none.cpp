@@ -6,11 +6,6 @@ namespace drape {
 /// No contact: the cloth may intersect itself and everything else, at no cost.
 class NoContact : public ContactModel {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-  explicit NoContact(const Parameters&) {}
-
   std::unique_ptr<BoundContact> bind(const Level&, const Material&) const override { return nullptr; }
 };
 

@@ -11,8 +11,8 @@ namespace drape::formula {
 /// What a triangle's formula is derived by.
 enum class TriangleVariables {
   strains,    ///< g11, g22, g12; for formulas without principal stretches
-  stretches,  ///< s1, s2, of which strains along the principal axes are functions too
-  both        ///< all five
+  stretches,  ///< s1, s2, of which strains along the principal axes are functions too; for buckling
+  both        ///< all five; for formulas with principal stretches
 };
 
 /// The programs of a formula. Outputs: `value` has the energy [J]; `gradient` the energy, then its

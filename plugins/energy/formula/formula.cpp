@@ -4,6 +4,8 @@
 #include <stdexcept>
 
 #include "core/kernel/plugin/plugin.h"
+#include "core/numerics/formulas/formula_properties.h"
+#include "core/numerics/model/derivative_check.h"
 #include "plugins/energy/formula/hinge.h"
 #include "plugins/energy/formula/membrane.h"
 #include "plugins/energy/formula/read_law.h"
@@ -56,27 +58,25 @@ EnergyRole role_of(const Formula::Parameters& p) {
                               : EnergyRole::position;
 }
 
-std::optional<double> midpoint_factor_of(const formula::Law& law) {
-  if (law.kind == ElementKind::hinge) return formula::hinge_midpoint_factor(law, Material());
-  if (law.kind == ElementKind::vertex) return formula::vertex_midpoint_factor(law, Material());
-  // The four triangles have the strains of the whole, and a quarter of its area each.
-  return law.depends_on_place() || !formula::is_proportional_to_area(law) ? std::nullopt : std::optional(1.0);
-}
-
 }  // namespace
 
-Formula::Formula(const Parameters& p)
-    : law_(formula::read_law(p)),
-      axis_(p.axis),
-      role_(role_of(p)),
-      midpoint_factor_(midpoint_factor_of(law_)) {
+Formula::Formula(const Parameters& p) : law_(formula::read_law(p)), axis_(p.axis), role_(role_of(p)) {
   formula::require_computable(law_, p.density.empty() ? "energy" : "density", *this);
 }
 
+std::optional<double> Formula::midpoint_factor() const {
+  if (law_.depends_on_place()) return std::nullopt;
+  // The four triangles have the strains of the whole, and a quarter of its area each.
+  if (law_.per_area && !law_.uses("area")) return 1;
+  const auto bound = [&](const Level& level) { return bind_unchecked(level, Material()); };
+  const bool linear = bound(checked_level())->stencils().rows() == 0;
+  if (law_.kind == ElementKind::vertex && !linear) return std::nullopt;
+  return sampled_midpoint_factor(bound);
+}
+
 double Formula::plate_stiffness(const Material& material) const {
-  return law_.kind == ElementKind::hinge && role_ == EnergyRole::bending
-             ? formula::hinge_plate_stiffness(law_, material)
-             : 0;
+  if (role_ != EnergyRole::bending || law_.kind != ElementKind::hinge) return 0;
+  return fold_plate_stiffness([&](const Level& level) { return bind_unchecked(level, material); });
 }
 
 std::unique_ptr<BoundEnergy> Formula::bind_unchecked(const Level& level, const Material& material) const {

@@ -34,7 +34,7 @@ class Formula final : public Energy {
   static std::string details() { return formula::vocabulary(); }
 
   EnergyRole role() const override { return role_; }
-  std::optional<double> midpoint_factor() const override { return midpoint_factor_; }
+  std::optional<double> midpoint_factor() const override;
   double plate_stiffness(const Material& material) const override;
   /// Throws std::runtime_error if the energy or its forces at rest are not finite.
   std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override;
@@ -49,7 +49,6 @@ class Formula final : public Energy {
   formula::Law law_;
   Eigen::Vector3d axis_;
   EnergyRole role_;
-  std::optional<double> midpoint_factor_;
 };
 
 }  // namespace drape

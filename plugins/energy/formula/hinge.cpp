@@ -72,35 +72,12 @@ class HingeFormulaKernel {
   Programs programs_;
 };
 
-/// The energy of a hinge at rest but for its bend.
-double energy_at(const Program& p, double bend, double length, double h1, double h2) {
-  double registers[Program::slots] = {};
-  using I = HingeInput;
-  for (const auto& [input, value] :
-       {std::pair(I::bend, bend), std::pair(I::rest, 0.0), std::pair(I::length, length), std::pair(I::h1, h1),
-        std::pair(I::h2, h2), std::pair(I::area, 0.5 * length * (h1 + h2))})
-    registers[p.register_of(input)] = value;
-  p.run<double, 1>(registers);
-  return registers[p.output(0)];
-}
-
 }  // namespace
 
 std::unique_ptr<BoundEnergy> bind_hinges(const Law& law, const Level& level, const Material& material) {
   HingeFormulaKernel kernel(compile_hinge(law, material));
   return std::make_unique<BatchedEnergy<HingeFormulaKernel>>(std::move(kernel), level.hinges,
                                                              rest_hinges(level), level.hinge_order);
-}
-
-std::optional<double> hinge_midpoint_factor(const Law& law, const Material& material) {
-  if (law.depends_on_place()) return std::nullopt;
-  const Program p = compile_hinge(law, material).value;
-  return fold_midpoint_factor(
-      [&](double bend, double length, double h1, double h2) { return energy_at(p, bend, length, h1, h2); });
-}
-
-double hinge_plate_stiffness(const Law& law, const Material& material) {
-  return fold_plate_stiffness([&](const Level& level) { return bind_hinges(law, level, material); });
 }
 
 }  // namespace drape::formula

@@ -32,14 +32,14 @@ struct PrincipalProgram {
 };
 
 /// The energy of one triangle at the origin.
-double energy_at(const Programs& programs, const Eigen::Vector3d& g, double area = 1) {
+double energy_at(const Programs& programs, const Eigen::Vector3d& g) {
   double registers[Program::slots] = {};
   using I = TriangleInput;
   const Program& p = programs.value;
   const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
   for (const auto& [input, value] :
        {std::pair(I::g11, g[0]), std::pair(I::g22, g[1]), std::pair(I::g12, g[2]), std::pair(I::det, det),
-        std::pair(I::area, area), std::pair(I::s1, 1 + g[0]), std::pair(I::s2, 1 + g[1])})
+        std::pair(I::area, 1.0)})
     registers[p.register_of(input)] = value;
   p.run<double, 1>(registers);
   return registers[p.output(0)];
@@ -50,33 +50,12 @@ double energy_at(const Programs& programs, const Eigen::Vector3d& g, double area
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
                                            const Material& material) {
   const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
-  if (uses_stretches(law) && !uses_strains(law)) {
-    std::vector<StretchFormulaKernel::Rest> rest(static_cast<std::size_t>(level.triangle_count()));
-    for (int t = 0; t < level.triangle_count(); ++t) {
-      const RestTriangle triangle = RestTriangle::of(level, t);
-      rest[t] << triangle.a, triangle.b, triangle.c, triangles[t].tail<4>();
-    }
-    StretchFormulaKernel kernel(compile_triangle(law, material, TriangleVariables::stretches));
-    return std::make_unique<BatchedEnergy<StretchFormulaKernel>>(std::move(kernel), level.rest.triangles,
-                                                                 rest, level.triangle_order);
-  }
-  const bool both = uses_stretches(law);
+  const bool stretches = uses_stretches(law);
   StrainKernel kernel(
-      compile_triangle(law, material, both ? TriangleVariables::both : TriangleVariables::strains), both);
+      compile_triangle(law, material, stretches ? TriangleVariables::both : TriangleVariables::strains),
+      stretches);
   return std::make_unique<BatchedEnergy<StrainKernel>>(std::move(kernel), level.rest.triangles, triangles,
                                                        level.triangle_order);
-}
-
-bool is_proportional_to_area(const Law& law) {
-  if (law.per_area && !law.uses("area")) return true;
-  const Programs programs = compile_triangle(
-      law, Material(), uses_stretches(law) ? TriangleVariables::both : TriangleVariables::strains);
-  for (const double stretch : {1.02, 1.3, 0.8}) {
-    const Eigen::Vector3d g = green_strains(stretch, 1.01, 0.3);
-    const double one = energy_at(programs, g, 1e-4), quarter = energy_at(programs, g, 0.25e-4);
-    if (!(std::abs(4 * quarter - one) <= 1e-12 * std::abs(one))) return false;
-  }
-  return true;
 }
 
 bool is_isotropic(const Law& law, const Material& material) {

@@ -12,9 +12,6 @@ namespace drape::formula {
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
                                            const Material& material);
 
-/// Whether the energy of a triangle is its rest area times a function of its strains.
-bool is_proportional_to_area(const Law& law);
-
 /// Whether the energy of a triangle depends on its principal stretches alone, not on their directions.
 bool is_isotropic(const Law& law, const Material& material);
 

@@ -6,20 +6,6 @@ namespace {
 using T = StrainKernel::T;
 using Vector = StrainKernel::Vector;
 
-CoupledSlopes<T> slopes_of(const PrincipalStretch<T>& s, const T& first1, const T& first2, const T& second1,
-                           const T& mixed, const T& second2) {
-  CoupledSlopes<T> slopes;
-  slopes.first1 = first1, slopes.first2 = first2;
-  slopes.second1 = second1, slopes.second2 = second2, slopes.mixed = mixed;
-  slopes.divide(s.largest, s.smallest);
-  return slopes;
-}
-
-/// Compiled once for both kernels.
-[[gnu::noinline]] void project(StrainKernel::Batch::Hessian& h, Projection projection) {
-  project_hessian(h, projection);
-}
-
 }  // namespace
 
 // Out of line: value and gradient must return the same bits. Flat, so that a pack stays in registers.
@@ -93,7 +79,10 @@ StrainKernel::ByStrains StrainKernel::by_strains(const Deformation& f, const T* 
   const T a1[] = {cc, ss, 2.0 * cs}, a2[] = {ss, cc, -2.0 * cs}, shear[] = {-cs, cs, cc - ss};
   const T first1 = registers[program.output(3) * batch + i],
           first2 = registers[program.output(4) * batch + i];
-  const CoupledSlopes<T> slopes = slopes_of(s, first1, first2, second(3, 3), second(3, 4), second(4, 4));
+  CoupledSlopes<T> slopes;
+  slopes.first1 = first1, slopes.first2 = first2;
+  slopes.second1 = second(3, 3), slopes.mixed = second(3, 4), slopes.second2 = second(4, 4);
+  slopes.divide(s.largest, s.smallest);
   const T b1 = first1 / s1, b2 = first2 / s2;
   const T k11 = (slopes.second1 - b1) / (s1 * s1), k22 = (slopes.second2 - b2) / (s2 * s2),
           k12 = slopes.mixed / (s1 * s2), q = 4.0 * ((slopes.divided - b2) / (s1 * (s1 + s2)));
@@ -137,66 +126,7 @@ void StrainKernel::hessian(const Batch& packs, Projection projection, Batch::Hes
   programs_.hessian.run<T, batch>(registers);
   for (int i = 0; i < batch; ++i) {
     exact_hessian(kept[i], packs.rest[i], registers, i, h[i]);
-    project(h[i], projection);
-  }
-}
-
-[[gnu::noinline, gnu::flatten]] void StretchFormulaKernel::read(const Batch& packs, const Program& program,
-                                                                T* registers, Deformation* kept) const {
-  T* const s1 = registers + program.register_of(TriangleInput::s1) * batch;
-  T* const s2 = registers + program.register_of(TriangleInput::s2) * batch;
-  T* of_rest[4];
-  for (int r = 0; r < 4; ++r)
-    of_rest[r] = registers + program.register_of(static_cast<int>(TriangleInput::area) + r) * batch;
-  for (int i = 0; i < batch; ++i) {
-    const T* rest = packs.rest[i];
-    Vector e[2];
-    packs.gather(i, e);
-    const Deformation f = {e[0] * rest[0], e[0] * rest[1] + e[1] * rest[2]};
-    if (kept) kept[i] = f;
-    const PrincipalStretch<T> s(f.f1, f.f2);
-    s1[i] = s.largest;
-    s2[i] = s.smallest;
-    for (int r = 0; r < 4; ++r) of_rest[r][i] = rest[3 + r];
-  }
-}
-
-void StretchFormulaKernel::value(const Batch& packs, T* energies) const {
-  T registers[Program::slots * batch];
-  read(packs, programs_.value, registers, nullptr);
-  programs_.value.run<T, batch>(registers);
-  read_energies(programs_.value, registers, energies);
-}
-
-[[gnu::flatten]] void StretchFormulaKernel::gradient(const Batch& packs, T* energies, Vector (*g)[2]) const {
-  T registers[Program::slots * batch];
-  const Program& program = programs_.gradient;
-  Deformation kept[batch];
-  read(packs, program, registers, kept);
-  program.run<T, batch>(registers);
-  read_energies(program, registers, energies);
-  for (int i = 0; i < batch; ++i) {
-    const auto output = [&](int k) { return registers[program.output(k) * batch + i]; };
-    StretchSlopes<T> slopes;
-    slopes.first1 = output(1), slopes.first2 = output(2);
-    StretchDerivatives<T>::gradient(PrincipalStretch<T>(kept[i].f1, kept[i].f2), slopes, packs.rest[i], g[i]);
-  }
-}
-
-void StretchFormulaKernel::hessian(const Batch& packs, Projection projection, Batch::Hessian* h) const {
-  T registers[Program::slots * batch];
-  const Program& program = programs_.hessian;
-  Deformation kept[batch];
-  read(packs, program, registers, kept);
-  program.run<T, batch>(registers);
-  for (int i = 0; i < batch; ++i) {
-    const auto output = [&](int k) { return registers[program.output(k) * batch + i]; };
-    const PrincipalStretch<T> s(kept[i].f1, kept[i].f2);
-    Eigen::Matrix<T, 6, 6> full;
-    StretchDerivatives<T>::hessian(s, slopes_of(s, output(0), output(1), output(2), output(3), output(4)),
-                                   packs.rest[i], full);
-    h[i] = Batch::Hessian(full);
-    project(h[i], projection);
+    project_hessian(h[i], projection);
   }
 }
 

@@ -26,7 +26,7 @@ struct Deformation {
 };
 
 /// A triangle's energy as a function of its Green strains, for BatchedEnergy, and also of its principal
-/// stretches where a formula uses both.
+/// stretches where a formula uses them.
 class StrainKernel {
  public:
   static constexpr int vertices = 3, batch = batch_packs;
@@ -57,29 +57,6 @@ class StrainKernel {
 
   Programs programs_;
   bool with_stretches_;
-};
-
-/// A triangle's energy as a function of its principal stretches alone.
-class StretchFormulaKernel {
- public:
-  static constexpr int vertices = 3, batch = batch_packs;
-  /// RestTriangle's a, b, c, then the area and the centroid at rest.
-  using Rest = Eigen::Matrix<double, 7, 1>;
-  using T = Pack<native_pack_width>;
-  using Batch = ElementBatch<3, native_pack_width, batch>;
-  using Vector = Batch::Vector;
-
-  explicit StretchFormulaKernel(Programs programs) : programs_(std::move(programs)) {}
-
-  void value(const Batch& packs, T* energies) const;
-  void gradient(const Batch& packs, T* energies, Vector (*g)[2]) const;
-  void hessian(const Batch& packs, Projection projection, Batch::Hessian* h) const;
-
- private:
-  /// As StrainKernel's.
-  void read(const Batch& packs, const Program& program, T* registers, Deformation* kept) const;
-
-  Programs programs_;
 };
 
 }  // namespace drape::formula

@@ -1,6 +1,9 @@
-// The laws of conformance*.yaml, each from YAML alone, under every method.
+// The laws of conformance*.yaml, which README.md shows, each from YAML alone, under every method.
 
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <regex>
 
 #include "tests/support/conformance.h"
 #include "tests/support/solve.h"
@@ -26,6 +29,10 @@ std::string experiment(const std::string& law) {
          energies + "methods: {pcs: {compression: buckling}, cascadic: {}, newton: {}}\n";
 }
 
+std::string without_spaces_and_comments(const std::string& text) {
+  return std::regex_replace(text, std::regex("#[^\n]*|\\s"), "");
+}
+
 }  // namespace
 
 TEST_CASE("every law converges under pcs, cascadic and newton") {
@@ -34,7 +41,11 @@ TEST_CASE("every law converges under pcs, cascadic and newton") {
   auto laws = more_conformance_parameters(*entry);
   laws.emplace_back("conformance", conformance_parameters(*entry));
   REQUIRE(laws.size() == 6);
+  std::ifstream file(std::filesystem::path(folders::source()) / "plugins/energy/formula/README.md");
+  const std::string page = without_spaces_and_comments({std::istreambuf_iterator<char>(file), {}});
   for (const auto& [name, parameters] : laws) {
+    INFO(name);
+    CHECK(page.find("{type:formula," + without_spaces_and_comments(parameters) + "}") != std::string::npos);
     for (const std::string method : {"pcs", "cascadic", "newton"}) {
       INFO(name << " under " << method);
       const Solved solved = solve_yaml(experiment(conformance_config(*entry, parameters)), method);

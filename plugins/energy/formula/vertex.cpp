@@ -1,10 +1,8 @@
 #include "plugins/energy/formula/vertex.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/numerics/elements/vertex_energy.h"
-#include "core/numerics/formulas/formula_properties.h"
 #include "plugins/energy/formula/compile.h"
 
 namespace drape::formula {
@@ -56,22 +54,6 @@ std::unique_ptr<BoundEnergy> bind_vertices(const Law& law, const Level& level, c
                                                                    VertexProgramKernel(std::move(programs)));
   if (!is_linear) return bound;
   return as_linear(std::move(bound), level);
-}
-
-std::optional<double> vertex_midpoint_factor(const Law& law, const Material& material) {
-  if (law.depends_on_place()) return std::nullopt;
-  const Programs programs = compile_vertex(law, material);
-  if (!programs.is_linear) return std::nullopt;
-  return load_midpoint_factor([&](double area, double mass) {
-    double registers[Program::slots] = {};
-    const Program& p = programs.gradient;
-    using I = VertexInput;
-    for (const auto& [input, value] : {std::pair(I::area, area), std::pair(I::mass, mass)})
-      registers[p.register_of(input)] = value;
-    p.run<double, 1>(registers);
-    return Eigen::Vector4d(registers[p.output(0)], registers[p.output(1)], registers[p.output(2)],
-                           registers[p.output(3)]);
-  });
 }
 
 }  // namespace drape::formula

@@ -1,18 +1,12 @@
 #pragma once
 
 #include "core/kernel/interfaces/energy.h"
-#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 /// Isometric quadratic bending (Bergou et al. 2006) with the hinge's stiffness; flat rest shapes only.
 class QuadraticBending final : public Energy {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-
-  explicit QuadraticBending(const Parameters&) {}
   EnergyRole role() const override { return EnergyRole::bending; }
   double plate_stiffness(const Material& material) const override;
   std::optional<double> midpoint_factor() const override { return 2; }

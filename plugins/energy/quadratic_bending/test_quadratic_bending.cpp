@@ -65,7 +65,7 @@ TEST_CASE("quadratic_bending: same bits with any number of threads, whatever the
   const Level level = Level::of(0, grid({1, 1}, 60, 50, Diagonals::criss_cross));
   const Eigen::VectorXd noise = 0.003 * normal_numbers(9000, 1);
   const Positions x = level.rest.vertices + Eigen::Map<const Positions>(noise.data(), 3000, 3);
-  const auto bound = QuadraticBending({}).bind(level, Material());
+  const auto bound = QuadraticBending().bind(level, Material());
   check_threads(*bound, x);
   const auto plain = hessian_of(*bound, x, Projection::none).values;
   CHECK(hessian_of(*bound, x, Projection::clamp).values == plain);
@@ -76,6 +76,6 @@ TEST_CASE("quadratic_bending: a rest shape that is not flat is refused") {
   TriangleMesh mesh = grid({1, 1}, 4, 4, Diagonals::one_way);
   mesh.vertices(5, 2) = 0.01;
   CHECK_THROWS_WITH(
-      QuadraticBending({}).bind(Level::of(3, mesh), Material()),
+      QuadraticBending().bind(Level::of(3, mesh), Material()),
       Catch::Contains("the rest shape of level 3 is not flat (angle 0.0") && Catch::Contains("use hinge"));
 }

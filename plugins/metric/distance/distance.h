@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/kernel/interfaces/metric.h"
-#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
@@ -9,11 +8,6 @@ namespace drape {
 /// distance_max over corresponding vertices, distance_hausdorff between the surfaces.
 class Distance : public Metric {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-
-  explicit Distance(const Parameters&) {}
   MetricScope scope() const override { return MetricScope::pair; }
   MetricDeclaration declaration() const override;
 

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 namespace {
 
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other) {
-  return Distance(Distance::Parameters()).evaluate({level, empty_model(), x, &other});
+  return Distance().evaluate({level, empty_model(), x, &other});
 }
 
 /// Bumpy, folded enough that the nearest triangle is not the corresponding one.
@@ -74,7 +74,7 @@ TEST_CASE("a state is at no distance from itself", "[distance]") {
   const MetricResult result = evaluate(level, x, x);
   REQUIRE(result.values.size() == 3);
   for (const MetricValue& v : result.values) CHECK(v.value == 0);
-  for (const MetricColumn& c : Distance(Distance::Parameters()).declaration().columns) {
+  for (const MetricColumn& c : Distance().declaration().columns) {
     CHECK(c.unit == "diagonal");
     CHECK(c.better == Better::lower);
   }

@@ -7,13 +7,6 @@ namespace drape {
 /// The plain energy of a state, term by term.
 class EnergyByPart : public Metric {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-  explicit EnergyByPart(const Parameters&) {}
-
-  MetricScope scope() const override { return MetricScope::state; }
-
   /// Reports show the energies that the run itself records.
   MetricDeclaration declaration() const override {
     return {.columns = {

@@ -7,11 +7,6 @@ namespace drape {
 /// How much higher another state lies than the end, in the plain energy of the end's level without contact.
 class EnergyAboveEnd : public Metric {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-  explicit EnergyAboveEnd(const Parameters&) {}
-
   MetricScope scope() const override { return MetricScope::pair; }
 
   MetricDeclaration declaration() const override {

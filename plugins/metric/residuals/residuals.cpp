@@ -11,20 +11,16 @@ namespace drape {
 /// How far a state is from an equilibrium of the plain model of its level (docs/theory/method.md, section 2).
 class Residuals : public Metric {
  public:
-  struct Parameters {
-    double step_size = 0.1;
-    static void declare(Declaration<Parameters>& d) {
-      d.add("step_size", &Parameters::step_size)
-          .unit("s")
-          .at_least(bounds::smallest_time_step)
-          .at_most(bounds::largest_time_step)
-          .description("h of the implicit step whose Newton direction the decrement measures")
-          .source("Li et al. 2021 (C-IPC)");
-    }
-  };
-  explicit Residuals(const Parameters& parameters) : p_(parameters) {}
+  double step_size = 0.1;  ///< h
 
-  MetricScope scope() const override { return MetricScope::state; }
+  static void declare(Declaration<Residuals>& d) {
+    d.add("step_size", &Residuals::step_size)
+        .unit("s")
+        .at_least(bounds::smallest_time_step)
+        .at_most(bounds::largest_time_step)
+        .description("h of the implicit step whose Newton direction the decrement measures")
+        .source("Li et al. 2021 (C-IPC)");
+  }
 
   MetricDeclaration declaration() const override {
     return {.columns = {{.name = "force_residual_plain",
@@ -52,13 +48,11 @@ class Residuals : public Metric {
     model.hessian(x, Projection::clamp, matrix);
     BlockCholesky cholesky;
     cholesky.analyse(model.pattern(), model.fixed());
-    const double h = p_.step_size;
+    const double h = step_size;
     if (!cholesky.factorise(matrix, model.masses() / (h * h))) return std::nan("");
     cholesky.solve(g, p);
     return std::sqrt(p.squaredNorm() * 3 / std::max(1, cholesky.unknowns())) / h;
   }
-
-  Parameters p_;
 };
 
 }  // namespace drape

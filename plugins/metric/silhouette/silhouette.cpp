@@ -149,7 +149,7 @@ MetricResult Silhouette::measure(const MetricInput& input) const {
   std::array<double, views.size()> values;
   parallel_for(static_cast<int>(views.size()), 1, [&](int begin, int end) {
     for (int k = begin; k < end; ++k)
-      values[k] = overlap(x, other, input.level.rest.triangles, views[k], diagonal / p_.resolution);
+      values[k] = overlap(x, other, input.level.rest.triangles, views[k], diagonal / resolution);
   });
   double sum = 0;
   for (const double v : values) sum += v;

@@ -11,17 +11,15 @@ namespace drape {
 /// silhouette_lowest, that of the worst view [1].
 class Silhouette : public Metric {
  public:
-  struct Parameters {
-    int resolution = 256;
-    static void declare(Declaration<Parameters>& d) {
-      d.add("resolution", &Parameters::resolution)
-          .at_least(16)
-          .at_most(4096)
-          .description("pixels along the diagonal of the rest shape");
-    }
-  };
+  int resolution = 256;
 
-  explicit Silhouette(const Parameters& parameters) : p_(parameters) {}
+  static void declare(Declaration<Silhouette>& d) {
+    d.add("resolution", &Silhouette::resolution)
+        .at_least(16)
+        .at_most(4096)
+        .description("pixels along the diagonal of the rest shape");
+  }
+
   MetricScope scope() const override { return MetricScope::pair; }
   MetricDeclaration declaration() const override;
 
@@ -30,8 +28,6 @@ class Silhouette : public Metric {
 
  private:
   MetricResult measure(const MetricInput& input) const override;
-
-  Parameters p_;
 };
 
 }  // namespace drape

@@ -12,9 +12,9 @@ using namespace drape;
 namespace {
 
 MetricResult evaluate(const Level& level, const Positions& x, const Positions& other, int resolution = 256) {
-  Silhouette::Parameters parameters;
-  parameters.resolution = resolution;
-  return Silhouette(parameters).evaluate({level, empty_model(), x, &other});
+  Silhouette silhouette;
+  silhouette.resolution = resolution;
+  return silhouette.evaluate({level, empty_model(), x, &other});
 }
 
 double overlap(const Level& level, const Positions& x, const Positions& other) {
@@ -52,7 +52,7 @@ TEST_CASE("A state covers itself, and nothing of one beside it", "[silhouette]")
   const MetricResult same = evaluate(level, x, x);
   REQUIRE(same.values.size() == 2);
   for (const MetricValue& v : same.values) CHECK(v.value == 1);
-  for (const MetricColumn& c : Silhouette(Silhouette::Parameters()).declaration().columns) {
+  for (const MetricColumn& c : Silhouette().declaration().columns) {
     CHECK(c.unit == "1");
     CHECK(c.better == Better::higher);
   }

@@ -1,19 +1,12 @@
 #pragma once
 
 #include "core/kernel/interfaces/metric.h"
-#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 /// Principal stretches of a state's triangles: largest_stretch, smallest_stretch, mean_stretch [1].
 class Stretch : public Metric {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-
-  explicit Stretch(const Parameters&) {}
-  MetricScope scope() const override { return MetricScope::state; }
   MetricDeclaration declaration() const override;
 
  private:

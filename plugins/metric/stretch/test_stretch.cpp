@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 namespace {
 
 MetricResult evaluate(const Level& level, const Positions& x) {
-  return Stretch(Stretch::Parameters()).evaluate({level, empty_model(), x, nullptr});
+  return Stretch().evaluate({level, empty_model(), x, nullptr});
 }
 
 }  // namespace
@@ -54,7 +54,7 @@ TEST_CASE("one stretched triangle is found, weighed by its rest area and shown a
 TEST_CASE("stretch refuses what it cannot measure", "[stretch]") {
   const Level level = square(2);
   Positions x = level.rest.vertices;
-  CHECK(Stretch(Stretch::Parameters()).scope() == MetricScope::state);
+  CHECK(Stretch().scope() == MetricScope::state);
   CHECK_THROWS_WITH(evaluate(level, x.topRows(3)), Catch::Contains("3 vertices, the level 9"));
   x(4, 2) = std::nan("");
   CHECK_THROWS_WITH(evaluate(level, x), Catch::Contains("not finite"));

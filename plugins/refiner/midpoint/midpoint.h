@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/kernel/plugin/parameters.h"
 #include "core/numerics/hierarchy/midpoint.h"
 
 namespace drape {
@@ -8,12 +7,6 @@ namespace drape {
 /// Midpoint subdivision: splits every triangle into four and does not move the surface.
 class MidpointRefiner : public Refiner {
  public:
-  struct Parameters {
-    static void declare(Declaration<Parameters>&) {}
-  };
-
-  explicit MidpointRefiner(const Parameters&) {}
-
   Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
 };
 

@@ -9,7 +9,7 @@ using namespace drape;
 TEST_CASE("midpoint refinement does not move a crumpled surface", "[refiner][midpoint]") {
   TriangleMesh mesh = random_triangulation({1, 1}, 80, 3);
   mesh.vertices.col(2) = 0.1 * (20 * mesh.vertices.col(0) + 9 * mesh.vertices.col(1)).array().sin();
-  const Hierarchy hierarchy = Hierarchy::of(mesh, MidpointRefiner({}), 3);
+  const Hierarchy hierarchy = Hierarchy::of(mesh, MidpointRefiner(), 3);
   const double area = hierarchy.levels[0].vertex_area.sum();
   CHECK(area > 1.1);
   for (int l = 0; l < 2; ++l) {
