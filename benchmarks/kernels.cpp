@@ -146,7 +146,7 @@ void shell_hessian(benchmark::State& state) {
   set_thread_count(static_cast<int>(state.range(0)));
   for (auto _ : state) {
     matrix.set_zero();
-    BlockSink membrane_sink(membrane_slots, matrix), bending_sink(bending_slots, matrix);
+    BlockSink membrane_sink = membrane_slots.sink(matrix), bending_sink = bending_slots.sink(matrix);
     membrane.add_hessian(cloth().x, Projection::clamp, membrane_sink);
     bending.add_hessian(cloth().x, Projection::clamp, bending_sink);
     benchmark::ClobberMemory();

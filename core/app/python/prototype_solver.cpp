@@ -2,6 +2,9 @@
 
 #include <stdexcept>
 
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/model/level_model.h"
+
 namespace drape::python {
 
 namespace {

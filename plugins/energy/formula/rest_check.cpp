@@ -5,6 +5,7 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/refused_parameters.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
 #include "core/numerics/model/derivative_check.h"
 
 namespace drape::formula {
