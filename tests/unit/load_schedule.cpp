@@ -119,7 +119,7 @@ TEST_CASE("Loads share what is equal in them") {
 
 TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
   const Solved s = scene_from(two_levels);
-  LoadStepping& stepping = *s.scene->schedule;
+  LoadStepping& stepping = *s.scene->load_stepping;
   const LoadSchedule schedule(s.experiment, *s.scene);
   const auto expected = [&](int increment, int level) {
     return figures_of(
@@ -136,7 +136,7 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
   CHECK(figures_of(*first) == expected(0, 0));
   CHECK(figures_of(*stepping.model(0)) == expected(2, 0));
   CHECK(figures_of(*stepping.model(1)) == expected(2, 1));
-  CHECK(&s.scene->model(1) == stepping.model(1).get());
+  CHECK(s.scene->model(1) == stepping.model(1));
 
   REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
   const LoadSteppingState third = stepping.state();
@@ -153,7 +153,7 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
 
 TEST_CASE("A fraction of an increment that no number expresses counts as none") {
   const Solved s = scene_from(two_levels);
-  LoadStepping& stepping = *s.scene->schedule;
+  LoadStepping& stepping = *s.scene->load_stepping;
   stepping.begin(0, true);
   REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
   LoadSteppingState near = stepping.state();

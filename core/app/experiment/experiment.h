@@ -77,21 +77,20 @@ struct FollowingVertex {
 };
 using FollowingVertices = std::vector<FollowingVertex>;
 
-/// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
-struct Scene {
-  Hierarchy hierarchy;
-  std::vector<NamedEnergy> energies;                      ///< of the models, handles included
-  std::vector<std::shared_ptr<const LevelModel>> models;  ///< at the start, before any load stepping
-  std::vector<Positions> placed;  ///< the starts without noise, where pins and handles hold (n×3) [m]
-  std::vector<Positions> starts;  ///< with noise, and pinned vertices at their targets (n×3) [m]
+/// The problem of an experiment, and what it was made from.
+struct Scene : Problem {
+  explicit Scene(Hierarchy all) : Problem{levels, {}, {}, nullptr}, levels(std::move(all)) {}
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  const Hierarchy levels;                    ///< the problem's
+  std::vector<NamedEnergy> energies;         ///< of the models, handles included
+  std::vector<Positions> placed;             ///< the starts without noise, where pins and handles hold [m]
   std::vector<FollowingVertices> following;  ///< of each level
   std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
-  std::unique_ptr<LoadStepping> schedule;    ///< null without one
 
-  /// The model of a level under the load that it has reached; valid until the next load step.
-  const LevelModel& model(int level) const;
-  const LevelModel& finest_model() const { return model(static_cast<int>(models.size()) - 1); }
-  Problem problem() const;
+  /// The finest level's model under the load that it has reached; valid until the next load step.
+  const LevelModel& finest_model() const { return *model(finest()); }
 };
 
 /// Whether an initial state that intersects something is refused.

@@ -214,12 +214,6 @@ void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
   if (!e.parameters.start.file.empty()) start_mesh(e, errors);
 }
 
-const LevelModel& Scene::model(int level) const {
-  return schedule ? *schedule->model(level) : *models[level];
-}
-
-Problem Scene::problem() const { return {hierarchy, models, starts, schedule.get()}; }
-
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
@@ -227,9 +221,9 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   if (!cloth && !p.start.file.empty()) start_mesh(e, errors);
   if (!errors.empty()) return nullptr;
 
-  auto scene = std::make_unique<Scene>();
+  std::unique_ptr<Scene> scene;
   try {
-    scene->hierarchy = Hierarchy::of(std::move(*cloth), *e.refiner, p.levels);
+    scene = std::make_unique<Scene>(Hierarchy::of(std::move(*cloth), *e.refiner, p.levels));
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});
     return nullptr;
@@ -267,7 +261,7 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   scene->following = following_vertices(e, *scene, errors);
   check_schedule_on_levels(e, *scene, errors);
   if (!errors.empty()) return nullptr;
-  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);
+  if (!p.schedule.keys.empty()) scene->load_stepping = std::make_unique<ScheduleStepping>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;
 }

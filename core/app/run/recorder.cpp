@@ -78,8 +78,8 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
   last_ = state.last;
   overhead_ = state.overhead;
   last_load_ = state.last_load;
-  if (scene_.schedule && !last_load_.values.empty())
-    scene_.schedule->restore(static_cast<int>(scene_.models.size()) - 1, last_load_);
+  if (scene_.load_stepping && !last_load_.values.empty())
+    scene_.load_stepping->restore(static_cast<int>(scene_.models.size()) - 1, last_load_);
   reset_peak_memory();
   restored_ = write_again();
   save();
@@ -144,7 +144,7 @@ void Recorder::level_started(int level) {
 }
 
 Recorder::Json Recorder::intersections(int level, const Positions& x) {
-  const auto& contacts = scene_.model(level).contacts();
+  const auto& contacts = scene_.model(level)->contacts();
   if (contacts.empty()) return nullptr;
   constexpr std::size_t max_logged = 10;  // of each contact model
   std::size_t count = 0;
@@ -176,7 +176,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
-  const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
+  const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   const double energy = model.energy(r.x);
   Json parts = Json::object(), released_parts = parts;
   for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = finite_or_null(joules);
@@ -215,7 +215,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
 }
 
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
-  const LevelModel& model = scene_.model(r.level);
+  const LevelModel& model = *scene_.model(r.level);
   method_entry()["increments"].push_back(
       {{"level", r.level},
        {"increment", r.increment},

@@ -75,7 +75,7 @@ bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   const ReferenceParameters& p = experiment_.parameters.reference;
   const int finest = static_cast<int>(scene_.models.size()) - 1;
   // The last method may have been stopped under an earlier load than that of the other methods' states.
-  if (scene_.schedule && !last_load_.values.empty()) scene_.schedule->restore(finest, last_load_);
+  if (scene_.load_stepping && !last_load_.values.empty()) scene_.load_stepping->restore(finest, last_load_);
   const Positions* reference = find_reference(observer, cancelled);
   if (reference) {
     write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});

@@ -108,7 +108,7 @@ Recorder::Names Recorder::write_obstacles() {
     const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
     results_["obstacles"].push_back(name);
     // A run that was killed after its last checkpoint may have moved them since: that is no damage.
-    const bool may_differ = scene_.schedule && std::filesystem::exists(folder_.file(name));
+    const bool may_differ = scene_.load_stepping && std::filesystem::exists(folder_.file(name));
     if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
   }
   return written;
@@ -116,7 +116,7 @@ Recorder::Names Recorder::write_obstacles() {
 
 void Recorder::follow_schedule() {
   // A method that is stopped on the way leaves them where another's final states have them.
-  const LoadStepping* schedule = scene_.schedule.get();
+  const LoadStepping* schedule = scene_.load_stepping.get();
   if (!schedule || (!schedule->finished() && schedule->increment() <= last_load_.increment)) return;
   last_load_ = schedule->state();
   write_obstacles();

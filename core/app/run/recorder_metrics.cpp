@@ -51,7 +51,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
-        measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
+        measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.model(level), x, &other}, row);
     for (const MetricValue& v : result.values) at_dotted(row, v.name) = finite_or_null(v.value);
     if (!fields) continue;
     for (const MetricField& f : result.fields) fields->push_back({f.name, f.values});
@@ -70,7 +70,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
     const LevelResult& r = results[i];
     worst = worse_of(worst, r.outcome);
     Json& state = entry["levels"][i];
-    const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
+    const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :

@@ -52,7 +52,7 @@ class StartProbe {
   explicit StartProbe(const Scene& scene)
       : scene_(scene),
         components_(scene.hierarchy.levels[0].topology.components()),
-        obstacles_(obstacles_of(scene.model(0).contacts())),
+        obstacles_(obstacles_of(scene.model(0)->contacts())),
         diagonal_(bounding_box_diagonal(scene.starts[0])) {}
 
   double diagonal() const { return diagonal_; }
@@ -62,7 +62,7 @@ class StartProbe {
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
       const Positions x = scene_.starts[l].rowwise() + translation.transpose();
       clearance.level = static_cast<int>(l);
-      for (const auto& contact : scene_.model(static_cast<int>(l)).contacts()) {
+      for (const auto& contact : scene_.model(static_cast<int>(l))->contacts()) {
         clearance.intersections = contact->intersections(x);
         if (!clearance.intersections.empty()) return clearance;
         const auto near = contact->build_candidates(x, x)->build_collisions(x);
