@@ -5,7 +5,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/app/experiment/contact_configs.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -103,7 +102,7 @@ Recorder::Names Recorder::write_scene() {
 Recorder::Names Recorder::write_obstacles() {
   Names written;
   results_["obstacles"] = Json::array();
-  results_["obstacle_names"] = obstacle_names(*experiment_.registry, experiment_.parameters);
+  results_["obstacle_names"] = experiment_.obstacle_names();
   for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
     const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
     results_["obstacles"].push_back(name);

@@ -183,7 +183,7 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
   CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
   std::vector<std::string> changing;
-  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
+  for (const ScheduleKey& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
                     options.verbosity, scene.load_stepping.get(), changing);
   RunObserver observer(recorder, checkpoints, progress, options);
