@@ -29,7 +29,7 @@ class Check {
   void all() const {
     methods();
     levels();
-    if (c_.own_start) positions(*c_.own_start, c_.first_level, "where the methods begin");
+    if (c_.start) positions(*c_.start, c_.first_level, "where the methods begin");
     if (c_.state.under_way) under_way(*c_.state.under_way);
     recorder(c_.recorder);
   }
@@ -143,7 +143,7 @@ class Check {
     require(s.values.empty() || !s.pattern.invalidated, "the factor");
   }
 
-  void recorder(const RecorderState& s) const {
+  void recorder(const Recorder::State& s) const {
     const Json results = parse_json(s.results);
     const bool has_methods =
         results.is_object() && results.contains("methods") && results["methods"].is_object();
