@@ -78,7 +78,7 @@ class LevelZero : public Observer {
 /// Milliseconds of each increment before any step, on level 0 at the scene's start: the new load and its
 /// model.
 std::vector<double> load_milliseconds(const Scene& scene) {
-  LoadStepping& stepping = *scene.schedule;
+  LoadStepping& stepping = *scene.load_stepping;
   stepping.begin(0, true);
   std::vector<double> milliseconds;
   for (std::size_t k = 0; k <= std::size(changes); ++k) {
@@ -110,7 +110,7 @@ int run(const char* result_file, const std::string& side) {
   for (auto& once : all)
     for (const char* name : methods) {
       LevelZero level;
-      method(*e, name).solve(scene->problem(), level);
+      method(*e, name).solve(*scene, level);
       once.push_back(level.rows);
     }
   const std::vector<double> load = load_milliseconds(*scene);

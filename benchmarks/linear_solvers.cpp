@@ -218,8 +218,7 @@ void measure(const Registry& registry, const std::string& scene_name, int levels
                        {"newton.force_tolerance", "1e-2"}});
   const LevelModel& model = *loaded.scene->models.back();
   FinestReached some(levels - 1);
-  const LevelResult reached =
-      method(*loaded.experiment, "cascadic").solve(loaded.scene->problem(), some).back();
+  const LevelResult reached = method(*loaded.experiment, "cascadic").solve(*loaded.scene, some).back();
   if (reached.level != levels - 1) throw std::runtime_error(scene_name + ": " + reached.message);
 
   PlainObjective objective(model);

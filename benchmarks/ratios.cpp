@@ -83,7 +83,7 @@ class Table {
 /// A wrinkled state of the finest level: what a few iterations of coarse PCS lead to.
 Positions wrinkled_state(const Experiment& e, const Scene& scene) {
   FirstIterations some(30);
-  const auto results = method(e, "pcs_galerkin_1").solve(scene.problem(), some);
+  const auto results = method(e, "pcs_galerkin_1").solve(scene, some);
   return scene.hierarchy.prolong(results.front().x, 0, static_cast<int>(scene.models.size()) - 1,
                                  scene.hierarchy.prolongations);
 }
@@ -130,7 +130,7 @@ void coarsest_level(const Experiment& e, const Scene& scene, int left_out, Table
   for (int i = 0; i < 3; ++i)
     for (const char* name : {"newton", "pcs", "pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"}) {
       FirstIterations some(iterations);
-      method(e, name).solve(scene.problem(), some);
+      method(e, name).solve(scene, some);
       seconds[name].push_back(some.seconds_per_iteration(left_out));
     }
   for (const char* name : {"pcs", "pcs_coarse", "pcs_galerkin_1", "pcs_galerkin_2"})
@@ -142,7 +142,7 @@ void coarsest_level(const Experiment& e, const Scene& scene, int left_out, Table
 void draped_level(const Experiment& e, const Scene& scene, Table& table) {
   const int finest = static_cast<int>(scene.models.size()) - 1;
   FirstIterations some(20, finest);
-  const LevelResult r = method(e, "cascadic").solve(scene.problem(), some).back();
+  const LevelResult r = method(e, "cascadic").solve(scene, some).back();
   auto phase = r.seconds_by_phase;
   const double n = r.iterations, whole = r.seconds - phase["refinement"];
   const std::string size = std::to_string(scene.hierarchy.levels.back().vertex_count()) + " vertices: ";

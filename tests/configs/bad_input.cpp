@@ -246,9 +246,9 @@ TEST_CASE("unknown plugins of every kind") {
   CHECK(said_of_edit("levels: 2", "refiner: butterfly") ==
         "error: e.yaml:3:10: unknown refiner \"butterfly\"; known: loop, midpoint" + own);
   CHECK(said_of_edit("levels: 2", "contact: glue") ==
-        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, none, shapes" + own);
+        "error: e.yaml:3:10: unknown contact \"glue\"; known: ipc, shapes" + own);
   CHECK(said_of_edit("levels: 2", "contact: [ipc, glue]") ==
-        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, none, shapes" + own);
+        "error: e.yaml:3:16: unknown contact \"glue\"; known: ipc, shapes" + own);
   CHECK(said_of_edit("levels: 2", "metrics: [{type: shine}]") ==
         "error: e.yaml:3:18: unknown metric \"shine\"; known: curvature_consistency, distance, energy, "
         "energy_above_end, residuals, silhouette, stretch" +
@@ -386,7 +386,7 @@ TEST_CASE("obstacles that no contact model takes are refused with the model that
   const auto said = [](const std::string& contact, const std::string& obstacle) {
     return said_of_edit("levels: 2", "contact: " + contact + "\nobstacles: [" + obstacle + "]");
   };
-  for (const char* contact : {"ipc", "none", "[ipc, none]"})
+  for (const char* contact : {"ipc", "[]", "[ipc]"})
     CHECK(said(contact, "{name: ball, shape: sphere}") ==
           "error: e.yaml:4:13: obstacles[0] (ball): no contact model of this experiment takes \"shape\"; add "
           "shapes to \"contact\"\n");

@@ -324,7 +324,7 @@ methods: {pcs: {}, newton: {}}
   CHECK(restored());
 }
 
-TEST_CASE("So does one under load stepping with a level that starts from the initial state") {
+TEST_CASE("So does one under load stepping with a level that begins at the scene's start") {
   // A big fan of needles over a row of tiny triangles: Loop's rest shape of the fan is centimetres away from
   // the coarse one, and the state of the coarse level does not get into it within the strain limit.
   constexpr int columns = 80;

@@ -201,7 +201,7 @@ TEST_CASE("schema is a JSON Schema of experiments, with every plugin's name and 
     CHECK(!choice["properties"].contains("obstacles"));
     CHECK(!choice["properties"].contains("friction"));
   }
-  CHECK(models >= 3);
+  CHECK(models >= 2);
   std::set<std::string> solvers;
   for (const auto& choice : properties["methods"]["additionalProperties"]["anyOf"])
     if (choice.contains("properties")) {

@@ -103,7 +103,7 @@ TEST_CASE("Every solver refines early on request, on every level but the finest"
     INFO(name);
     Solved s = scene_from(hanging_square(name));
     Impatient observer;
-    s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
+    s.levels = s.experiment.methods[0].second->solve(*s.scene, observer);
     require_finest_last(s.levels);
     for (std::size_t l = 0; l + 1 < s.levels.size(); ++l, ++refined) {
       CHECK(s.levels[l].outcome == Outcome::refined_early_on_request);

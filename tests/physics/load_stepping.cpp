@@ -21,13 +21,13 @@ struct Increments : Observer {
     states.push_back(x);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
-    for (const auto& contact : s.scene->model(row.level).contacts())
+    for (const auto& contact : s.scene->model(row.level)->contacts())
       intersections += contact->intersections(x).size();
   }
 };
 
 void run(Solved& s, Increments& increments) {
-  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), increments);
+  s.levels = s.experiment.methods[0].second->solve(*s.scene, increments);
 }
 
 /// A square above a ball, of which one pin is moved by the schedule.

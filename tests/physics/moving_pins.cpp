@@ -19,7 +19,7 @@ struct Iterations : Observer {
   std::size_t intersections = 0;
 
   void increment_finished(const IncrementRow& row, const Positions& x) override {
-    for (const auto& contact : s.scene->model(row.level).contacts())
+    for (const auto& contact : s.scene->model(row.level)->contacts())
       intersections += contact->intersections(x).size();
     if (row.time == 1) return;
     largest = std::max(largest, row.iterations);
@@ -29,7 +29,7 @@ struct Iterations : Observer {
 
 Iterations solve(Solved& s) {
   Iterations iterations(s);
-  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), iterations);
+  s.levels = s.experiment.methods[0].second->solve(*s.scene, iterations);
   INFO(s.levels[0].message);
   CHECK(s.levels[0].outcome == Outcome::converged);
   CHECK(s.levels[0].message.empty());

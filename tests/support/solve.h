@@ -51,7 +51,7 @@ inline void run_method(Solved& s, const std::string& name = "") {
   for (const auto& [own_name, solver] : s.experiment.methods) {
     if (!name.empty() && own_name != name) continue;
     drape::Observer silent;
-    s.levels = solver->solve(s.scene->problem(), silent);
+    s.levels = solver->solve(*s.scene, silent);
     return;
   }
   throw std::runtime_error("the experiment has no method " + name);

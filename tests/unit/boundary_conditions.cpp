@@ -30,7 +30,7 @@ methods: {newton: {}}
 )");
     for (int l = 0; l < 2; ++l) {
       INFO(l);
-      const LevelModel& model = s.scene->model(l);
+      const LevelModel& model = *s.scene->model(l);
       Positions x = model.level().rest.vertices;
       x.col(2).array() += 0.3;
       REQUIRE(model.dirichlet().size() > 2);

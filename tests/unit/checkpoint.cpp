@@ -63,7 +63,7 @@ Checkpoint full() {
   factor.shift = 16;
   factor.values = {1, 2, 3};
   c.first_level = 1;
-  c.own_start = Positions::Random(4, 3);
+  c.start = Positions::Random(4, 3);
   c.recorder.results = "{}";
   c.recorder.states = {{"pcs", 1, Positions::Random(9, 3)}};
   c.recorder.snapshots = {2, 5, {{{1, 2, 3}, Positions::Random(9, 3)}}};

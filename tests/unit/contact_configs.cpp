@@ -37,15 +37,16 @@ std::vector<std::string> names_in(const ConfigNode& obstacles) {
 
 TEST_CASE("Each contact model gets the obstacles that have its keys, in the list's order, and the friction") {
   const Experiment e = experiment_from(mixed);
-  ConfigErrors errors;
-  const std::vector<ContactConfig> configs = contact_configs(test_registry(), e.parameters, errors);
-  REQUIRE(errors.empty());
+  const std::vector<ContactConfig>& configs = e.contact_configs;
   REQUIRE(configs.size() == 2);
   CHECK((configs[0].obstacles == std::vector<std::size_t>{1, 2}));
   CHECK((configs[1].obstacles == std::vector<std::size_t>{0, 3}));
-  CHECK((names_in(*configs[0].node.find("obstacles")) == std::vector<std::string>{"ball", "floor"}));
-  CHECK((names_in(*configs[1].node.find("obstacles")) == std::vector<std::string>{"plate", "shell"}));
-  for (const ContactConfig& config : configs) CHECK(config.node.find("friction")->scalar == "0.25");
+  const auto written = [](const ContactConfig& config) {
+    return config.parameters.entry->schema.write(config.parameters.values.get());
+  };
+  CHECK((names_in(*written(configs[0]).find("obstacles")) == std::vector<std::string>{"ball", "floor"}));
+  CHECK((names_in(*written(configs[1]).find("obstacles")) == std::vector<std::string>{"plate", "shell"}));
+  for (const ContactConfig& config : configs) CHECK(written(config).find("friction")->scalar == "0.25");
 
   const Level level = Level::of(0, grid({0.1, 0.1}, 3, 3, Diagonals::one_way));
   CHECK(e.contacts[0]->bind(level, Material())->obstacles().size() == 2);
@@ -54,19 +55,27 @@ TEST_CASE("Each contact model gets the obstacles that have its keys, in the list
 
 TEST_CASE("The obstacles' names are in the order of their meshes, model by model") {
   Experiment e = experiment_from(mixed);
-  CHECK((obstacle_order(test_registry(), e.parameters) == std::vector<std::size_t>{1, 2, 0, 3}));
+  CHECK((e.obstacle_order() == std::vector<std::size_t>{1, 2, 0, 3}));
   e.parameters.obstacles[2].entries.erase(e.parameters.obstacles[2].entries.begin());
-  CHECK((obstacle_names(test_registry(), e.parameters) ==
-         std::vector<std::string>{"ball", "", "plate", "shell"}));
+  CHECK((e.obstacle_names() == std::vector<std::string>{"ball", "", "plate", "shell"}));
 }
 
 TEST_CASE("Two obstacles of one name are refused, whichever model takes them") {
-  ExperimentParameters p = experiment_from(mixed).parameters;
-  p.obstacles[3] = p.obstacles[1];
-  ConfigErrors errors;
-  contact_configs(test_registry(), p, errors);
-  REQUIRE(errors.size() == 1);
-  CHECK(errors[0].message == "\"ball\" is also the name of obstacles[1]; give each obstacle its own");
+  std::string twice = mixed;
+  twice.replace(twice.find("{name: shell"), 12, "{name: ball");
+  CHECK_THROWS_WITH(
+      experiment_from(twice),
+      Contains(":11:12: \"ball\" is also the name of obstacles[1]; give each obstacle its own"));
+}
+
+TEST_CASE("Without the key, or with an empty list, there is no contact") {
+  for (const char* none : {"", "contact: []\n", "contact: ~\n"}) {
+    const Experiment e =
+        experiment_from("name: free\nenergies: [gravity]\nmethods: {newton: {}}\n" + std::string(none));
+    CHECK(e.contacts.empty());
+    CHECK(e.resolved.find("contact")->one_line() == "[]");
+    CHECK(experiment_from(to_yaml(e.resolved)).resolved.one_line() == e.resolved.one_line());
+  }
 }
 
 TEST_CASE("A contact model is listed once") {
@@ -79,7 +88,6 @@ TEST_CASE("Friction is refused where no contact model has it, also where only a 
   const std::string free = R"(name: free
 cloth: {shape: square, side: 1, columns: 3, rows: 3}
 energies: [neo_hookean, gravity]
-contact: none
 methods: {newton: {}}
 )";
   const std::string refused =

@@ -47,7 +47,7 @@ const std::string shift =
 struct IncrementObserver : Observer {
   explicit IncrementObserver(Solved& s) : scene(*s.scene) {}
   void increment_finished(const IncrementRow& row, const Positions& x) override {
-    const LevelModel& model = *scene.schedule->model(row.level);
+    const LevelModel& model = *scene.load_stepping->model(row.level);
     ++increments;
     most_violated = std::max(most_violated, row.max_constraint_violation);
     for (const auto& contact : model.contacts()) intersections += contact->intersections(x).size();
@@ -73,7 +73,7 @@ struct IncrementObserver : Observer {
 };
 
 void run_observed(Solved& s, IncrementObserver& observer) {
-  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
+  s.levels = s.experiment.methods[0].second->solve(*s.scene, observer);
   for (const LevelResult& level : s.levels) {
     INFO("level " << level.level << ": " << level.message);
     CHECK(has_converged(level.outcome));
@@ -136,7 +136,7 @@ TEST_CASE("a patch that follows an animation keeps its distance from the same po
 
 TEST_CASE("where the obstacle is as at the start the targets are too, and a state has them again") {
   const Solved s = scene_from(sheet_on(ball, turn, "body"));
-  LoadStepping& schedule = *s.scene->schedule;
+  LoadStepping& schedule = *s.scene->load_stepping;
   const auto targets = [&] {
     Positions all = Positions::Zero(s.scene->hierarchy.levels[1].vertex_count(), 3);
     schedule.model(1)->set_dirichlet(all);

@@ -98,7 +98,7 @@ newton: {form: static, force_tolerance: 1e6, decrement_tolerance: 1e-2, max_step
 methods: {newton: {}}
 )");
   Standstills observer;
-  s.levels = s.experiment.methods[0].second->solve(s.scene->problem(), observer);
+  s.levels = s.experiment.methods[0].second->solve(*s.scene, observer);
   CHECK(observer.count <= 3);
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("A level whose friction was damped is resumed bit for bit") {
   Solved s = scene_from(dragged_strip("step_growth: 1.5"));
   Keeping whole;
   const Solver& solver = *s.experiment.methods[0].second;
-  const LevelResult expected = solver.solve(s.scene->problem(), whole)[0];
+  const LevelResult expected = solver.solve(*s.scene, whole)[0];
   REQUIRE(expected.outcome == Outcome::converged);
   int damped = 0;
   for (const NewtonState& state : whole.states) {
@@ -169,7 +169,7 @@ TEST_CASE("A level whose friction was damped is resumed bit for bit") {
     Observer silent;
     MethodState from;
     from.under_way = state;
-    const LevelResult r = solver.resume(again.scene->problem(), from, silent)[0];
+    const LevelResult r = solver.resume(*again.scene, from, silent)[0];
     CHECK(r.steps == expected.steps);
     CHECK(r.x == expected.x);
     CHECK(r.force_residual == expected.force_residual);
@@ -182,7 +182,7 @@ TEST_CASE("A message's force residual is that of the last iteration's row") {
   for (int max_steps = 10; max_steps < 40; ++max_steps) {
     Solved s = scene_from(dragged_strip("max_steps: " + std::to_string(max_steps)));
     Keeping kept;
-    const LevelResult r = s.experiment.methods[0].second->solve(s.scene->problem(), kept)[0];
+    const LevelResult r = s.experiment.methods[0].second->solve(*s.scene, kept)[0];
     INFO(r.message);
     CHECK(kept.rows.back().force_residual == r.force_residual);
     if (r.outcome != Outcome::max_steps_reached) continue;

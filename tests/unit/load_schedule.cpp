@@ -57,8 +57,8 @@ Figures figures_of(const LevelModel& model) {
 TEST_CASE("The keys' values follow the pseudo-time, one after another") {
   const Solved s = scene_from(two_levels);
   const LoadSchedule schedule(s.experiment, *s.scene);
-  CHECK(schedule.increment_count() == 4);
-  CHECK(schedule.time(3) == 3);
+  CHECK(schedule.keys().steps == 4);
+  CHECK(schedule.keys().time(3) == 3);
   CHECK(schedule.values(0) == schedule.first()->values);
   const std::vector<double> expected = {0, 0, 0.3, -3.81, 8e3, 0.2, 0.2, -0.14}, values = schedule.values(3);
   REQUIRE(values.size() == expected.size());
@@ -119,7 +119,7 @@ TEST_CASE("Loads share what is equal in them") {
 
 TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
   const Solved s = scene_from(two_levels);
-  LoadStepping& stepping = *s.scene->schedule;
+  LoadStepping& stepping = *s.scene->load_stepping;
   const LoadSchedule schedule(s.experiment, *s.scene);
   const auto expected = [&](int increment, int level) {
     return figures_of(
@@ -136,7 +136,7 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
   CHECK(figures_of(*first) == expected(0, 0));
   CHECK(figures_of(*stepping.model(0)) == expected(2, 0));
   CHECK(figures_of(*stepping.model(1)) == expected(2, 1));
-  CHECK(&s.scene->model(1) == stepping.model(1).get());
+  CHECK(s.scene->model(1) == stepping.model(1));
 
   REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
   const LoadSteppingState third = stepping.state();
@@ -153,7 +153,7 @@ TEST_CASE("Load stepping passes models on, and coarser levels keep theirs") {
 
 TEST_CASE("A fraction of an increment that no number expresses counts as none") {
   const Solved s = scene_from(two_levels);
-  LoadStepping& stepping = *s.scene->schedule;
+  LoadStepping& stepping = *s.scene->load_stepping;
   stepping.begin(0, true);
   REQUIRE(stepping.advance(0, s.scene->starts[0]).fraction == 1);
   LoadSteppingState near = stepping.state();
@@ -249,7 +249,7 @@ TEST_CASE("A load at which a pin has no vertex is refused between the keys' time
       "[0, 1], values: [0.02, 0.12]}"));
   const LoadSchedule schedule(s.experiment, *s.scene);
   const auto model = [&](double time) {
-    return schedule.model(*schedule.at(schedule.values_at(time)), 0, *s.scene->models[0]);
+    return schedule.model(*schedule.at(schedule.keys().values_at(time)), 0, *s.scene->models[0]);
   };
   CHECK(model(0)->dirichlet().size() == model(1)->dirichlet().size());
   CHECK_THROWS_WITH(model(0.5), "pin 0 selects no vertex of level 0");

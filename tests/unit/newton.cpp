@@ -158,7 +158,7 @@ TEST_CASE("The step size stays the same within an implicit step, and altogether 
   NewtonCase constant;
   p = tight();
   p.step_growth = 1;
-  p.step_size = 2 * p.step_size_limit;
+  p.step_size = 2 * StepController::max_step_size;
   constant.solve(p, 0.4);
   REQUIRE(constant.observer.rows.size() > 2);
   for (const IterationRow& row : constant.observer.rows) REQUIRE(row.step_size == p.step_size);

@@ -135,13 +135,13 @@ TEST_CASE("Border vertices at one place are named, as long as they are not welde
   both.triangles << sheet.triangles, (sheet.triangles.array() + n).matrix();
   write_mesh(folder / "both.obj", both);
   const std::string cloth = "{shape: file, file: " + (folder / "both.obj").string() + "}";
-  CHECK_THAT(warnings_of(scene_yaml(cloth, "", 3.18e-4, "none")),
+  CHECK_THAT(warnings_of(scene_yaml(cloth, "", 3.18e-4, "[]")),
              Contains("2: 4 border vertices lie on another one, as ") &&
                  Contains("(counted from 0) at (0.3, 0, 0): the cloth is not joined there; if it should be, "
                           "weld them in the file"));
   both.vertices.bottomRows(n).col(0).array() += 1e-3;
   write_mesh(folder / "both.obj", both);
-  CHECK(warnings_of(scene_yaml(cloth, "", 3.18e-4, "none")) == "");
+  CHECK(warnings_of(scene_yaml(cloth, "", 3.18e-4, "[]")) == "");
 }
 
 TEST_CASE("check and run warn, and an experiment with a warning runs all the same") {

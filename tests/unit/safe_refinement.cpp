@@ -16,16 +16,15 @@ using namespace drape;
 namespace {
 
 /// A cloth on two levels, refined by Loop's weights, with pins, contact and limits on both.
-struct TwoLevels {
-  Hierarchy hierarchy;
-  std::vector<std::shared_ptr<const LevelModel>> models;
-  std::vector<Positions> starts;
+struct TwoLevels : Problem {
+  Hierarchy levels;
   std::vector<NamedEnergy> energies_;
   std::vector<std::shared_ptr<ContactModel>> contacts_;
 
   TwoLevels(const TriangleMesh& coarse, const std::vector<std::string>& contacts,
             const std::vector<std::string>& energies = {}, const std::vector<int>& pins = {})
-      : hierarchy(Hierarchy::of(coarse, *make_plugin_from<Refiner>("loop"), 2)) {
+      : Problem{levels, {}, {}, nullptr},
+        levels(Hierarchy::of(coarse, *make_plugin_from<Refiner>("loop"), 2)) {
     std::vector<NamedEnergy> own;
     for (const std::string& energy : energies) own.push_back({energy, make_plugin_from<Energy>(energy)});
     std::vector<std::shared_ptr<ContactModel>> models_of_contact;
@@ -47,13 +46,12 @@ struct TwoLevels {
                                                    std::move(dirichlet), contacts_);
   }
 
-  Problem problem() const { return {hierarchy, models, starts}; }
   Positions target(const Positions& x) const { return hierarchy.prolongations[0] * x; }
   Positions midpoint(const Positions& x) const { return hierarchy.midpoints[0] * x; }
 
   Refined refine(const Positions& x) const {
     Observer silent;
-    return refine_safely(problem(), 0, x, hierarchy.prolongations[0], Stopwatch(), silent);
+    return refine_safely(*this, 0, x, hierarchy.prolongations[0], Stopwatch(), silent);
   }
   std::size_t intersections(int level, const Positions& x) const {
     std::size_t count = 0;
@@ -301,13 +299,12 @@ TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
 
 TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {
   const TornApart cloth;
-  const Problem problem = cloth.problem();
   NewtonParameters newton;
   newton.max_steps = 50;
   Observer silent;
   const std::vector<LevelResult> results = solve_progressively(
-      problem, cloth.hierarchy.midpoints,
-      [&](int level) { return std::make_unique<PlainObjective>(problem.model(level)); }, newton, {}, silent);
+      cloth, cloth.hierarchy.midpoints,
+      [&](int level) { return std::make_unique<PlainObjective>(cloth.model(level)); }, newton, {}, silent);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
   CHECK_FALSE(results[1].from_initial_state);       // the attempt counts as cost

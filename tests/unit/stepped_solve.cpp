@@ -36,7 +36,7 @@ struct Quiet : Observer {
 /// What Solver::solve gives.
 std::vector<LevelResult> solved(const std::string& method, Quiet& observer) {
   const auto fresh = begin(method);
-  return fresh->experiment()->solver_of(method).solve(fresh->scene()->problem(), observer);
+  return fresh->experiment()->solver_of(method).solve(*fresh->scene(), observer);
 }
 
 void advance_to_end(SteppedSolve& solve) {
@@ -111,13 +111,13 @@ TEST_CASE("a stepped solve is stopped, refined or left at any iteration") {
 TEST_CASE("what a solver throws is thrown to the caller, and only what resumes takes a state") {
   const auto any = begin("pcs");
   const Failing failing;
-  SteppedSolve solve(failing, any->scene()->problem());
+  SteppedSolve solve(failing, *any->scene());
   REQUIRE(solve.advance());
   CHECK_THROWS_WITH(solve.advance(), "out of luck");
   CHECK_FALSE(solve.advance());
   MethodState state;
   state.level = 1;
-  CHECK_THROWS_WITH(SteppedSolve(failing, any->scene()->problem(), state),
+  CHECK_THROWS_WITH(SteppedSolve(failing, *any->scene(), state),
                     Catch::Contains("cannot go on from a state"));
 }
 

@@ -9,31 +9,6 @@ namespace drape {
 
 namespace {
 
-void check_selection(const std::string& word, std::size_t number, const VertexSelection& p,
-                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
-  const Level& coarsest = levels[0];
-  const std::string name = word + " " + std::to_string(number) + " (" + p.region + ")";
-  const bool by_index = p.region == "vertices";
-  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
-    errors.push_back({where, name + " selects no vertex of the coarsest level; " +
-                                 (by_index ? "list some under \"vertices\"" : "widen its region")});
-  else if (!by_index)
-    for (const Level& level : levels)
-      if (selected_vertices(p, level, coarsest).empty()) {
-        errors.push_back(
-            {where, name + " selects vertices of the coarsest level, but none of level " +
-                        std::to_string(level.index) +
-                        ", whose rest positions the refiner moves; widen its region, or select by "
-                        "\"nearest\" or \"vertices\""});
-        break;
-      }
-  for (int v : p.vertices)
-    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
-      errors.push_back({where, name + " names vertex " + std::to_string(v) +
-                                   ", but those of the coarsest level go from 0 to " +
-                                   std::to_string(coarsest.vertex_count() - 1)});
-}
-
 /// Throws std::runtime_error if a pin or handle has no vertex on a level: check_pin and check_handle look at
 /// the loads of the keys' times, but an increment between them may end at such a load.
 void require_vertices(const std::vector<int>& selected, const std::string& name, const Level& level) {
@@ -126,22 +101,42 @@ Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Le
                                    : Eigen::Vector3d(placed.row(vertex));
 }
 
+std::vector<VertexSelection> selections_of(const ExperimentParameters& p, LoadPart part) {
+  if (part == LoadPart::pins) return {p.pins.begin(), p.pins.end()};
+  return {p.handles.begin(), p.handles.end()};
+}
+
 void check_boundary_conditions(const Experiment& e, const std::vector<Level>& levels, ConfigErrors& errors) {
-  const ExperimentParameters& p = e.parameters;
-  const auto location = [&](const char* key, std::size_t k) { return e.source.find(key)->items[k].where; };
-  for (std::size_t k = 0; k < p.pins.size(); ++k) check_pin(p, k, location("pins", k), levels, errors);
-  for (std::size_t k = 0; k < p.handles.size(); ++k)
-    check_handle(p, k, location("handles", k), levels, errors);
+  for (const auto& [key, part] : {std::pair("pins", LoadPart::pins), {"handles", LoadPart::handles}})
+    for (std::size_t k = 0; k < selections_of(e.parameters, part).size(); ++k)
+      check_selection(e.parameters, part, k, e.source.find(key)->items[k].where, levels, errors);
 }
 
-void check_pin(const ExperimentParameters& p, std::size_t k, const Location& where,
-               const std::vector<Level>& levels, ConfigErrors& errors) {
-  check_selection("pin", k, p.pins[k], where, levels, errors);
-}
-
-void check_handle(const ExperimentParameters& p, std::size_t k, const Location& where,
-                  const std::vector<Level>& levels, ConfigErrors& errors) {
-  check_selection("handle", k, p.handles[k], where, levels, errors);
+void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
+                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors) {
+  const VertexSelection p = selections_of(parameters, part)[k];
+  const Level& coarsest = levels[0];
+  const std::string name =
+      (part == LoadPart::pins ? "pin " : "handle ") + std::to_string(k) + " (" + p.region + ")";
+  const bool by_index = p.region == "vertices";
+  if (by_index ? p.vertices.empty() : selected_vertices(p, coarsest, coarsest).empty())
+    errors.push_back({where, name + " selects no vertex of the coarsest level; " +
+                                 (by_index ? "list some under \"vertices\"" : "widen its region")});
+  else if (!by_index)
+    for (const Level& level : levels)
+      if (selected_vertices(p, level, coarsest).empty()) {
+        errors.push_back(
+            {where, name + " selects vertices of the coarsest level, but none of level " +
+                        std::to_string(level.index) +
+                        ", whose rest positions the refiner moves; widen its region, or select by "
+                        "\"nearest\" or \"vertices\""});
+        break;
+      }
+  for (int v : p.vertices)
+    if (by_index && (v < 0 || v >= coarsest.vertex_count()))
+      errors.push_back({where, name + " names vertex " + std::to_string(v) +
+                                   ", but those of the coarsest level go from 0 to " +
+                                   std::to_string(coarsest.vertex_count() - 1)});
 }
 
 std::vector<DirichletVertex> dirichlet_vertices(const ExperimentParameters& p, const Level& level,

@@ -9,6 +9,9 @@ namespace drape {
 std::vector<int> selected_vertices(const VertexSelection& selection, const Level& level,
                                    const Level& coarsest);
 
+/// The pins or the handles, as `part` says.
+std::vector<VertexSelection> selections_of(const ExperimentParameters& parameters, LoadPart part);
+
 /// The target [m] of a vertex that a pin or handle selects; without a transform, its position in `placed`
 /// (n×3) [m].
 Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Level& level,
@@ -18,11 +21,9 @@ Eigen::Vector3d target_of(const VertexSelection& selection, int vertex, const Le
 void check_boundary_conditions(const Experiment& experiment, const std::vector<Level>& levels,
                                ConfigErrors& errors);
 
-/// The same for pin k alone, or handle k, with `where` as the errors' location.
-void check_pin(const ExperimentParameters& parameters, std::size_t k, const Location& where,
-               const std::vector<Level>& levels, ConfigErrors& errors);
-void check_handle(const ExperimentParameters& parameters, std::size_t k, const Location& where,
-                  const std::vector<Level>& levels, ConfigErrors& errors);
+/// The same for pin or handle k alone, as `part` says, with `where` as the errors' location.
+void check_selection(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
+                     const Location& where, const std::vector<Level>& levels, ConfigErrors& errors);
 
 /// The Dirichlet vertices of a level with their targets [m]. Of several pins that select a vertex the last
 /// one counts; they agree on its target (check_shared_vertices). Throws std::runtime_error naming a pin that

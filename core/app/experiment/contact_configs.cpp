@@ -5,13 +5,18 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameter_path.h"
 
 namespace drape {
 
 namespace {
 
 using NodeKind = ConfigNode::Kind;
+
+/// The contact models as written.
+std::vector<ConfigNode> contact_sections(const ExperimentParameters& p) {
+  if (p.contact.kind == NodeKind::null) return {};
+  return p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
+}
 
 const RegistryEntry* model_of(const Registry& registry, const ConfigNode& node) {
   const ConfigNode* type = node.kind == NodeKind::map ? node.find("type") : &node;
@@ -56,22 +61,20 @@ std::string refusal(const Registry& registry, const ConfigNode& obstacle, std::s
   return label_of(obstacle, index) + " must be a map with " + quoted_choice(keys);
 }
 
-/// A model's own section, as a map with `type`, without what stands at the top of the experiment.
-ConfigNode own_section(const RegistryEntry& model, const ConfigNode& written, ConfigErrors& errors) {
-  ConfigNode own;
-  own.where = written.where;
-  if (written.kind != NodeKind::map) own.add("type", written);
-  for (std::size_t i = 0; i < written.entries.size(); ++i) {
-    const auto& [key, value] = written.entries[i];
-    const Parameter* parameter = parameter_named(model.schema, key);
-    if (parameter && parameter->from_experiment) {
-      errors.push_back({written.key_locations[i], "\"" + key + "\" in " + model.name +
-                                                      " belongs at the top of the experiment, once for all "
-                                                      "contact models"});
+/// A model's section without the keys that stand at the top of the experiment; calls found(i) for each.
+template <class Found>
+ConfigNode own_keys(const RegistryEntry* model, const ConfigNode& section, const Found& found) {
+  ConfigNode own = section;
+  own.entries.clear();
+  own.key_locations.clear();
+  for (std::size_t i = 0; i < section.entries.size(); ++i) {
+    const Parameter* p = model ? parameter_named(model->schema, section.entries[i].first) : nullptr;
+    if (p && p->from_experiment) {
+      found(i);
       continue;
     }
-    own.add(key, value);
-    own.key_locations.back() = written.key_locations[i];
+    own.entries.push_back(section.entries[i]);
+    own.key_locations.push_back(section.key_locations[i]);
   }
   return own;
 }
@@ -87,14 +90,9 @@ void check_friction(const Registry& registry, const ExperimentParameters& p,
                     const std::vector<const RegistryEntry*>& models, ConfigErrors& errors) {
   const auto has = [](const RegistryEntry* model) { return !model || has_friction(*model); };
   if (p.friction == 0 || std::any_of(models.begin(), models.end(), has)) return;
-  std::vector<std::string> names;
-  for (const RegistryEntry* model : registry.of_kind("contact"))
-    if (has_friction(*model)) names.push_back(model->name);
   Location where = p.contact.where;
   if (where.line == 0) where.key = "friction";
-  errors.push_back(
-      {where, "no contact model of this experiment has friction; set \"friction\" to 0" +
-                  (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"")});
+  errors.push_back({where, refusal_of_friction(registry)});
 }
 
 /// Each model sees every pair of the cloth and all of its obstacles, so a second one would count them twice.
@@ -118,80 +116,80 @@ void check_names(const std::vector<ConfigNode>& obstacles, ConfigErrors& errors)
   }
 }
 
-}  // namespace
-
-std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& p,
-                                           ConfigErrors& errors) {
-  std::vector<ConfigNode> written =
-      p.contact.kind == NodeKind::list ? p.contact.items : std::vector<ConfigNode>{p.contact};
-  if (p.contact.kind == NodeKind::null) written = {ConfigNode::of("none")};
-  std::vector<ContactConfig> configs;
-  std::vector<const RegistryEntry*> models;
-  for (const ConfigNode& node : written) {
-    models.push_back(model_of(registry, node));
-    configs.push_back({models.back() ? own_section(*models.back(), node, errors) : node, {}});
-  }
-  check_models(written, models, errors);
-  check_names(p.obstacles, errors);
-  check_friction(registry, p, models, errors);
-  for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
+/// Gives each obstacle to the first model that knows it.
+void share_obstacles(const Registry& registry, const std::vector<ConfigNode>& obstacles,
+                     const std::vector<const RegistryEntry*>& models, std::vector<ContactConfig>& configs,
+                     ConfigErrors& errors) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const auto takes = std::find_if(models.begin(), models.end(), [&](const RegistryEntry* model) {
-      return model && !known_key(*model, p.obstacles[i]).empty();
+      return model && !known_key(*model, obstacles[i]).empty();
     });
     if (takes != models.end())
       configs[takes - models.begin()].obstacles.push_back(i);
     else if (std::find(models.begin(), models.end(), nullptr) ==
              models.end())  // else a model's name is wrong
-      errors.push_back({p.obstacles[i].where, refusal(registry, p.obstacles[i], i)});
+      errors.push_back({obstacles[i].where, refusal(registry, obstacles[i], i)});
   }
+}
+
+}  // namespace
+
+std::string refusal_of_friction(const Registry& registry) {
+  std::vector<std::string> names;
+  for (const RegistryEntry* model : registry.of_kind("contact"))
+    if (has_friction(*model)) names.push_back(model->name);
+  return "no contact model of this experiment has friction; set \"friction\" to 0" +
+         (names.empty() ? "" : ", or add " + quoted_choice(names) + " to \"contact\"");
+}
+
+std::vector<ContactConfig> contact_configs(const Registry& registry, const ExperimentParameters& p,
+                                           ConfigErrors& errors, std::vector<ConfigNode>& models,
+                                           std::vector<ConfigNode>& obstacles) {
+  const std::vector<ConfigNode> written = contact_sections(p);
+  std::vector<const RegistryEntry*> entries;
+  for (const ConfigNode& node : written) entries.push_back(model_of(registry, node));
+  std::vector<ContactConfig> configs(written.size());
+  check_models(written, entries, errors);
+  check_names(p.obstacles, errors);
+  check_friction(registry, p, entries, errors);
+  share_obstacles(registry, p.obstacles, entries, configs, errors);
+  obstacles = p.obstacles;
   for (std::size_t k = 0; k < configs.size(); ++k) {
-    if (!models[k]) continue;
-    for (const Parameter& parameter : models[k]->schema.parameters) {
-      if (!parameter.from_experiment) continue;
-      ConfigNode value = ConfigNode::of(p.friction);
-      if (parameter.section) {
-        value = ConfigNode();
-        value.kind = NodeKind::list;
-        for (const std::size_t i : configs[k].obstacles) value.items.push_back(p.obstacles[i]);
+    const std::vector<std::size_t>& own = configs[k].obstacles;
+    const auto read_shared = [&](const Schema& schema, void* values) {
+      for (const Parameter& shared : schema.parameters) {
+        if (!shared.from_experiment) continue;
+        if (!shared.section) *shared.number(values, 0) = p.friction;
+        for (std::size_t i = 0; shared.section && i < own.size(); ++i) {
+          void* item = shared.append(values);
+          shared.section->read(item, p.obstacles[own[i]], errors);
+          obstacles[own[i]] = shared.section->write(item);
+        }
       }
-      configs[k].node.add(parameter.name, std::move(value));
-    }
+    };
+    const ConfigNode section = own_keys(entries[k], written[k], [&](std::size_t i) {
+      errors.push_back({written[k].key_locations[i], "\"" + written[k].entries[i].first + "\" in " +
+                                                         entries[k]->name +
+                                                         " belongs at the top of the experiment, once for "
+                                                         "all contact models"});
+    });
+    ConfigNode all;
+    configs[k].parameters = read_plugin_parameters(registry, "contact", section, errors, &all, read_shared);
+    models.push_back(own_keys(entries[k], all, [](std::size_t) {}));
   }
   return configs;
 }
 
-std::vector<std::size_t> obstacle_order(const Registry& registry, const ExperimentParameters& p) {
-  ConfigErrors reported;  // when the experiment was read
-  std::vector<std::size_t> order;
-  for (const ContactConfig& config : contact_configs(registry, p, reported))
-    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
-  return order;
-}
-
-std::vector<std::string> obstacle_names(const Registry& registry, const ExperimentParameters& p) {
-  std::vector<std::string> names;
-  for (const std::size_t i : obstacle_order(registry, p)) {
-    const ConfigNode* name = p.obstacles[i].find("name");
-    names.push_back(name ? name->scalar : "");
-  }
-  return names;
-}
-
-void split_resolved(const Registry& registry, const ContactConfig& config, ConfigNode& resolved,
-                    std::vector<ConfigNode>& obstacles) {
-  const RegistryEntry* model = model_of(registry, resolved);
-  if (!model) return;
-  ConfigNode own;
-  for (const auto& [key, value] : resolved.entries) {
-    const Parameter* parameter = parameter_named(model->schema, key);
-    if (!parameter || !parameter->from_experiment) {
-      own.add(key, value);
-      continue;
-    }
-    for (std::size_t k = 0; k < value.items.size(); ++k)
-      obstacles.at(config.obstacles.at(k)) = value.items[k];
-  }
-  resolved = std::move(own);
+LocateFault locate_in_contact(const ContactConfig& config, const ConfigNode& section,
+                              const std::vector<ConfigNode>& obstacles) {
+  return [&](const std::string& path, const std::optional<std::size_t>& at) {
+    const std::string list = "obstacles.";
+    if (!path.starts_with(list)) return locate_in(section)(path, at);
+    const std::size_t dot = std::min(path.find('.', list.size()), path.size());
+    const std::size_t item = std::stoul(path.substr(list.size(), dot - list.size()));
+    return locate_in(obstacles.at(config.obstacles.at(item)))(path.substr(std::min(dot + 1, path.size())),
+                                                              at);
+  };
 }
 
 }  // namespace drape

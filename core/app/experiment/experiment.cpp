@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 #include <tuple>
 
 #include "core/app/experiment/experiment_path.h"
@@ -76,29 +75,22 @@ std::optional<Experiment> read_experiment(ConfigNode source, const Registry& reg
   e.source.name_keys();
   e.registry = &registry;
   set_first_keys(e.source);
-  static const Schema schema = schema_of<ExperimentParameters>();
-  schema.read(&e.parameters, e.source, errors);
-  e.resolved = schema.write(&e.parameters);
+  experiment_schema().read(&e.parameters, e.source, errors);
+  e.resolved = experiment_schema().write(&e.parameters);
   if (const ConfigNode* name = e.source.find("name"); name && name->kind == ConfigNode::Kind::scalar)
     check_name("name", e.parameters.name, name->where, errors);
   check_vertex_counts(e, errors);
   check_start_coordinates(e, errors);
   make_plugins(registry, errors, e);
-  check_schedule(e, errors);
+  read_keys(e, errors);
   if (!errors.empty()) check_mesh_files(e, errors);
-  // The common newton section is read once for itself and once in each method: report each fault once.
-  std::set<std::string> seen;
-  ConfigErrors once;
-  for (const ConfigError& error : errors)
-    if (seen.insert(error.text()).second) once.push_back(error);
   // In the order of the file; faults of values from the command line come after.
-  std::stable_sort(once.begin(), once.end(), [&](const ConfigError& a, const ConfigError& b) {
+  std::stable_sort(errors.begin(), errors.end(), [&](const ConfigError& a, const ConfigError& b) {
     const auto order = [&](const Location& l) {
       return std::tuple(l.file != e.source.where.file, l.line, l.column);
     };
     return order(a.where) < order(b.where);
   });
-  errors = std::move(once);
   if (!errors.empty()) return std::nullopt;
   return e;
 }

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/app/experiment/experiment_parameters.h"
+#include "core/app/experiment/contact_configs.h"
 #include "core/kernel/interfaces/contact_model.h"
 #include "core/kernel/interfaces/metric.h"
 #include "core/kernel/interfaces/refiner.h"
@@ -26,11 +26,13 @@ struct Experiment {
   ConfigNode source;    ///< as written, with locations
   ConfigNode resolved;  ///< with every parameter of every plugin in it
   std::vector<NamedEnergy> energies;
+  std::vector<PluginParameters> energy_parameters;  ///< of each
   std::shared_ptr<Refiner> refiner;
   std::vector<std::shared_ptr<ContactModel>> contacts;
+  std::vector<ContactConfig> contact_configs;  ///< of each
   std::vector<std::pair<std::string, std::shared_ptr<Solver>>> methods;
   std::vector<std::pair<std::string, std::shared_ptr<Metric>>> metrics;
-  const Registry* registry = nullptr;  ///< of the plugins; a schedule makes others of them
+  const Registry* registry = nullptr;  ///< of the plugins
 
   /// The solver of a method. Throws std::logic_error for an unknown method.
   const Solver& solver_of(const std::string& method) const;
@@ -38,6 +40,10 @@ struct Experiment {
   std::string solver_type(const std::string& method) const;
   /// The location of a key's value in the file; without the key, the file's beginning.
   Location location_of(const std::string& key) const;
+  /// Indices in `obstacles` of the contact models' obstacles, model by model, as obstacles_of has them; and
+  /// their names, empty for an obstacle without one.
+  std::vector<std::size_t> obstacle_order() const;
+  std::vector<std::string> obstacle_names() const;
   /// How the contact models treat their input and a scene of the experiment, a line each: repaired obstacles,
   /// pairs of the cloth that have no barrier.
   std::vector<std::string> remarks(const Scene& scene) const;
@@ -77,32 +83,31 @@ struct FollowingVertex {
 };
 using FollowingVertices = std::vector<FollowingVertex>;
 
-/// The levels, models and initial states of an experiment. Not movable: models refer to the hierarchy.
-struct Scene {
-  Hierarchy hierarchy;
-  std::vector<NamedEnergy> energies;                      ///< of the models, handles included
-  std::vector<std::shared_ptr<const LevelModel>> models;  ///< at the start, before any load stepping
-  std::vector<Positions> placed;  ///< the starts without noise, where pins and handles hold (n×3) [m]
-  std::vector<Positions> starts;  ///< with noise, and pinned vertices at their targets (n×3) [m]
+/// The problem of an experiment, and what it was made from.
+struct Scene : Problem {
+  explicit Scene(Hierarchy all) : Problem{levels, {}, {}, nullptr}, levels(std::move(all)) {}
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  const Hierarchy levels;                    ///< the problem's
+  std::vector<NamedEnergy> energies;         ///< of the models, handles included
+  std::vector<Positions> placed;             ///< the starts without noise, where pins and handles hold [m]
   std::vector<FollowingVertices> following;  ///< of each level
   std::optional<Positions> reference;        ///< on the finest level, if the experiment names its file
-  std::unique_ptr<LoadStepping> schedule;    ///< null without one
 
-  /// The model of a level under the load that it has reached; valid until the next load step.
-  const LevelModel& model(int level) const;
-  const LevelModel& finest_model() const { return model(static_cast<int>(models.size()) - 1); }
-  Problem problem() const;
+  /// The finest level's model under the load that it has reached; valid until the next load step.
+  const LevelModel& finest_model() const { return *model(finest()); }
 };
 
-/// Whether an initial state that intersects something is refused.
+/// Whether a start that intersects something is refused.
 enum class IntersectingStart { refused, allowed };
 
-/// Builds the scene; null, with every fault of the mesh, of pins and of the initial state appended, if that
+/// Builds the scene; null, with every fault of the mesh, of pins and of the start appended, if that
 /// is not possible. An intersecting start is `allowed` for repair_start and warm starts alone.
 std::unique_ptr<Scene> build_scene(const Experiment& experiment, ConfigErrors& errors,
                                    IntersectingStart intersecting = IntersectingStart::refused);
 
-/// Appends an error for every intersection of an initial state: contact only preserves intersection-free
+/// Appends an error for every intersection of a start: contact only preserves intersection-free
 /// states.
 void refuse_intersecting_start(const Experiment& experiment, const LevelModel& model, const Positions& start,
                                ConfigErrors& errors);

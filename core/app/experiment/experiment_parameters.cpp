@@ -233,14 +233,14 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .description("number of levels; each splits every triangle of the last into four");
   d.add_section("material", &ExperimentParameters::material).description("material of the cloth");
   d.add_section("start", &ExperimentParameters::start)
-      .description("initial state: the rest shape or a file, transformed");
+      .description("where the cloth begins: the rest shape or a file, transformed");
   d.add_sections("pins", &ExperimentParameters::pins)
       .description("Dirichlet boundary conditions: vertices at prescribed positions (hard positions)");
   d.add_sections("handles", &ExperimentParameters::handles)
       .description("penalty boundary conditions: vertices on springs to their targets (soft positions)");
   d.add_section("schedule", &ExperimentParameters::schedule)
       .description(
-          "load stepping on a level that begins from the initial state; later levels are solved under the "
+          "load stepping on a level that begins from `start`; later levels are solved under the "
           "final loads");
   d.add_node("energies", &ExperimentParameters::energies)
       .plugin("energy")
@@ -252,7 +252,7 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
   d.add_node("contact", &ExperimentParameters::contact)
       .plugin("contact")
       .or_list()
-      .description("contact model or a list of them; none by default");
+      .description("contact model or a list of them; without the key, contact is not modelled");
   d.add_node("obstacles", &ExperimentParameters::obstacles)
       .description(
           "what the cloth collides with; each goes to the contact model that takes its keys, which `drape "
@@ -279,6 +279,11 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
        "check_intersections", &ExperimentParameters::check_intersections,
        {{"every_level", IntersectionCheck::every_level}, {"every_step", IntersectionCheck::every_step}})
       .description("when to count intersections, by exact predicates between meshes");
+}
+
+const Schema& experiment_schema() {
+  static const Schema schema = schema_of<ExperimentParameters>();
+  return schema;
 }
 
 }  // namespace drape

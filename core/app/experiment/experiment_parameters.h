@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/kernel/interfaces/material.h"
-#include "core/kernel/plugin/parameters.h"
+#include "core/kernel/plugin/declared_numbers.h"
 #include "core/numerics/mesh_files/file_coordinates.h"
 #include "core/numerics/step/newton_parameters.h"
 
@@ -36,7 +36,7 @@ struct ClothParameters : FileCoordinates {
   static void declare(Declaration<ClothParameters>& d);
 };
 
-/// The initial state: the rest shape, or that of a file, scaled, then rotated, then translated.
+/// The start: the rest shape, or that of a file, scaled, then rotated, then translated.
 struct StartParameters {
   std::string file;
   std::optional<std::string> unit, up;  ///< of the file; without a value, those of the cloth's file
@@ -94,13 +94,29 @@ struct HandleParameters : VertexSelection {
 /// How a keyed value goes from one time to the next.
 enum class KeyInterpolation { linear, log, step };
 
+/// What load stepping makes anew: parts of the experiment, each of which has an index among its like.
+enum class LoadPart { material, pins, handles, energies, contact };
+
+/// The declared numbers that a schedule's key changes, in the struct of their part: the parameters of an
+/// energy or a contact model, otherwise ExperimentParameters.
+struct KeyTarget {
+  LoadPart part = LoadPart::material;
+  std::size_t item = 0;
+  DeclaredNumbers numbers;
+};
+
 /// One parameter of the experiment over pseudo-time.
-struct KeyParameters {
+struct ScheduleKey {
   std::string parameter;
   std::vector<double> times;
-  ConfigNode values;
+  ConfigNode written;  ///< `values`
   KeyInterpolation interpolation = KeyInterpolation::linear;
-  static void declare(Declaration<KeyParameters>& d);
+  static void declare(Declaration<ScheduleKey>& d);
+
+  // Of a valid experiment (read_keys):
+  std::vector<std::vector<double>> values;  ///< at each of the times, equally many numbers
+  std::vector<KeyTarget> targets;           ///< one, but for friction one in every contact model that has it
+  std::vector<double> at(double time) const;
 };
 
 /// Load stepping: parameters that change in increments while a level is solved.
@@ -108,8 +124,13 @@ struct ScheduleParameters {
   double duration = 0;
   int steps = 1;
   bool equilibrate = false;
-  std::vector<KeyParameters> keys;
+  std::vector<ScheduleKey> keys;
   static void declare(Declaration<ScheduleParameters>& d);
+
+  /// The pseudo-time at the end of an increment, in the keys' unit.
+  double time(int increment) const;
+  /// The values of all keys, one after another.
+  std::vector<double> values_at(double time) const;
 };
 
 /// The state that errors are measured against, beside each method's own finest one.
@@ -141,7 +162,7 @@ struct ExperimentParameters {
   ScheduleParameters schedule;
   std::vector<ConfigNode> energies;
   ConfigNode refiner, contact;
-  std::vector<ConfigNode> obstacles;  ///< as written; contact_configs gives each to a contact model
+  std::vector<ConfigNode> obstacles;  ///< as written; a contact model reads each
   double friction = 0;                ///< μ
   NewtonParameters newton;
   ConfigNode methods;
@@ -151,5 +172,7 @@ struct ExperimentParameters {
   IntersectionCheck check_intersections = IntersectionCheck::every_level;
   static void declare(Declaration<ExperimentParameters>& d);
 };
+
+const Schema& experiment_schema();
 
 }  // namespace drape

@@ -3,7 +3,6 @@
 #include "core/app/experiment/experiment_parameters.h"
 #include "core/app/files/yaml_file.h"
 #include "core/kernel/files/string_utils.h"
-#include "core/kernel/plugin/parameter_path.h"
 
 namespace drape {
 
@@ -11,22 +10,19 @@ namespace {
 
 using NodeKind = ConfigNode::Kind;
 
-const Schema& schema() {
-  static const Schema schema = schema_of<ExperimentParameters>();
-  return schema;
+bool is_missing(const ConfigNode* node) {
+  return !node || node->kind == NodeKind::null || (node->kind == NodeKind::list && node->items.empty());
 }
-
-bool is_missing(const ConfigNode* node) { return !node || node->kind == NodeKind::null; }
 
 /// Whether the experiment's key chooses one plugin, as `refiner` and `contact` do.
 bool chooses_plugin(const std::string& key) {
-  const Parameter* p = parameter_named(schema(), key);
+  const Parameter* p = parameter_named(experiment_schema(), key);
   return p && p->type == "node" && !p->plugin_kind.empty();
 }
 
 /// The path of the first list on the way whose items the words name although it has none; "" without one.
 std::string missing_list(const ConfigNode& experiment, const std::vector<std::string>& words) {
-  const Schema* section = &schema();
+  const Schema* section = &experiment_schema();
   const ConfigNode* node = &experiment;
   std::string path;
   for (std::size_t k = 0; k + 1 < words.size(); ++k) {
@@ -35,7 +31,7 @@ std::string missing_list(const ConfigNode& experiment, const std::vector<std::st
     path += (path.empty() ? "" : ".") + words[k];
     if (node) node = node->find(words[k]);
     if (p->type == "list of sections" || p->type == "list of nodes") {
-      if (is_missing(node) || (node->kind == NodeKind::list && node->items.empty())) return path;
+      if (is_missing(node)) return path;
       const auto index = node->index_of(words[++k]);
       if (!index) return "";
       node = &node->items[*index];

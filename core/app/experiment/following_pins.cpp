@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "core/app/experiment/boundary_conditions.h"
-#include "core/app/experiment/contact_configs.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/collision_detection/closest.h"
@@ -88,7 +87,7 @@ class PinAttacher {
   std::string attach(std::vector<FollowingVertices>& levels) {
     const auto index = e_.resolved.find("obstacles")->index_of(follow_.obstacle);
     if (!index) return unknown_obstacle();
-    const std::vector<std::size_t> order = obstacle_order(*e_.registry, e_.parameters);
+    const std::vector<std::size_t> order = e_.obstacle_order();
     const Eigen::Index place = std::find(order.begin(), order.end(), *index) - order.begin();
     for (std::size_t l = 0; l < levels.size(); ++l) {
       const std::vector<TriangleMesh> meshes = obstacles_of(scene_.models[l]->contacts());
@@ -103,7 +102,7 @@ class PinAttacher {
 
  private:
   std::string unknown_obstacle() const {
-    std::vector<std::string> names = obstacle_names(*e_.registry, e_.parameters);
+    std::vector<std::string> names = e_.obstacle_names();
     std::erase(names, "");
     const std::string near = nearest_word(follow_.obstacle, names);
     if (!near.empty()) return "does not exist; did you mean \"" + excerpt(near) + "\"?";

@@ -7,7 +7,6 @@
 #include "core/app/experiment/method_choice.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/make.h"
-#include "core/kernel/plugin/parameter_path.h"
 
 namespace drape {
 
@@ -15,22 +14,14 @@ namespace {
 
 ConfigNode scalar_node(const std::string& text) { return ConfigNode::of(text); }
 
-/// Adds the entries of `base` that `over` lacks, also in maps within maps.
-void fill_in(ConfigNode& over, const ConfigNode& base) {
-  if (over.kind == ConfigNode::Kind::null) {
-    const Location where = over.where;
-    over = base;
-    if (where.line > 0) over.where = where;
-    return;
-  }
-  if (over.kind != ConfigNode::Kind::map || base.kind != ConfigNode::Kind::map) return;
-  for (std::size_t i = 0; i < base.entries.size(); ++i) {
-    const auto& [key, value] = base.entries[i];
-    bool there = false;
-    for (auto& [own_key, own_value] : over.entries)
-      if (own_key == key) fill_in(own_value, value), there = true;
-    if (!there) over.entries.emplace_back(key, value), over.key_locations.push_back(base.key_locations[i]);
-  }
+/// Gives a solver's `newton` what the experiment's own sets, as defaults for the solver's.
+void take_newton(const ConfigNode& written, const NewtonParameters& common, const Schema& schema,
+                 void* solver) {
+  const Parameter* newton = parameter_named(schema, "newton");
+  const Schema* section = newton ? newton->section.get() : nullptr;
+  if (!section || !section->type || *section->type != typeid(NewtonParameters)) return;
+  for (const Parameter& p : section->parameters)
+    if (written.find(p.name)) p.assign(&common, newton->section_in(solver, 0));
 }
 
 class PluginMaker {
@@ -41,8 +32,14 @@ class PluginMaker {
   void make_all() {
     ConfigNode energies, metrics;
     energies.kind = metrics.kind = ConfigNode::Kind::list;
-    for (const ConfigNode& node : e_.parameters.energies)
-      if (auto energy = make<Energy>(node, energies)) e_.energies.push_back({label_of(node), energy});
+    for (const ConfigNode& node : e_.parameters.energies) {
+      PluginParameters own =
+          read_plugin_parameters(registry_, "energy", node, errors_, &energies.items.emplace_back());
+      auto energy = std::static_pointer_cast<Energy>(make_plugin(own, locate_in(node), errors_));
+      if (!energy) continue;
+      e_.energies.push_back({label_of(node), std::move(energy)});
+      e_.energy_parameters.push_back(std::move(own));
+    }
     set("energies", energies);
     const ConfigNode* written = e_.source.find("energies");
     if (written && written->kind == ConfigNode::Kind::list && written->items.empty())
@@ -84,11 +81,6 @@ class PluginMaker {
     return name && name->kind == ConfigNode::Kind::scalar ? name->scalar : name_of(node);
   }
 
-  /// Whether a solver declares the section that the experiment's own `newton` fills in.
-  static bool takes_newton(const RegistryEntry* solver) {
-    return solver && parameter_named(solver->schema, "newton");
-  }
-
   template <class Interface>
   std::shared_ptr<Interface> make(const ConfigNode& node, ConfigNode& resolved_list) {
     ConfigNode resolved;
@@ -109,18 +101,21 @@ class PluginMaker {
   void make_contacts() {
     ConfigNode models, obstacles;
     models.kind = obstacles.kind = ConfigNode::Kind::list;
-    obstacles.items = e_.parameters.obstacles;
+    const ConfigNode& written = e_.parameters.contact;
+    const bool is_list = written.kind == ConfigNode::Kind::list;
     const std::size_t before = errors_.size();
-    const std::vector<ContactConfig> configs = contact_configs(registry_, e_.parameters, errors_);
+    e_.contact_configs = contact_configs(registry_, e_.parameters, errors_, models.items, obstacles.items);
     for (std::size_t i = before; i < errors_.size(); ++i)  // without "contact" they have only a key
       if (Location& where = errors_[i].where; where.line == 0 && e_.source.find(where.key))
         where = e_.location_of(where.key);
-    for (const ContactConfig& config : configs) {
-      e_.contacts.push_back(make<ContactModel>(config.node, models));
-      split_resolved(registry_, config, models.items.back(), obstacles.items);
+    for (std::size_t k = 0; k < e_.contact_configs.size(); ++k) {
+      const ContactConfig& config = e_.contact_configs[k];
+      const LocateFault locate =
+          locate_in_contact(config, is_list ? written.items[k] : written, e_.parameters.obstacles);
+      e_.contacts.push_back(
+          std::static_pointer_cast<ContactModel>(make_plugin(config.parameters, locate, errors_)));
     }
-    const bool is_list = e_.parameters.contact.kind == ConfigNode::Kind::list;
-    set("contact", is_list ? models : models.items[0]);
+    set("contact", is_list || models.items.empty() ? models : models.items[0]);
     set("obstacles", obstacles);
   }
 
@@ -145,11 +140,6 @@ class PluginMaker {
           type.where = written.where;
           node.add("type", type);
         }
-        if (common && takes_newton(registry_.find("solver", name_of(node)))) {
-          ConfigNode base;
-          base.add("newton", *common);
-          fill_in(node, base);
-        }
       }
       ConfigNode resolved;
       check_name("method", name, written.where, errors_);
@@ -160,8 +150,12 @@ class PluginMaker {
       if (!names.insert(name).second)
         errors_.push_back(
             {written.where, "method \"" + excerpt(name) + "\" is given twice; rename one of them"});
-      if (auto solver = make_from<Solver>(registry_, node, errors_, &resolved))
-        e_.methods.emplace_back(name, solver);
+      const PluginParameters own = read_plugin_parameters(
+          registry_, "solver", node, errors_, &resolved, [&](const Schema& schema, void* solver) {
+            if (common) take_newton(*common, e_.parameters.newton, schema, solver);
+          });
+      if (auto solver = make_plugin(own, locate_in(node), errors_))
+        e_.methods.emplace_back(name, std::static_pointer_cast<Solver>(solver));
       resolved_map.add(name, resolved);
     }
     set("methods", resolved_map);

@@ -175,7 +175,7 @@ ConfigErrors plausibility_warnings(const Experiment& e, const Scene& scene, cons
 
 void refuse_infinite_energies(const Experiment& e, const Scene& scene, ConfigErrors& errors) {
   for (std::size_t l = 0; l < scene.starts.size(); ++l) {
-    const LevelModel& model = scene.model(static_cast<int>(l));
+    const LevelModel& model = *scene.model(static_cast<int>(l));
     Positions gradient;
     const double energy = model.energy_gradient(scene.starts[l], gradient);
     if (!std::isfinite(energy) || !gradient.allFinite())

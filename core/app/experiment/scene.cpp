@@ -7,7 +7,6 @@
 #include "core/app/experiment/experiment.h"
 #include "core/app/experiment/following_pins.h"
 #include "core/app/experiment/reference_file.h"
-#include "core/app/experiment/schedule_check.h"
 #include "core/app/experiment/schedule_stepping.h"
 #include "core/app/experiment/shared_vertices.h"
 #include "core/app/experiment/size_estimate.h"
@@ -140,7 +139,7 @@ std::vector<Positions> start_shapes(const Experiment& e, const Hierarchy& hierar
   return shapes;
 }
 
-/// The initial state of a level: its shape, transformed, with noise that depends on the rest positions.
+/// The start of a level: its shape, transformed, with noise that depends on the rest positions.
 Positions make_start(const Positions& rest, const Positions& shape, const StartParameters& s,
                      double perturbation) {
   const Noise noise(s.perturbation_wavelength, s.seed);
@@ -198,6 +197,22 @@ Location Experiment::location_of(const std::string& key) const {
   return node ? node->where : source.where;
 }
 
+std::vector<std::size_t> Experiment::obstacle_order() const {
+  std::vector<std::size_t> order;
+  for (const ContactConfig& config : contact_configs)
+    order.insert(order.end(), config.obstacles.begin(), config.obstacles.end());
+  return order;
+}
+
+std::vector<std::string> Experiment::obstacle_names() const {
+  std::vector<std::string> names;
+  for (const std::size_t i : obstacle_order()) {
+    const ConfigNode* name = parameters.obstacles[i].find("name");
+    names.push_back(name ? name->scalar : "");
+  }
+  return names;
+}
+
 std::vector<std::string> Experiment::remarks(const Scene& scene) const {
   std::vector<std::string> all;
   for (const auto& contact : contacts)
@@ -214,12 +229,6 @@ void check_mesh_files(const Experiment& e, ConfigErrors& errors) {
   if (!e.parameters.start.file.empty()) start_mesh(e, errors);
 }
 
-const LevelModel& Scene::model(int level) const {
-  return schedule ? *schedule->model(level) : *models[level];
-}
-
-Problem Scene::problem() const { return {hierarchy, models, starts, schedule.get()}; }
-
 std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
                                    IntersectingStart intersecting) {
   const ExperimentParameters& p = e.parameters;
@@ -227,9 +236,9 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
   if (!cloth && !p.start.file.empty()) start_mesh(e, errors);
   if (!errors.empty()) return nullptr;
 
-  auto scene = std::make_unique<Scene>();
+  std::unique_ptr<Scene> scene;
   try {
-    scene->hierarchy = Hierarchy::of(std::move(*cloth), *e.refiner, p.levels);
+    scene = std::make_unique<Scene>(Hierarchy::of(std::move(*cloth), *e.refiner, p.levels));
   } catch (const std::exception& error) {
     errors.push_back({e.location_of("cloth"), reason_of(error)});
     return nullptr;
@@ -265,9 +274,13 @@ std::unique_ptr<Scene> build_scene(const Experiment& e, ConfigErrors& errors,
     if (!errors.empty()) return nullptr;
   }
   scene->following = following_vertices(e, *scene, errors);
-  check_schedule_on_levels(e, *scene, errors);
+  if (!p.schedule.keys.empty()) {
+    LoadSchedule schedule(e, *scene);
+    check_schedule_on_levels(e, *scene, schedule, errors);
+    if (!errors.empty()) return nullptr;
+    scene->load_stepping = std::make_unique<ScheduleStepping>(std::move(schedule), *scene);
+  }
   if (!errors.empty()) return nullptr;
-  if (!p.schedule.keys.empty()) scene->schedule = std::make_unique<ScheduleStepping>(e, *scene);
   scene->reference = read_reference(e, scene->hierarchy, errors);
   return errors.empty() ? std::move(scene) : nullptr;
 }

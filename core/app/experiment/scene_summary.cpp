@@ -74,7 +74,7 @@ std::string mass_text(double mass) {
 }  // namespace
 
 SceneSummary summary_of(const Scene& scene) {
-  const LevelModel& coarsest = scene.model(0);
+  const LevelModel& coarsest = *scene.model(0);
   const Material& material = coarsest.material();
   SceneSummary summary;
   summary.size = extents(coarsest.level().rest.vertices);

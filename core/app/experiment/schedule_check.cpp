@@ -1,5 +1,3 @@
-#include "core/app/experiment/schedule_check.h"
-
 #include <stdexcept>
 
 #include "core/app/experiment/boundary_conditions.h"
@@ -29,55 +27,44 @@ std::vector<double> times_with_between(const std::vector<double>& times) {
   return all;
 }
 
-/// Appends an error for each pin or handle, of those that the path's key names, that comes into conflict with
-/// the one that the key moves.
-void check_shared_over_time(const std::vector<std::string>& path, const std::vector<double>& times,
-                            const LoadSchedule& schedule, const Scene& scene, const Location& where,
-                            const std::string& name, ConfigErrors& errors) {
-  for (const double time : times_with_between(times)) {
-    ConfigErrors own;
-    try {
-      check_shared_vertices(*schedule.at(schedule.values_at(time))->parameters, path[0], std::stoul(path[1]),
-                            where, scene.hierarchy.levels, scene.placed, own);
-    } catch (const std::runtime_error& problem) {
-      own.push_back({where, problem.what()});
-    }
-    for (const ConfigError& error : own)
-      errors.push_back({where, name + " at pseudo-time " + three_digits(time) + ": " + error.message});
-    if (!own.empty()) return;
-  }
-}
-
 }  // namespace
 
-void check_schedule_on_levels(const Experiment& e, const Scene& scene, ConfigErrors& errors) {
-  const std::vector<KeyParameters>& keys = e.parameters.schedule.keys;
-  if (keys.empty()) return;
-  const LoadSchedule schedule(e, scene);
+void check_schedule_on_levels(const Experiment& e, const Scene& scene, const LoadSchedule& schedule,
+                              ConfigErrors& errors) {
+  const std::vector<ScheduleKey>& keys = e.parameters.schedule.keys;
   const std::vector<Level>& levels = scene.hierarchy.levels;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    const std::vector<std::string> path = indexed_path(e.resolved, keys[k].parameter);
-    const bool of_pin = path[0] == "pins", of_handle = path[0] == "handles";
-    if (!of_pin && !of_handle && path[0] != "energies" && path[0] != "material") continue;
+    const LoadPart part = keys[k].targets[0].part;
+    const std::size_t item = keys[k].targets[0].item;
+    if (part == LoadPart::contact) continue;
+    const bool of_vertices = part == LoadPart::pins || part == LoadPart::handles;
     const Location where = e.source.find("schedule")->find("keys")->items[k].find("values")->where;
-    const std::string name = "key \"" + excerpt(keys[k].parameter) + "\"";
-    ConfigErrors own;
-    for (const double time : keys[k].times) {
-      try {
-        // With the values that all other keys have at that time: two keys may move the bounds of one region.
-        const auto load = schedule.at(schedule.values_at(time));
-        if (of_pin) check_pin(*load->parameters, std::stoul(path[1]), where, levels, own);
-        if (of_handle) check_handle(*load->parameters, std::stoul(path[1]), where, levels, own);
-        if (own.empty() && !of_pin) bind_energies(*load, scene);
-      } catch (const std::runtime_error& problem) {
-        own.push_back({where, problem.what()});
+    // Whether check(load, faults) finds no fault at any of these times; appends those of the first that has.
+    const auto hold_at = [&](const std::vector<double>& times, const auto& check) {
+      for (const double time : times) {
+        ConfigErrors own;
+        try {
+          // With the values that all other keys have at that time: two keys may move the bounds of one
+          // region.
+          check(*schedule.at(schedule.keys().values_at(time)), own);
+        } catch (const std::runtime_error& problem) {
+          own.push_back({where, problem.what()});
+        }
+        for (const ConfigError& error : own)
+          errors.push_back({where, "key \"" + excerpt(keys[k].parameter) + "\" at pseudo-time " +
+                                       three_digits(time) + ": " + error.message});
+        if (!own.empty()) return false;
       }
-      for (const ConfigError& error : own)
-        errors.push_back({where, name + " at pseudo-time " + three_digits(time) + ": " + error.message});
-      if (!own.empty()) break;
-    }
-    if (own.empty() && (of_pin || of_handle))
-      check_shared_over_time(path, keys[k].times, schedule, scene, where, name, errors);
+      return true;
+    };
+    const bool bound = hold_at(keys[k].times, [&](const LoadState& load, ConfigErrors& own) {
+      if (of_vertices) check_selection(*load.parameters, part, item, where, levels, own);
+      if (own.empty() && part != LoadPart::pins) bind_energies(load, scene);
+    });
+    if (bound && of_vertices)
+      hold_at(times_with_between(keys[k].times), [&](const LoadState& load, ConfigErrors& own) {
+        check_shared_vertices(*load.parameters, part, item, where, levels, scene.placed, own);
+      });
   }
 }
 

@@ -25,8 +25,8 @@ StepLimit obstacle_step_limit(const LevelModel& from, const LevelModel& to, cons
 
 }  // namespace
 
-ScheduleStepping::ScheduleStepping(const Experiment& experiment, const Scene& scene)
-    : schedule_(experiment, scene), load_(schedule_.first()) {
+ScheduleStepping::ScheduleStepping(LoadSchedule schedule, const Scene& scene)
+    : schedule_(std::move(schedule)), load_(schedule_.first()) {
   for (const auto& model : scene.models) levels_.push_back({load_, load_, model});
 }
 

@@ -8,17 +8,17 @@ namespace drape {
 /// level's model is made when it is asked for. Refers to the scene, which owns it.
 class ScheduleStepping final : public LoadStepping {
  public:
-  ScheduleStepping(const Experiment& experiment, const Scene& scene);
+  ScheduleStepping(LoadSchedule schedule, const Scene& scene);
 
-  int increment_count() const override { return schedule_.increment_count(); }
-  bool equilibrates() const override { return schedule_.equilibrates(); }
+  int increment_count() const override { return schedule_.keys().steps; }
+  bool equilibrates() const override { return schedule_.keys().equilibrate; }
   void begin(int level, bool from_start) override;
   LoadSteppingState state() const override { return {increment_, load_->values}; }
   void restore(int level, const LoadSteppingState& state) override;
   std::shared_ptr<const LevelModel> model(int level) override;
   int increment() const override { return increment_; }
   bool complete() const override { return load_->values == schedule_.values(increment_); }
-  double time() const override { return schedule_.time(increment_); }
+  double time() const override { return schedule_.keys().time(increment_); }
   StepLimit advance(int level, const Positions& x) override;
   bool advance_by(double fraction, int level, const Positions& x) override;
 

@@ -17,23 +17,21 @@ std::string text_of(const Eigen::Vector3d& p) {
 
 /// A pin or a handle, as messages name it.
 struct NamedSelection {
-  const VertexSelection& selection;
+  VertexSelection selection;
   std::string name;  ///< "pin 1 (box)"
 };
 
-/// The pins or the handles of an experiment; `lines` has the line of each in its file, 0 without one.
-std::vector<NamedSelection> selections_of(const ExperimentParameters& p, const std::string& key,
-                                          const std::vector<int>& lines) {
+/// The pins or the handles of an experiment; `written`, if it is not null, has the line of each in its file.
+std::vector<NamedSelection> named_selections(const ExperimentParameters& p, LoadPart part,
+                                             const ConfigNode* written) {
   std::vector<NamedSelection> all;
-  const auto add = [&](const std::string& word, const auto& conditions) {
-    for (const VertexSelection& selection : conditions) {
-      const std::size_t k = all.size();
-      const bool has_line = k < lines.size() && lines[k] > 0;
-      all.push_back({selection, word + " " + std::to_string(k) + " (" + selection.region +
-                                    (has_line ? ", line " + std::to_string(lines[k]) : "") + ")"});
-    }
-  };
-  key == "pins" ? add("pin", p.pins) : add("handle", p.handles);
+  for (const VertexSelection& selection : selections_of(p, part)) {
+    const std::size_t k = all.size();
+    const int line = written ? written->items[k].where.line : 0;
+    all.push_back({selection, (part == LoadPart::pins ? "pin " : "handle ") + std::to_string(k) + " (" +
+                                  selection.region + (line > 0 ? ", line " + std::to_string(line) : "") +
+                                  ")"});
+  }
   return all;
 }
 
@@ -78,21 +76,19 @@ void check_item(const std::vector<NamedSelection>& all, std::size_t k, std::size
 
 void check_shared_vertices(const Experiment& e, const std::vector<Level>& levels,
                            const std::vector<Positions>& placed, ConfigErrors& errors) {
-  for (const char* key : {"pins", "handles"}) {
+  for (const auto& [key, part] : {std::pair("pins", LoadPart::pins), {"handles", LoadPart::handles}}) {
     const ConfigNode* written = e.source.find(key);
     if (!written) continue;
-    std::vector<int> lines;
-    for (const ConfigNode& item : written->items) lines.push_back(item.where.line);
-    const std::vector<NamedSelection> all = selections_of(e.parameters, key, lines);
+    const std::vector<NamedSelection> all = named_selections(e.parameters, part, written);
     for (std::size_t k = 0; k < all.size(); ++k)
       check_item(all, k, k, written->items[k].where, levels, placed, errors);
   }
 }
 
-void check_shared_vertices(const ExperimentParameters& p, const std::string& key, std::size_t k,
-                           const Location& where, const std::vector<Level>& levels,
-                           const std::vector<Positions>& placed, ConfigErrors& errors) {
-  const std::vector<NamedSelection> all = selections_of(p, key, {});
+void check_shared_vertices(const ExperimentParameters& p, LoadPart part, std::size_t k, const Location& where,
+                           const std::vector<Level>& levels, const std::vector<Positions>& placed,
+                           ConfigErrors& errors) {
+  const std::vector<NamedSelection> all = named_selections(p, part, nullptr);
   check_item(all, k, all.size(), where, levels, placed, errors);
 }
 

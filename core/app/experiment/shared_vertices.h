@@ -10,9 +10,9 @@ namespace drape {
 void check_shared_vertices(const Experiment& experiment, const std::vector<Level>& levels,
                            const std::vector<Positions>& placed, ConfigErrors& errors);
 
-/// The same under a load with these parameters, for item k of `pins` or `handles`, the key, and all others.
-/// The errors have `where` as location.
-void check_shared_vertices(const ExperimentParameters& parameters, const std::string& key, std::size_t k,
+/// The same under a load with these parameters, for pin or handle k and all others. The errors have `where`
+/// as location.
+void check_shared_vertices(const ExperimentParameters& parameters, LoadPart part, std::size_t k,
                            const Location& where, const std::vector<Level>& levels,
                            const std::vector<Positions>& placed, ConfigErrors& errors);
 

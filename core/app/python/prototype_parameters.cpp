@@ -1,6 +1,7 @@
 #include "core/app/python/prototype_parameters.h"
 
 #include <cmath>
+#include <variant>
 
 #include "core/app/python/config_value.h"
 
@@ -8,8 +9,14 @@ namespace drape::python {
 
 namespace {
 
-/// The parameter struct of a prototype: a node for each parameter of the schema.
-using ParameterValues = std::vector<ConfigNode>;
+/// The parameter struct of a prototype: a value for each parameter of the schema.
+using ParameterValue = std::variant<ConfigNode, double>;  // a double for type "number"
+using ParameterValues = std::vector<ParameterValue>;
+
+ParameterValue value_of(const ConfigNode& node, const std::string& type) {
+  if (type == "number") return parse_number(node.scalar).value();
+  return node;
+}
 
 std::string type_of(const py::object& value, const std::string& name) {
   if (py::isinstance<py::bool_>(value)) return "boolean";
@@ -21,13 +28,13 @@ std::string type_of(const py::object& value, const std::string& name) {
 }
 
 Parameter parameter_of(const std::string& name, const py::object& declared, std::size_t index,
-                       ConfigNode& value) {
+                       ParameterValue& value) {
   const bool plain = !py::hasattr(declared, "default");
   const py::object initial = plain ? declared : py::object(declared.attr("default"));
   Parameter p;
   p.name = name;
   p.type = type_of(initial, name);
-  value = node_of(initial);
+  value = value_of(node_of(initial), p.type);
   if (!plain) {
     p.description = declared.attr("description").cast<std::string>();
     p.unit = declared.attr("unit").cast<std::string>();
@@ -35,10 +42,17 @@ Parameter parameter_of(const std::string& name, const py::object& declared, std:
     if (!declared.attr("minimum").is_none()) p.minimum = declared.attr("minimum").cast<double>();
     if (!declared.attr("maximum").is_none()) p.maximum = declared.attr("maximum").cast<double>();
   }
-  p.read = [index](void* values, const ConfigNode& node, ConfigErrors&) {
-    static_cast<ParameterValues*>(values)->at(index) = node;
+  p.read = [index, type = p.type](void* values, const ConfigNode& node, ConfigErrors&) {
+    static_cast<ParameterValues*>(values)->at(index) = value_of(node, type);
   };
-  p.write = [index](const void* values) { return static_cast<const ParameterValues*>(values)->at(index); };
+  p.write = [index](const void* values) {
+    const ParameterValue& own = static_cast<const ParameterValues*>(values)->at(index);
+    const double* number = std::get_if<double>(&own);
+    return number ? ConfigNode::of(*number) : std::get<ConfigNode>(own);
+  };
+  p.number = [index](void* values, std::size_t k) {
+    return k == 0 ? std::get_if<double>(&static_cast<ParameterValues*>(values)->at(index)) : nullptr;
+  };
   return p;
 }
 
@@ -49,7 +63,7 @@ Schema schema_of_class(const py::object& type, const std::string& name) {
   schema.name = name;
   ParameterValues defaults;
   for (const auto& [key, declared] : type.attr("parameters").cast<py::dict>()) {
-    ConfigNode value;
+    ParameterValue value;
     schema.parameters.push_back(parameter_of(
         key.cast<std::string>(), py::reinterpret_borrow<py::object>(declared), defaults.size(), value));
     defaults.push_back(std::move(value));

@@ -174,7 +174,7 @@ void fields(A& a, RecordedState& s) {
 }
 
 template <class A>
-void fields(A& a, RecorderState& s) {
+void fields(A& a, Recorder::State& s) {
   a(s.results, s.method, s.intersection_free, s.method_intersection_free, s.states, s.snapshots, s.measured,
     s.spent, s.last, s.overhead, s.iterations_bytes, s.log_bytes, s.last_load);
 }
@@ -186,7 +186,7 @@ void fields(A& a, FileFingerprint& m) {
 
 template <class A>
 void fields(A& a, Checkpoint& c) {
-  a(c.program, c.config, c.files, c.methods, c.method, c.all_converged, c.state, c.first_level, c.own_start,
+  a(c.program, c.config, c.files, c.methods, c.method, c.all_converged, c.state, c.first_level, c.start,
     c.recorder);
 }
 

@@ -27,9 +27,9 @@ struct Checkpoint {
   int method = 0;                      ///< index of the current method
   bool all_converged = true;           ///< all methods before it
   MethodState state;
-  int first_level = 0;                 ///< first level of every method
-  std::optional<Positions> own_start;  ///< initial state of a warm start, on that level
-  RecorderState recorder;
+  int first_level = 0;             ///< first level of every method
+  std::optional<Positions> start;  ///< of a warm start, on that level
+  Recorder::State recorder;
 };
 
 /// The checkpoint as bytes, with a checksum.

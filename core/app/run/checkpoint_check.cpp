@@ -29,7 +29,7 @@ class Check {
   void all() const {
     methods();
     levels();
-    if (c_.own_start) positions(*c_.own_start, c_.first_level, "where the methods begin");
+    if (c_.start) positions(*c_.start, c_.first_level, "where the methods begin");
     if (c_.state.under_way) under_way(*c_.state.under_way);
     recorder(c_.recorder);
   }
@@ -78,14 +78,14 @@ class Check {
   }
 
   void stiffness(const ContactStiffness& s, int level) const {
-    require(s.empty() || s.size() == scene_.model(level).contacts().size(), "the contacts' stiffness");
+    require(s.empty() || s.size() == scene_.model(level)->contacts().size(), "the contacts' stiffness");
     for (const double own : s) require(own >= 0, "the contacts' stiffness");
   }
 
   void load_stepping(const LoadSteppingState& s) const {
-    if (!scene_.schedule) return;
-    require(s.increment >= 0 && s.increment <= scene_.schedule->increment_count() &&
-                s.values.size() == scene_.schedule->state().values.size(),
+    if (!scene_.load_stepping) return;
+    require(s.increment >= 0 && s.increment <= scene_.load_stepping->increment_count() &&
+                s.values.size() == scene_.load_stepping->state().values.size(),
             "the schedule's increment");
   }
 
@@ -112,7 +112,7 @@ class Check {
   }
 
   void contacts(const ContactMemory& memory, int level) const {
-    const BoundContacts& models = scene_.model(level).contacts();
+    const BoundContacts& models = scene_.model(level)->contacts();
     if (models.empty()) return;
     for (const Positions* x : {&memory.reference, &memory.candidates_begin, &memory.candidates_end})
       positions(*x, level, "the contacts");
@@ -143,7 +143,7 @@ class Check {
     require(s.values.empty() || !s.pattern.invalidated, "the factor");
   }
 
-  void recorder(const RecorderState& s) const {
+  void recorder(const Recorder::State& s) const {
     const Json results = parse_json(s.results);
     const bool has_methods =
         results.is_object() && results.contains("methods") && results["methods"].is_object();

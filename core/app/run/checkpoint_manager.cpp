@@ -235,7 +235,7 @@ void refuse_other_cloth(const Experiment& before, const Experiment& changed, int
 
 void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
                       ConfigErrors& errors) {
-  const LevelModel& model = scene.model(level);
+  const LevelModel& model = *scene.model(level);
   if (x.rows() != model.level().vertex_count()) throw std::logic_error("a state of another level");
   scene.starts[level] = x;
   refuse_intersecting_start(experiment, model, x, errors);

@@ -14,7 +14,7 @@ namespace drape {
 /// it.
 class CheckpointManager {
  public:
-  /// `begun` is the run's initial state.
+  /// `begun` is the run's state at its beginning.
   CheckpointManager(const RunFolder& folder, const Recorder& recorder, Checkpoint begun, double interval);
 
   void method_started(int method);
@@ -76,7 +76,7 @@ SavedState saved_state(const std::filesystem::path& folder, const std::string& m
 /// Appends an error for every change of the experiment that a saved state does not fit.
 void refuse_other_cloth(const Experiment& before, const Experiment& changed, int level, ConfigErrors& errors);
 
-/// Replaces the scene's initial states by x on that level and by the same surface, refined at midpoints, on
+/// Replaces the scene's starts by x on that level and by the same surface, refined at midpoints, on
 /// finer ones. Dirichlet vertices move from there to their targets. Appends the intersections of x.
 void warm_start_scene(const Experiment& experiment, Scene& scene, int level, const Positions& x,
                       ConfigErrors& errors);

@@ -75,16 +75,17 @@ class ErrorTable {
              const std::function<void(const std::string&)>& fault);
 
   [[nodiscard]] bool empty() const { return levels_.empty(); }
-  const std::vector<LevelSnapshots>& levels() const { return levels_; }
+  using State = std::vector<LevelSnapshots>;
+  const State& state() const { return levels_; }
   /// Restores what an earlier table of the same run had collected. The snapshots' files must still exist.
-  void restore(std::vector<LevelSnapshots> levels) { levels_ = std::move(levels); }
+  void restore(State state) { levels_ = std::move(state); }
 
  private:
   const RunFolder& folder_;
   const Experiment& experiment_;
   const Scene& scene_;
   const std::vector<ErrorMeasure> measures_;
-  std::vector<LevelSnapshots> levels_;
+  State levels_;
 };
 
 }  // namespace drape

@@ -1,6 +1,8 @@
 #include "core/app/run/recorder.h"
 
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "core/app/experiment/declared_metrics.h"
 #include "core/app/files/iterations_file.h"
@@ -64,44 +66,28 @@ Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const 
 }
 
 Recorder::Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
-                   const RecorderState& state)
+                   const Recorder::State& state)
     : Recorder(folder, experiment, scene, std::ios::app) {
   cut_files(folder, state);
-  results_ = parse_json(state.results);
-  method_ = state.method;
-  intersection_free_ = state.intersection_free;
-  method_intersection_free_ = state.method_intersection_free;
-  states_ = state.states;
-  snapshots_.restore(state.snapshots);
-  errors_.restore(state.measured);
-  spent_ = state.spent;
-  last_ = state.last;
-  overhead_ = state.overhead;
-  last_load_ = state.last_load;
-  if (scene_.schedule && !last_load_.values.empty())
-    scene_.schedule->restore(static_cast<int>(scene_.models.size()) - 1, last_load_);
+  s_ = state;
+  results_ = parse_json(std::exchange(s_.results, ""));
+  snapshots_.restore(std::exchange(s_.snapshots, {}));
+  errors_.restore(std::exchange(s_.measured, {}));
+  if (scene_.load_stepping && !s_.last_load.values.empty())
+    scene_.load_stepping->restore(scene_.finest(), s_.last_load);
   reset_peak_memory();
   restored_ = write_again();
   save();
-  log({{"event", "run_resumed"}, {"method", method_}});
+  log({{"event", "run_resumed"}, {"method", s_.method}});
   for (const std::string& file : restored_) log({{"event", "file_restored"}, {"file", file}});
 }
 
-RecorderState Recorder::state() const {
-  const auto [iterations_bytes, log_bytes] = file_sizes(folder_);
-  RecorderState s{json_text(results_),
-                  method_,
-                  intersection_free_,
-                  method_intersection_free_,
-                  states_,
-                  snapshots_.state(),
-                  errors_.levels(),
-                  spent_,
-                  last_,
-                  overhead_,
-                  iterations_bytes,
-                  log_bytes,
-                  last_load_};
+Recorder::State Recorder::state() const {
+  State s = s_;
+  s.results = json_text(results_);
+  s.snapshots = snapshots_.state();
+  s.measured = errors_.state();
+  std::tie(s.iterations_bytes, s.log_bytes) = file_sizes(folder_);
   sync_to_disk(folder_.file("iterations.csv"));
   sync_to_disk(folder_.file("log.jsonl"));
   return s;
@@ -125,10 +111,10 @@ void Recorder::log(Json entry) {
 void Recorder::save() const { folder_.write_text("results.json", json_text(results_, 1) + "\n"); }
 
 void Recorder::method_started(const std::string& method) {
-  method_ = method;
-  method_intersection_free_ = true;
-  spent_ = Cost();
-  overhead_ = 0;
+  s_.method = method;
+  s_.method_intersection_free = true;
+  s_.spent = Cost();
+  s_.overhead = 0;
   reset_peak_memory();
   method_entry() = {{"status", "running"},     {"solver", experiment_.solver_type(method)},
                     {"seconds", 0.0},          {"peak_memory_bytes", 0},
@@ -139,34 +125,37 @@ void Recorder::method_started(const std::string& method) {
 
 void Recorder::level_started(int level) {
   snapshots_.begin_level();
-  last_ = Cost();
-  log({{"event", "level_started"}, {"method", method_}, {"level", level}});
+  s_.last = Cost();
+  log({{"event", "level_started"}, {"method", s_.method}, {"level", level}});
 }
 
 Recorder::Json Recorder::intersections(int level, const Positions& x) {
-  const auto& contacts = scene_.model(level).contacts();
+  const auto& contacts = scene_.model(level)->contacts();
   if (contacts.empty()) return nullptr;
   constexpr std::size_t max_logged = 10;  // of each contact model
   std::size_t count = 0;
   for (const auto& contact : contacts) {
     const std::vector<Intersection> found = contact->intersections(x);
     for (std::size_t k = 0; k < std::min(found.size(), max_logged); ++k)
-      log({{"event", "intersection"}, {"method", method_}, {"level", level}, {"pair", to_string(found[k])}});
+      log({{"event", "intersection"},
+           {"method", s_.method},
+           {"level", level},
+           {"pair", to_string(found[k])}});
     count += found.size();
   }
-  if (count > 0) intersection_free_ = method_intersection_free_ = false;
+  if (count > 0) s_.intersection_free = s_.method_intersection_free = false;
   return count;
 }
 
 void Recorder::iteration(const IterationRow& r, const Positions& x) {
   RecordedIteration row{r, {}};
-  row.seconds -= overhead_;
-  last_ = {std::max(row.seconds - spent_.seconds, 0.0), last_.iterations + 1, r.flops};
-  row.flops += spent_.flops;
-  if (snapshots_.any()) snapshots_.iteration(last_, x);
+  row.seconds -= s_.overhead;
+  s_.last = {std::max(row.seconds - s_.spent.seconds, 0.0), s_.last.iterations + 1, r.flops};
+  row.flops += s_.spent.flops;
+  if (snapshots_.any()) snapshots_.iteration(s_.last, x);
   if (experiment_.parameters.check_intersections == IntersectionCheck::every_step)
     if (const Json count = intersections(r.level, x); !count.is_null()) row.intersections = count.get<int>();
-  iterations_ << method_;
+  iterations_ << s_.method;
   for_each_column(row, [&](const char*, const auto& value, int digits) {
     iterations_ << ',' << cell_text(value, digits);
   });
@@ -176,7 +165,7 @@ void Recorder::iteration(const IterationRow& r, const Positions& x) {
 
 Recorder::Json Recorder::state_entry(const LevelResult& r) {
   const Level& level = scene_.hierarchy.levels[r.level];
-  const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
+  const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
   const double energy = model.energy(r.x);
   Json parts = Json::object(), released_parts = parts;
   for (const auto& [name, joules] : model.energy_parts(r.x)) parts[name] = finite_or_null(joules);
@@ -185,7 +174,7 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
         parts[name].is_null() ? Json() : finite_or_null(joules - parts[name].get<double>());
   const Json crossing = intersections(r.level, r.x);
   const bool apart = crossing.is_null() || crossing == 0;
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
   const double on_finest = energy_on_finest(scene_, weights, r.level, r.x);
   Json entry = {{"level", r.level},
                 {"vertices", level.vertex_count()},
@@ -210,12 +199,12 @@ Recorder::Json Recorder::state_entry(const LevelResult& r) {
                 {"intersections", crossing},
                 {"smallest_gap", r.smallest_gap ? finite_or_null(*r.smallest_gap) : Json()},
                 {"contact_stiffness", r.contact_stiffness},
-                {"mesh", level_file(method_, r.level, ".ply")}};
+                {"mesh", level_file(s_.method, r.level, ".ply")}};
   return entry;
 }
 
 void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
-  const LevelModel& model = scene_.model(r.level);
+  const LevelModel& model = *scene_.model(r.level);
   method_entry()["increments"].push_back(
       {{"level", r.level},
        {"increment", r.increment},
@@ -231,30 +220,30 @@ void Recorder::increment_finished(const IncrementRow& r, const Positions& x) {
 
 void Recorder::level_finished(const LevelResult& r) {
   const Stopwatch watch;
-  const RecordedState state{method_, r.level, r.x};
-  write_state(state);
+  const RecordedState state{s_.method, r.level, r.x};
+  const std::string ply = ply_of(state);
+  write_state(state, ply);
   Json& entry = method_entry();
   entry["levels"].push_back(state_entry(r));
-  entry["levels"].back()["mesh_checksum"] =
-      checksum_of(ply_bytes({r.x, scene_.hierarchy.levels[r.level].rest.triangles}));
+  entry["levels"].back()["mesh_checksum"] = checksum_of(ply);
   // By the clock of the rows, which includes the setup of the objective; a level's own seconds exclude it.
-  const Cost cost = {std::max(r.seconds, last_.seconds), r.iterations, r.flops};
+  const Cost cost = {std::max(r.seconds, s_.last.seconds), r.iterations, r.flops};
   if (snapshots_.any())
-    entry["levels"].back()["snapshots"] = errors_.add(method_, r, snapshots_.end_level(cost, r.x),
-                                                      r.from_initial_state ? Cost() : spent_, spent_);
-  states_.push_back(state);
-  spent_ = spent_ + cost;
+    entry["levels"].back()["snapshots"] = errors_.add(s_.method, r, snapshots_.end_level(cost, r.x),
+                                                      r.from_initial_state ? Cost() : s_.spent, s_.spent);
+  s_.states.push_back(state);
+  s_.spent = s_.spent + cost;
   follow_schedule();
   entry["seconds"] = entry["seconds"].get<double>() + r.seconds;
   entry["peak_memory_bytes"] = std::max(entry["peak_memory_bytes"].get<std::int64_t>(), peak_memory_bytes());
   save();
   log({{"event", "level_finished"},
-       {"method", method_},
+       {"method", s_.method},
        {"level", r.level},
        {"status", to_string(r.outcome)},
        {"message", r.message},
        {"seconds", r.seconds}});
-  overhead_ += watch.seconds();
+  s_.overhead += watch.seconds();
 }
 
 void Recorder::run_finished(bool complete) {

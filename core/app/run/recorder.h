@@ -20,22 +20,6 @@ struct RecordedState {
   Positions x;
 };
 
-/// A recorder's state, with the sizes of its files.
-struct RecorderState {
-  std::string results;  ///< contents of results.json
-  std::string method;
-  bool intersection_free = true;         ///< of all methods so far
-  bool method_intersection_free = true;  ///< of the current method
-  std::vector<RecordedState> states;     ///< all levels so far, in order
-  SnapshotRecorder::State snapshots;
-  std::vector<LevelSnapshots> measured;
-  Cost spent, last;     ///< of the method's levels before this one; of this level so far
-  double overhead = 0;  ///< time that recording took between the levels of the method [s]
-  std::uint64_t iterations_bytes = 0, log_bytes = 0;
-  /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
-  LoadSteppingState last_load;
-};
-
 /// Why a method that threw has failed.
 struct MethodFailure {
   int level = 0;  ///< the current one
@@ -46,14 +30,28 @@ struct MethodFailure {
 /// function throws WriteError if a file cannot be written.
 class Recorder : public Observer {
  public:
+  struct State {
+    std::string results;  ///< contents of results.json
+    std::string method;
+    bool intersection_free = true;         ///< of all methods so far
+    bool method_intersection_free = true;  ///< of the current method
+    std::vector<RecordedState> states;     ///< all levels so far, in order
+    SnapshotRecorder::State snapshots;
+    ErrorTable::State measured;
+    Cost spent, last;     ///< of the method's levels before this one; of this level so far
+    double overhead = 0;  ///< time that recording took between the levels of the method [s]
+    std::uint64_t iterations_bytes = 0, log_bytes = 0;  ///< sizes of its files
+    /// The furthest that a level has come to, that of the obstacles' files; without values at the start.
+    LoadSteppingState last_load;
+  };
+
   Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene);
 
   /// Resumes from another recorder's state: truncates the files to their former sizes and restores damaged or
   /// missing ones.
-  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene,
-           const RecorderState& state);
+  Recorder(const RunFolder& folder, const Experiment& experiment, const Scene& scene, const State& state);
   /// Flushes the files to the disk before it returns.
-  RecorderState state() const;
+  State state() const;
   /// The files that were restored.
   const std::vector<std::string>& restored() const { return restored_; }
   /// Records the origin of a warm start in results.json.
@@ -76,7 +74,7 @@ class Recorder : public Observer {
   void level_finished(const LevelResult& result) override;
 
   /// Whether no checked state had an intersection.
-  bool intersection_free() const { return intersection_free_; }
+  bool intersection_free() const { return s_.intersection_free; }
   /// The metrics that have thrown, with the first cause of each.
   const std::map<std::string, std::string>& not_measured() const { return not_measured_; }
 
@@ -90,7 +88,8 @@ class Recorder : public Observer {
   Names write_scene();
   /// The obstacles under the load that the finest level has reached.
   Names write_obstacles();
-  Names write_state(const RecordedState& state) const;
+  Names write_state(const RecordedState& state, const std::string& ply) const;
+  std::string ply_of(const RecordedState& state) const;
   /// The states of a method as a ParaView collection.
   Names write_collection(const std::string& method) const;
   /// Measures the fields of finished methods again whose file is not as recorded.
@@ -100,7 +99,7 @@ class Recorder : public Observer {
   void follow_schedule();
   /// Throws WriteError if the last write to iterations.csv or log.jsonl failed.
   void require_written(const std::ofstream& stream, const char* name) const;
-  Json& method_entry() { return results_["methods"][method_]; }
+  Json& method_entry() { return results_["methods"][s_.method]; }
   Json state_entry(const LevelResult& result);
   /// Counts intersecting pairs and logs the first ones; null without contact.
   Json intersections(int level, const Positions& x);
@@ -124,17 +123,11 @@ class Recorder : public Observer {
   const Scene& scene_;
   std::ofstream iterations_, log_;
   Json results_;
-  std::string method_;
   std::map<std::string, std::string> not_measured_;
-  bool intersection_free_ = true, method_intersection_free_ = true;
-  std::vector<RecordedState> states_;  // all levels so far
   std::vector<std::string> restored_;
   SnapshotRecorder snapshots_;
   ErrorTable errors_;
-  Cost spent_;           // of the method's levels before this one
-  Cost last_;            // of this level up to its last iteration
-  double overhead_ = 0;  // time that recording took between the levels of a method [s]
-  LoadSteppingState last_load_;
+  State s_;  // without what is kept above: results, snapshots and measured
   std::optional<LevelResult> solved_reference_;
 };
 

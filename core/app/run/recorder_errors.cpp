@@ -4,10 +4,10 @@
 
 #include "core/app/run/recorder.h"
 #include "core/app/run/recorder_files.h"
-#include "core/app/run/reference.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/threads/stopwatch.h"
 #include "core/numerics/mesh_files/io.h"
+#include "core/numerics/solve/newton.h"
 
 namespace drape {
 
@@ -16,12 +16,26 @@ namespace {
 /// After a stop, errors are measured for at most so long [s]; a resumed run measures all of them.
 constexpr double seconds_after_stop = 5;
 
+/// Continues from a state of the finest level to the force tolerance of the experiment's `reference`, with
+/// the experiment's common Newton parameters.
+LevelResult solve_to_tolerance(const Experiment& experiment, const Scene& scene, const Positions& x,
+                               Observer& observer) {
+  NewtonParameters newton = experiment.parameters.newton;
+  newton.force_tolerance = experiment.parameters.reference.force_tolerance;
+  const Stopwatch clock;
+  PlainObjective objective(scene.finest_model());
+  observer.level_started(scene.finest());
+  LevelResult result = minimise(objective, x, newton, {clock, observer});
+  observer.level_finished(result);
+  return result;
+}
+
 }  // namespace
 
 std::vector<const RecordedState*> Recorder::finest_states() const {
   std::vector<const RecordedState*> finest;
-  for (const RecordedState& state : states_)
-    if (state.level == static_cast<int>(scene_.models.size()) - 1) finest.push_back(&state);
+  for (const RecordedState& state : s_.states)
+    if (state.level == scene_.finest()) finest.push_back(&state);
   return finest;
 }
 
@@ -73,15 +87,16 @@ const Positions* Recorder::find_reference(Observer& observer, bool cancelled) {
 
 bool Recorder::measure_errors(Observer& observer, bool cancelled) {
   const ReferenceParameters& p = experiment_.parameters.reference;
-  const int finest = static_cast<int>(scene_.models.size()) - 1;
+  const int finest = scene_.finest();
   // The last method may have been stopped under an earlier load than that of the other methods' states.
-  if (scene_.schedule && !last_load_.values.empty()) scene_.schedule->restore(finest, last_load_);
+  if (scene_.load_stepping && !s_.last_load.values.empty())
+    scene_.load_stepping->restore(finest, s_.last_load);
   const Positions* reference = find_reference(observer, cancelled);
   if (reference) {
     write_ply(folder_.file("reference.ply"), {*reference, scene_.hierarchy.levels[finest].rest.triangles});
     for (const RecordedState* state : finest_states())
       if (&state->x != reference) {
-        method_ = state->method;
+        s_.method = state->method;
         Json row = compare(finest, *reference, state->x);
         row["against"] = results_["reference"].value("method", p.file);
         method_entry()["reference"] = row;

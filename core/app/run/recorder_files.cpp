@@ -5,7 +5,6 @@
 #include <cstring>
 #include <fstream>
 
-#include "core/app/experiment/contact_configs.h"
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/io_formats.h"
@@ -46,7 +45,7 @@ std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder) {
   return {size_of(folder.file("iterations.csv")), size_of(folder.file("log.jsonl"))};
 }
 
-void cut_files(const RunFolder& folder, const RecorderState& state) {
+void cut_files(const RunFolder& folder, const Recorder::State& state) {
   cut(folder.file("iterations.csv"), state.iterations_bytes);
   cut(folder.file("log.jsonl"), state.log_bytes);
 }
@@ -61,7 +60,7 @@ std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene)
   return written;
 }
 
-void refuse_short_files(const RunFolder& folder, const RecorderState& state) {
+void refuse_short_files(const RunFolder& folder, const Recorder::State& state) {
   for (const auto& [name, bytes] :
        {std::pair("iterations.csv", state.iterations_bytes), {"log.jsonl", state.log_bytes}}) {
     const std::filesystem::path file = folder.file(name);
@@ -103,12 +102,12 @@ Recorder::Names Recorder::write_scene() {
 Recorder::Names Recorder::write_obstacles() {
   Names written;
   results_["obstacles"] = Json::array();
-  results_["obstacle_names"] = obstacle_names(*experiment_.registry, experiment_.parameters);
+  results_["obstacle_names"] = experiment_.obstacle_names();
   for (const TriangleMesh& obstacle : obstacles_of(scene_.finest_model().contacts())) {
     const std::string name = "obstacles/" + std::to_string(results_["obstacles"].size()) + ".ply";
     results_["obstacles"].push_back(name);
     // A run that was killed after its last checkpoint may have moved them since: that is no damage.
-    const bool may_differ = scene_.schedule && std::filesystem::exists(folder_.file(name));
+    const bool may_differ = scene_.load_stepping && std::filesystem::exists(folder_.file(name));
     if (write_where_other(folder_.file(name), ply_bytes(obstacle)) && !may_differ) written.push_back(name);
   }
   return written;
@@ -116,28 +115,31 @@ Recorder::Names Recorder::write_obstacles() {
 
 void Recorder::follow_schedule() {
   // A method that is stopped on the way leaves them where another's final states have them.
-  const LoadStepping* schedule = scene_.schedule.get();
-  if (!schedule || (!schedule->finished() && schedule->increment() <= last_load_.increment)) return;
-  last_load_ = schedule->state();
+  const LoadStepping* schedule = scene_.load_stepping.get();
+  if (!schedule || (!schedule->finished() && schedule->increment() <= s_.last_load.increment)) return;
+  s_.last_load = schedule->state();
   write_obstacles();
 }
 
-Recorder::Names Recorder::write_state(const RecordedState& state) const {
+std::string Recorder::ply_of(const RecordedState& state) const {
+  return ply_bytes({state.x, scene_.hierarchy.levels[state.level].rest.triangles});
+}
+
+Recorder::Names Recorder::write_state(const RecordedState& state, const std::string& ply) const {
   Names written;
-  const TriangleMesh mesh{state.x, scene_.hierarchy.levels[state.level].rest.triangles};
-  for (const char* extension : {".ply", ".vtp"}) {
+  const auto write = [&](const char* extension, const std::string& bytes) {
     const std::string name = level_file(state.method, state.level, extension);
-    const bool ply = extension == std::string_view(".ply");
-    if (write_where_other(folder_.file(name), ply ? ply_bytes(mesh) : vtp_text(mesh)))
-      written.push_back(name);
+    if (write_where_other(folder_.file(name), bytes)) written.push_back(name);
     sync_to_disk(folder_.file(name));  // later checkpoints rely on it
-  }
+  };
+  write(".ply", ply);
+  write(".vtp", vtp_text({state.x, scene_.hierarchy.levels[state.level].rest.triangles}));
   return written;
 }
 
 Recorder::Names Recorder::write_collection(const std::string& method) const {
   std::vector<std::pair<double, std::string>> meshes;
-  for (const RecordedState& state : states_)
+  for (const RecordedState& state : s_.states)
     if (state.method == method)
       meshes.emplace_back(state.level,  // the collection is in levels/ too
                           level_file(method, state.level, ".vtp").substr(std::strlen("levels/")));
@@ -149,7 +151,7 @@ Recorder::Names Recorder::write_again() {
   for (const char* part : {"levels", "fields", "obstacles"}) make_folder(folder_.file(part));
   Names all = write_scene();
   const auto add = [&](const Names& names) { all.insert(all.end(), names.begin(), names.end()); };
-  for (const RecordedState& state : states_) add(write_state(state));
+  for (const RecordedState& state : s_.states) add(write_state(state, ply_of(state)));
   for (const auto& [name, method] : results_["methods"].items())
     if (method["status"].get<std::string>() != "running") add(write_collection(name));
   add(restore_fields());

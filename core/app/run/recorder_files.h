@@ -27,13 +27,13 @@ double wall_clock();
 /// Sizes of iterations.csv and log.jsonl [bytes].
 std::pair<std::uint64_t, std::uint64_t> file_sizes(const RunFolder& folder);
 /// Truncates iterations.csv and log.jsonl to the sizes of the state.
-void cut_files(const RunFolder& folder, const RecorderState& state);
+void cut_files(const RunFolder& folder, const Recorder::State& state);
 
 /// Writes the rest shapes that differ from their files, and returns their names.
 std::vector<std::string> write_rest(const RunFolder& folder, const Scene& scene);
 
 /// Throws std::runtime_error if iterations.csv or log.jsonl is shorter than in the state.
-void refuse_short_files(const RunFolder& folder, const RecorderState& state);
+void refuse_short_files(const RunFolder& folder, const Recorder::State& state);
 
 /// Records in the folder that the run was aborted, and why, as far as it is still writable.
 void record_abort(const RunFolder& folder, const std::string& cause);

@@ -41,7 +41,7 @@ MetricResult Recorder::measure(const std::string& name, const Metric& metric, co
   }
   not_measured_.emplace(name, cause);
   entry["not_measured"][name] = cause;
-  log({{"event", "not_measured"}, {"method", method_}, {"metric", name}, {"message", cause}});
+  log({{"event", "not_measured"}, {"method", s_.method}, {"metric", name}, {"message", cause}});
   return {};
 }
 
@@ -51,7 +51,7 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   for (const auto& [name, metric] : experiment_.metrics) {
     if (metric->scope() != MetricScope::pair) continue;
     const MetricResult result =
-        measure(name, *metric, {scene_.hierarchy.levels[level], scene_.model(level), x, &other}, row);
+        measure(name, *metric, {scene_.hierarchy.levels[level], *scene_.model(level), x, &other}, row);
     for (const MetricValue& v : result.values) at_dotted(row, v.name) = finite_or_null(v.value);
     if (!fields) continue;
     for (const MetricField& f : result.fields) fields->push_back({f.name, f.values});
@@ -65,21 +65,21 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
   // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
   Outcome worst = Outcome::converged;
-  const int finest = static_cast<int>(scene_.models.size()) - 1;
+  const int finest = scene_.finest();
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
     worst = worse_of(worst, r.outcome);
     Json& state = entry["levels"][i];
-    const LevelModel model = scene_.model(r.level).with_stiffness(r.contact_stiffness);
+    const LevelModel model = scene_.model(r.level)->with_stiffness(r.contact_stiffness);
     for (const auto& [name, metric] : experiment_.metrics)
       if (metric->scope() == MetricScope::state)
         for (const MetricValue& v :
              measure(name, *metric, {scene_.hierarchy.levels[r.level], model, r.x}, state).values)
           at_dotted(state, v.name) = finite_or_null(v.value);
   }
-  write_collection(method_);
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
-  std::vector<Json> of_start;  // the initial state compared with each level's state
+  write_collection(s_.method);
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
+  std::vector<Json> of_start;  // the start compared with each level's state
   for (const LevelResult& r : results)
     of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
   for (std::size_t c = 0; c < results.size(); ++c)
@@ -90,7 +90,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       VertexFields fields;
       row.update(compare(fine, results[f].x, prolonged, &fields));
       if (fine == finest && !fields.empty()) {
-        const std::string file = fields_file(method_, coarse, fine),
+        const std::string file = fields_file(s_.method, coarse, fine),
                           bytes = fields_bytes(fine, results[f].x, fields);
         write_file(folder_.file(file), bytes);
         row["fields"] = file;
@@ -99,7 +99,7 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
       row["of_start"] = of_start[f];
       entry["consistency"].push_back(row);
     }
-  if (!method_intersection_free_) worst = Outcome::infeasible;
+  if (!s_.method_intersection_free) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
   if (failure) {
     const Level& level = scene_.hierarchy.levels[failure->level];
@@ -109,19 +109,19 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
                                {"status", failed},
                                {"message", failure->cause}});
     log({{"event", "method_failed"},
-         {"method", method_},
+         {"method", s_.method},
          {"level", failure->level},
          {"message", failure->cause}});
   }
   save();
-  log({{"event", "method_finished"}, {"method", method_}, {"status", entry["status"]}});
+  log({{"event", "method_finished"}, {"method", s_.method}, {"status", entry["status"]}});
 }
 
 Recorder::Names Recorder::restore_fields() {
   Names written;
-  const std::string current = method_;
+  const std::string current = s_.method;
   for (const RecordedState* fine : finest_states())
-    for (const RecordedState& coarse : states_) {
+    for (const RecordedState& coarse : s_.states) {
       if (coarse.method != fine->method || coarse.level >= fine->level) continue;
       const std::string name = fields_file(fine->method, coarse.level, fine->level);
       const Json& rows = results_["methods"][fine->method]["consistency"];
@@ -131,14 +131,14 @@ Recorder::Names Recorder::restore_fields() {
       if (row == rows.end() || (std::filesystem::is_regular_file(file) &&
                                 checksum_of(read_file(file)) == row->value("fields_checksum", 0u)))
         continue;
-      method_ = fine->method;  // whose metrics these are
-      const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(method_).interpolation());
+      s_.method = fine->method;  // whose metrics these are
+      const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
       VertexFields fields;
       compare(fine->level, fine->x, scene_.hierarchy.prolong(coarse.x, coarse.level, fine->level, weights),
               &fields);
       if (write_where_other(file, fields_bytes(fine->level, fine->x, fields))) written.push_back(name);
     }
-  method_ = current;
+  s_.method = current;
   return written;
 }
 

@@ -182,11 +182,10 @@ void report_on(const RunFolder& folder, const std::function<bool()>& stopped) {
 bool run(const Experiment& experiment, const Scene& scene, const RunOptions& options, const RunFolder& folder,
          Recorder& recorder, const Checkpoint& begun, bool resumed) {
   CheckpointManager checkpoints(folder, recorder, begun, options.checkpoint);
-  const Problem problem = scene.problem();
   std::vector<std::string> changing;
-  for (const KeyParameters& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
+  for (const ScheduleKey& key : experiment.parameters.schedule.keys) changing.push_back(key.parameter);
   Progress progress(experiment.parameters.newton.force_tolerance, experiment.parameters.levels,
-                    options.verbosity, problem.load_stepping, changing);
+                    options.verbosity, scene.load_stepping.get(), changing);
   RunObserver observer(recorder, checkpoints, progress, options);
 
   bool all_converged = begun.all_converged, cancelled = false;
@@ -207,11 +206,11 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     std::vector<LevelResult> results;
     std::optional<MethodFailure> failure;
     try {
-      results = solver.resume(problem, state, observer);
+      results = solver.resume(scene, state, observer);
     } catch (const WriteError&) {
       throw;  // concerns the whole run
     } catch (...) {
-      failure = {std::min(observer.level(), problem.finest()), message_in_flight()};
+      failure = {std::min(observer.level(), scene.finest()), message_in_flight()};
       results = observer.finished();
       progress.method_failed(failure->level, failure->cause);
     }
@@ -256,7 +255,7 @@ bool run_experiment(const Experiment& experiment, const Scene& scene, const RunO
     begun.config = to_yaml(config);
     begun.methods = methods;
     begun.first_level = options.first_level;
-    if (!options.warm_started_from.empty()) begun.own_start = scene.starts[options.first_level];
+    if (!options.warm_started_from.empty()) begun.start = scene.starts[options.first_level];
     folder.write_text("config.yaml", begun.config);
     if (!start_file.empty()) write_ply(folder.file("start.ply"), start);
     Recorder recorder(folder, experiment, scene);

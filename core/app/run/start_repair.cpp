@@ -21,7 +21,7 @@ constexpr double shortest_part = 1e-3, growth = 1.5;
 /// Bisections of the first free translation, to move no further than necessary.
 constexpr int halvings = 5;
 
-/// Intersections and gaps of the translated initial state.
+/// Intersections and gaps of the translated start.
 struct Clearance {
   std::vector<Intersection> intersections;  ///< of the first level with any; the rest is then unknown
   int level = 0;                            ///< that level
@@ -52,7 +52,7 @@ class StartProbe {
   explicit StartProbe(const Scene& scene)
       : scene_(scene),
         components_(scene.hierarchy.levels[0].topology.components()),
-        obstacles_(obstacles_of(scene.model(0).contacts())),
+        obstacles_(obstacles_of(scene.model(0)->contacts())),
         diagonal_(bounding_box_diagonal(scene.starts[0])) {}
 
   double diagonal() const { return diagonal_; }
@@ -62,7 +62,7 @@ class StartProbe {
     for (std::size_t l = 0; l < scene_.starts.size(); ++l) {
       const Positions x = scene_.starts[l].rowwise() + translation.transpose();
       clearance.level = static_cast<int>(l);
-      for (const auto& contact : scene_.model(static_cast<int>(l)).contacts()) {
+      for (const auto& contact : scene_.model(static_cast<int>(l))->contacts()) {
         clearance.intersections = contact->intersections(x);
         if (!clearance.intersections.empty()) return clearance;
         const auto near = contact->build_candidates(x, x)->build_collisions(x);
@@ -174,10 +174,11 @@ std::string hopeless_text(const Clearance& start, const TranslationSearch& searc
 void move(Experiment& experiment, const Vector3d& translation) {
   Vector3d& translate = experiment.parameters.start.translate;
   translate += translation;
-  std::string text;
-  for (int c = 0; c < 3; ++c) text += (c ? ", " : "[") + ConfigNode::of(translate[c]).scalar;
+  ConfigNode list;
+  list.kind = ConfigNode::Kind::list;
+  for (const double t : translate) list.items.push_back(ConfigNode::of(t));
   ConfigErrors none;
-  set_path(experiment.resolved, "start.translate", text + "]", none);
+  set_path(experiment.resolved, "start.translate", std::move(list), {}, none);
 }
 
 }  // namespace

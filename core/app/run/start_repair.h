@@ -4,7 +4,7 @@
 
 namespace drape {
 
-/// Translates an initial state that intersects something, or is closer than a micrometre to it: up, or else
+/// Translates a start that intersects something, or is closer than a micrometre to it: up, or else
 /// sideways, equally on every level, until nothing intersects, no obstacle encloses the cloth and as few
 /// obstacles as possible are within d̂. Returns the translation [m], zero if none was necessary. It is added
 /// to the experiment's `start.translate`, and the caller must build the scene again. Appends an error if no

@@ -21,8 +21,8 @@ std::unique_ptr<SteeredSolve> SteeredSolve::begin(ConfigNode source, const std::
   s->experiment_ = std::make_shared<const Experiment>(std::move(*experiment));
   s->scene_ = build_scene(*s->experiment_, errors);
   if (!s->scene_) return nullptr;
-  s->solve_ = std::make_unique<SteppedSolve>(s->experiment_->solver_of(s->method_), s->scene_->problem(),
-                                             std::move(from));
+  s->solve_ =
+      std::make_unique<SteppedSolve>(s->experiment_->solver_of(s->method_), *s->scene_, std::move(from));
   return s;
 }
 
@@ -44,8 +44,7 @@ bool SteeredSolve::set(const std::string& key, const std::string& value, ConfigE
   if (scene) warm_start_scene(*experiment, *scene, from.level, x, errors);
   if (!errors.empty()) return false;
   const int level = from.level;
-  auto solve =
-      std::make_unique<SteppedSolve>(experiment->solver_of(method_), scene->problem(), std::move(from));
+  auto solve = std::make_unique<SteppedSolve>(experiment->solver_of(method_), *scene, std::move(from));
   level_ = level;
   solve_ = std::move(solve);
   experiment_ = std::move(experiment);

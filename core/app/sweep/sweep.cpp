@@ -172,6 +172,7 @@ class Reader {
         same_.push_back({variation.where, "variations \"" + other->second + "\" and \"" + run.name +
                                               "\" come to the same experiment; take one of them out"});
       sweep_.runs.push_back(run);
+      resolved_.push_back(resolved);
     }
   }
 
@@ -179,16 +180,15 @@ class Reader {
   void complete_settings() {
     nlohmann::ordered_json keys = nlohmann::ordered_json::object();
     for (const SweepRun& run : sweep_.runs) keys.update(run.settings);
-    for (SweepRun& run : sweep_.runs) {
+    for (std::size_t k = 0; k < sweep_.runs.size(); ++k) {
+      SweepRun& run = sweep_.runs[k];
       if (run.settings.size() == keys.size()) continue;
-      ConfigErrors unread;
-      const ConfigNode resolved = parse_yaml(run.config, run.folder, unread);
       nlohmann::ordered_json all = nlohmann::ordered_json::object();
       for (const auto& [key, value] : keys.items())
         if (run.settings.contains(key))
           all[key] = run.settings[key];
         else if (key != "methods")
-          all[key] = value_at(resolved, key);
+          all[key] = value_at(resolved_[k], key);
       run.settings = all;
     }
   }
@@ -221,6 +221,7 @@ class Reader {
   ConfigErrors& errors_;
   std::optional<int> most_levels_;
   Sweep sweep_;
+  std::vector<ConfigNode> resolved_;  // of each run
   ConfigNode source_;
   ConfigErrors faults_, same_;
   std::map<std::string, std::vector<std::string>> faulty_;

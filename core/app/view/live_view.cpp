@@ -72,8 +72,8 @@ void LiveView::iteration(const IterationRow& row, const Positions& x) {
 /// solved.
 void LiveView::copy_state(Shown& shown, const Positions& x) {
   const Stopwatch watch;
-  if (scene_.schedule && scene_.schedule->state().values != load_) {
-    load_ = scene_.schedule->state().values;
+  if (scene_.load_stepping && scene_.load_stepping->state().values != load_) {
+    load_ = scene_.load_stepping->state().values;
     obstacles_ = std::make_shared<const Obstacles>(obstacles_of(scene_.finest_model().contacts()));
   }
   shown.x = x;

@@ -15,13 +15,12 @@ namespace drape {
 struct Hierarchy;
 class LevelModel;
 
-/// Input of a method. Refers to objects that the experiment owns.
+/// Input of a method: the levels of one cloth, as long as the hierarchy lives.
 struct Problem {
   const Hierarchy& hierarchy;
   std::vector<std::shared_ptr<const LevelModel>> models;  ///< the plain model of every level at the start
-  /// The scene's start on every level, with Dirichlet vertices at their targets (n×3) [m].
-  std::vector<Positions> starts;
-  LoadStepping* load_stepping = nullptr;  ///< null without a schedule
+  std::vector<Positions> starts;  ///< of every level, with Dirichlet vertices at their targets (n×3) [m]
+  std::unique_ptr<LoadStepping> load_stepping;  ///< null without a schedule
 
   int finest() const { return static_cast<int>(models.size()) - 1; }
   /// The plain model of a level under the current load.

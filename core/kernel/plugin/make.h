@@ -14,14 +14,20 @@ struct PluginParameters {
   const RegistryEntry* entry = nullptr;
   std::shared_ptr<void> values;  ///< the entry's parameter struct; null if the node is not valid
 };
+/// Reads them. `prepare(schema, values)`, if given, may change the defaults before the node is read.
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
                                         const ConfigNode& node, ConfigErrors& errors,
-                                        ConfigNode* resolved = nullptr);
+                                        ConfigNode* resolved = nullptr,
+                                        const std::function<void(const Schema&, void*)>& prepare = {});
+
+/// The location of a plugin's refused parameter: its path in the plugin's section, and its place in a text.
+using LocateFault = std::function<Location(const std::string& path, const std::optional<std::size_t>& at)>;
+/// The location in a node that is written; its own, if the path leads to nothing that is written.
+LocateFault locate_in(const ConfigNode& written);
 
 /// The object with these parameters, a pointer to the kind's interface, which may share with `before` what
-/// does not differ (RegistryEntry::make). Null, with every error appended, if the plugin refuses them; an
-/// error's location is that of the refused parameter in the node `written`, or the node's own.
-std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const ConfigNode& written,
+/// does not differ (RegistryEntry::make). Null, with every error appended, if the plugin refuses them.
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const LocateFault& locate,
                                   ConfigErrors& errors, const void* before = nullptr);
 
 /// The plugin object of a node, `loop` or `{type: loop, corner_angle: 30}`; null, with every error appended,
@@ -32,7 +38,7 @@ std::shared_ptr<Interface> make_from(const Registry& registry, const ConfigNode&
                                      ConfigNode* resolved = nullptr, const Interface* before = nullptr) {
   const PluginParameters parameters =
       read_plugin_parameters(registry, Kind<Interface>::name, node, errors, resolved);
-  return std::static_pointer_cast<Interface>(make_plugin(parameters, node, errors, before));
+  return std::static_pointer_cast<Interface>(make_plugin(parameters, locate_in(node), errors, before));
 }
 
 }  // namespace drape

@@ -202,6 +202,11 @@ void read_parameter(const Parameter& p, void* object, const ConfigNode& value, C
     p.read(object, p.path ? relative_path(value) : expand_shorthand(value, p), errors);
 }
 
+std::string number_fault(const Parameter& p, double value) {
+  const bool integer = p.type == "integer" || p.type == "list of integers";
+  return integer && value != std::rint(value) ? "an integer" : range_fault(value, p);
+}
+
 std::optional<double> parse_number(const std::string& text) { return parse_all<double>(text); }
 std::optional<int> parse_integer(const std::string& text) { return parse_all<int>(text); }
 
@@ -242,24 +247,6 @@ ConfigNode to_node(const NamedConstants& values) {
 
 namespace {
 
-/// A written key that the choice beside it makes meaningless, such as a mesh file for a square.
-void refuse_unread(const Schema& schema, const Parameter& p, const void* object, const ConfigNode& map,
-                   ConfigErrors& errors) {
-  const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
-  if (!written) return;
-  const auto selector = std::find_if(schema.parameters.begin(), schema.parameters.end(),
-                                     [&](const Parameter& other) { return other.name == p.selector; });
-  const std::string chosen = selector->write(object).scalar;
-  const auto& reads = p.selector_values;
-  if (std::find(reads.begin(), reads.end(), chosen) != reads.end()) return;
-  if (p.write(object).one_line() == p.write(schema.fresh().get()).one_line()) return;
-  std::string needed;
-  for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
-  errors.push_back({written->where, "\"" + p.name + "\"" + (schema.name.empty() ? "" : " in " + schema.name) +
-                                        " needs \"" + needed + "\"; here \"" + p.selector + "\" is " +
-                                        (chosen.empty() ? "not given" : chosen)});
-}
-
 /// "did you mean …?" or the known keys, for an unknown one.
 std::string hint_for(const std::string& key, const Schema& schema) {
   std::vector<std::string> known;
@@ -298,7 +285,31 @@ void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) con
   for (const Parameter& p : parameters)
     if (p.required && !map.find(p.name))
       errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
-  for (const Parameter& p : parameters) refuse_unread(*this, p, object, map, errors);
+  for (const Parameter& p : parameters) {
+    const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
+    if (const std::string fault = written ? unread_fault(p, object) : ""; !fault.empty())
+      errors.push_back({written->where, fault});
+  }
+}
+
+std::string Schema::unread_fault(const Parameter& p, const void* object) const {
+  const Parameter* selector = parameter_named(*this, p.selector);
+  if (!selector) return "";
+  const std::string chosen = selector->write(object).scalar;
+  const auto& reads = p.selector_values;
+  if (std::find(reads.begin(), reads.end(), chosen) != reads.end() ||
+      p.write(object).one_line() == p.write(fresh().get()).one_line())
+    return "";
+  std::string needed;
+  for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
+  return "\"" + p.name + "\"" + (name.empty() ? "" : " in " + name) + " needs \"" + needed + "\"; here \"" +
+         p.selector + "\" is " + (chosen.empty() ? "not given" : chosen);
+}
+
+const Parameter* parameter_named(const Schema& schema, const std::string& name) {
+  for (const Parameter& p : schema.parameters)
+    if (p.name == name) return &p;
+  return nullptr;
 }
 
 ConfigNode Schema::write(const void* object) const {

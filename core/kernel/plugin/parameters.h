@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <typeinfo>
 #include <utility>
 #include <vector>
 
@@ -43,19 +44,27 @@ struct Parameter {
   // Type-erased access to the member of a struct; `read` receives only validated nodes.
   std::function<void(void* object, const ConfigNode&, ConfigErrors&)> read;
   std::function<ConfigNode(const void* object)> write;
+  std::function<void(const void* from, void* to)> assign;  ///< between two structs
+  /// Number k of a number, a list or a map of numbers; null beyond the last one, and without a value.
+  std::function<double*(void* object, std::size_t k)> number;
   std::shared_ptr<const class Schema> section;  ///< type "section" and "list of sections"
   /// The struct of a section, or of an item of a list of sections; for these types only.
   std::function<void*(void* object, std::size_t item)> section_in;
+  std::function<void*(void* object)> append;  ///< a list of sections: adds an item, and returns it
 };
 
 /// Reads a value of one parameter into the struct `object`. Appends an error if the value is not valid.
 void read_parameter(const Parameter& parameter, void* object, const ConfigNode& value, ConfigErrors& errors);
+
+/// What a number must be to be a value of the parameter, or of an item of it, as "at least 0"; "" if it is.
+std::string number_fault(const Parameter& parameter, double value);
 
 /// The parameters of one struct.
 class Schema {
  public:
   std::string name;  ///< for messages ("in newton"); may be empty
   std::vector<Parameter> parameters;
+  const std::type_info* type = nullptr;          ///< of the struct; null if it is none of C++
   std::function<std::shared_ptr<void>()> fresh;  ///< a default-constructed struct
   std::function<std::shared_ptr<void>(const void* object)> copy;
 
@@ -64,7 +73,13 @@ class Schema {
   void read(void* object, const ConfigNode& map, ConfigErrors& errors) const;
   /// The object as a map with every parameter.
   ConfigNode write(const void* object) const;
+  /// Why the choice beside it makes a parameter of the object meaningless (ParameterHandle::only_with), such
+  /// as a mesh file for a square; "" if it does not, or the parameter has its default.
+  std::string unread_fault(const Parameter& parameter, const void* object) const;
 };
+
+/// The parameter of this name; null without one.
+const Parameter* parameter_named(const Schema& schema, const std::string& name);
 
 /// Sets properties of the parameter that was just added; calls can be chained.
 class ParameterHandle {

@@ -46,6 +46,27 @@ inline ConfigNode to_node(const std::string& value) { return ConfigNode::of(valu
 inline ConfigNode to_node(const ConfigNode& value) { return value; }
 ConfigNode to_node(const NamedConstants& values);
 
+// Number k of a member, as Parameter::number.
+template <class Member>
+double* number(Member&, std::size_t) {
+  return nullptr;
+}
+inline double* number(double& value, std::size_t k) { return k == 0 ? &value : nullptr; }
+inline double* number(std::vector<double>& values, std::size_t k) {
+  return k < values.size() ? &values[k] : nullptr;
+}
+inline double* number(NamedConstants& values, std::size_t k) {
+  return k < values.all.size() ? &values.all[k].value : nullptr;
+}
+template <int N>
+double* number(Eigen::Matrix<double, N, 1>& values, std::size_t k) {
+  return k < N ? &values[static_cast<Eigen::Index>(k)] : nullptr;
+}
+template <class T>
+double* number(std::optional<T>& value, std::size_t k) {
+  return value ? number(*value, k) : nullptr;
+}
+
 template <class Range, class Write>
 ConfigNode list_node(const Range& values, Write write) {
   ConfigNode node;
@@ -127,7 +148,10 @@ class Declaration {
   template <class Member, class Owner>
   ParameterHandle add(const std::string& name, Member Owner::*member) {
     using Shape = parameter_detail::Shape<Member>;
-    Parameter& p = append(name, Shape::type());
+    Parameter& p = append(name, Shape::type(), member);
+    p.number = [member](void* object, std::size_t k) {
+      return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
+    };
     p.size = Shape::size;
     p.nullable = Shape::nullable;
     p.read = [member](void* object, const ConfigNode& node, ConfigErrors&) {
@@ -143,7 +167,7 @@ class Declaration {
   template <class Enum>
   ParameterHandle add_choice(const std::string& name, Enum Struct::*member,
                              std::vector<std::pair<std::string, Enum>> words) {
-    Parameter& p = append(name, "text");
+    Parameter& p = append(name, "text", member);
     for (const auto& [word, value] : words) p.choices.push_back(word);
     p.read = [member, words](void* object, const ConfigNode& node, ConfigErrors&) {
       for (const auto& [word, value] : words)
@@ -160,7 +184,7 @@ class Declaration {
   /// A struct with its own `declare`, written as a nested map.
   template <class Section>
   ParameterHandle add_section(const std::string& name, Section Struct::*member) {
-    Parameter& p = append(name, "section");
+    Parameter& p = append(name, "section", member);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -176,7 +200,7 @@ class Declaration {
   /// A list of such structs, written as a list of maps; it replaces the default list.
   template <class Section>
   ParameterHandle add_sections(const std::string& name, std::vector<Section> Struct::*member) {
-    Parameter& p = append(name, "list of sections");
+    Parameter& p = append(name, "list of sections", member);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;
     p.read = [member, section](void* object, const ConfigNode& node, ConfigErrors& errors) {
@@ -195,6 +219,7 @@ class Declaration {
     p.section_in = [member](void* object, std::size_t item) {
       return &(static_cast<Struct*>(object)->*member)[item];
     };
+    p.append = [member](void* object) { return &(static_cast<Struct*>(object)->*member).emplace_back(); };
     return ParameterHandle(p);
   }
 
@@ -216,12 +241,16 @@ class Declaration {
   }
 
  private:
-  Parameter& append(const std::string& name, const std::string& type) {
+  template <class Member, class Owner>
+  Parameter& append(const std::string& name, const std::string& type, Member Owner::*member) {
     for (const Parameter& p : schema.parameters)
       if (p.name == name) throw std::runtime_error("parameter \"" + name + "\" is declared twice");
     Parameter& p = schema.parameters.emplace_back();
     p.name = name;
     p.type = type;
+    p.assign = [member](const void* from, void* to) {
+      static_cast<Struct*>(to)->*member = static_cast<const Struct*>(from)->*member;
+    };
     return p;
   }
 };
@@ -231,6 +260,7 @@ Schema schema_of(const std::string& name) {
   Declaration<Struct> declaration;
   Struct::declare(declaration);
   declaration.schema.name = name;
+  declaration.schema.type = &typeid(Struct);
   declaration.schema.fresh = []() -> std::shared_ptr<void> { return std::make_shared<Struct>(); };
   declaration.schema.copy = [](const void* object) -> std::shared_ptr<void> {
     return std::make_shared<Struct>(*static_cast<const Struct*>(object));

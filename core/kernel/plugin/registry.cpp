@@ -129,7 +129,8 @@ const RegistryEntry* find_plugin(const Registry& registry, const std::string& ki
 }
 
 PluginParameters read_plugin_parameters(const Registry& registry, const std::string& kind,
-                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved) {
+                                        const ConfigNode& node, ConfigErrors& errors, ConfigNode* resolved,
+                                        const std::function<void(const Schema&, void*)>& prepare) {
   PluginParameters read{find_plugin(registry, kind, node, errors), nullptr};
   if (!read.entry) return read;
   ConfigNode map = node;
@@ -141,13 +142,20 @@ PluginParameters read_plugin_parameters(const Registry& registry, const std::str
   const Schema schema = section_schema(*read.entry);
   const std::shared_ptr<void> values = read.entry->make_parameters();
   const size_t before = errors.size();
+  if (prepare) prepare(read.entry->schema, values.get());
   schema.read(values.get(), map, errors);
   if (resolved) *resolved = schema.write(values.get());
   if (errors.size() == before) read.values = values;
   return read;
 }
 
-std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const ConfigNode& written,
+LocateFault locate_in(const ConfigNode& written) {
+  return [&written](const std::string& path, const std::optional<std::size_t>& at) {
+    return location_of(written, path, at);
+  };
+}
+
+std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const LocateFault& locate,
                                   ConfigErrors& errors, const void* before) {
   if (!parameters.values) return nullptr;
   const std::string plugin = parameters.entry->name + ": ";
@@ -155,9 +163,9 @@ std::shared_ptr<void> make_plugin(const PluginParameters& parameters, const Conf
     return parameters.entry->make(parameters.values.get(), before);
   } catch (const RefusedParameters& refused) {
     for (const ParameterFault& fault : refused.faults)
-      errors.push_back({location_of(written, fault.path, fault.at), plugin + fault.message, fault.shown});
+      errors.push_back({locate(fault.path, fault.at), plugin + fault.message, fault.shown});
   } catch (const std::exception& error) {
-    errors.push_back({written.where, plugin + reason_of(error)});
+    errors.push_back({locate("", std::nullopt), plugin + reason_of(error)});
   }
   return nullptr;
 }

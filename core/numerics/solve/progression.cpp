@@ -40,7 +40,7 @@ std::vector<LevelResult> solve_progressively(
       result.seconds = start.seconds;
       result.seconds_by_phase = spent;
     } else {
-      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping, remark};
+      LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping.get(), remark};
       run.hierarchy = &problem.hierarchy;
       if (!results.empty()) run.stiffness = results.back().contact_stiffness;
       result = minimise(*objective(l), std::move(start.x), newton, run);

@@ -5,9 +5,9 @@
 
 namespace drape {
 
-SteppedSolve::SteppedSolve(const Solver& solver, Problem problem, MethodState from)
+SteppedSolve::SteppedSolve(const Solver& solver, const Problem& problem, MethodState from)
     : solver_(solver),
-      problem_(std::move(problem)),
+      problem_(problem),
       from_(std::move(from)),
       clock_(from_.seconds),
       finished_(from_.finished),

@@ -21,9 +21,9 @@ namespace drape {
 /// the same time. One thread at a time may call the members.
 class SteppedSolve : private Observer {
  public:
-  /// The solver and what the problem refers to must outlive the object. `from` is a state to resume from.
+  /// The solver and the problem must outlive the object. `from` is a state to resume from.
   /// Throws std::runtime_error if the solver cannot resume and `from` is not the beginning.
-  SteppedSolve(const Solver& solver, Problem problem, MethodState from = {});
+  SteppedSolve(const Solver& solver, const Problem& problem, MethodState from = {});
   /// Stops the solve at its next step and waits for that.
   ~SteppedSolve() override;
   SteppedSolve(const SteppedSolve&) = delete;
@@ -61,7 +61,7 @@ class SteppedSolve : private Observer {
   void checkpoint(const NewtonState& state) override;
 
   const Solver& solver_;
-  const Problem problem_;
+  const Problem& problem_;
   const MethodState from_;
   const Stopwatch clock_;  // of the method, for checkpoints
   IterationRow row_;

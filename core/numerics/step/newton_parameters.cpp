@@ -21,15 +21,9 @@ void NewtonParameters::declare(Declaration<NewtonParameters>& d) {
       .at_least(1)
       .at_most(1e3)
       .description(
-          "factor on h after a full step; a step cut below a quarter divides h by it. With 1 h never grows, "
-          "and "
-          "stays as small as damping has made it")
+          "factor on h after a full step, up to 1000 s; a step cut below a quarter divides h by it. With 1 h "
+          "never grows, and stays as small as damping has made it")
       .source("departure from the paper");
-  d.add("step_size_limit", &NewtonParameters::step_size_limit)
-      .unit("s")
-      .at_least(bounds::smallest_time_step)
-      .at_most(bounds::largest_time_step)
-      .description("the largest h that growth leads to; a larger step_size stays");
   d.add("iterations_per_step", &NewtonParameters::iterations_per_step)
       .at_least(1)
       .at_most(1000)

@@ -20,7 +20,6 @@ struct NewtonParameters {
   NewtonForm form = NewtonForm::quasistatic;
   double step_size = 0.1;
   double step_growth = 1.5;
-  double step_size_limit = 1e3;
   int iterations_per_step = 1;
   int max_steps = 5000;
   double force_tolerance = 1e-3;

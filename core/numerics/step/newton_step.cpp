@@ -49,7 +49,7 @@ double NewtonStep::step_size() const {
 
 bool NewtonStep::factorise(const std::vector<char>& fixed, bool with_inertia) {
   factor_.invalidate();
-  const double longest = 1 / (p_.step_size_limit * p_.step_size_limit);
+  const double longest = 1 / (StepController::max_step_size * StepController::max_step_size);
   const double mass_shift = controller_.mass_shift();
   return factor_.update(fixed, with_inertia ? mass_shift : std::min(longest, mass_shift),
                         line_search_.step_length());

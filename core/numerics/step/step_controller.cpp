@@ -71,12 +71,12 @@ void StepController::end_step(double force_residual) {
   if (force_residual < recovered_residual || stalls == -max_stall_count) s_.backed_off = false;
   if (s_.backed_off) return;
   if (updated_step_length_ == 1)
-    h = std::max(h, std::min({h * p_.step_growth, p_.step_size_limit, s_.cycle_limit}));
+    h = std::max(h, std::min({h * p_.step_growth, max_step_size, s_.cycle_limit}));
   if (updated_step_length_ < short_step) h /= p_.step_growth;
 }
 
 void StepController::limit_step_size() {
-  const double h = is_static() ? std::min(s_.cycle_limit, p_.step_size_limit) : s_.step_size;
+  const double h = is_static() ? std::min(s_.cycle_limit, max_step_size) : s_.step_size;
   s_.cycle_limit = std::max(h / cycle_reduction, min_step_size);
   if (!is_static()) s_.step_size = s_.cycle_limit;
 }

@@ -16,6 +16,7 @@ namespace drape {
 class StepController {
  public:
   static constexpr double min_step_size = 1e-8;  ///< damping has failed below this h [s]
+  static constexpr double max_step_size = 1e3;   ///< the largest h that growth leads to [s]
 
   struct State {
     double step_size = 0;       ///< h of the next step [s]

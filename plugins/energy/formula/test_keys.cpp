@@ -94,7 +94,7 @@ TEST_CASE("a schedule changes a constant") {
   const auto scene = build_scene(e, errors);
   throw_errors(errors);
   const Positions x = 1.1 * scene->hierarchy.levels[0].rest.vertices;
-  const double first = scene->model(0).energy_parts(x)[0].second;
+  const double first = scene->model(0)->energy_parts(x)[0].second;
   CHECK(first == Approx(0.5 * stretched_energy(experiment_of(experiment_text))));
 }
 

@@ -26,7 +26,7 @@ class NewtonSolver : public ResumableSolver {
       if (!state) observer.level_started(l);
       if (problem.load_stepping && !state) problem.load_stepping->begin(l, true);
       PlainObjective objective(problem.model(l));
-      LevelRun run{clock, observer, l < problem.finest(), {}, state, problem.load_stepping};
+      LevelRun run{clock, observer, l < problem.finest(), {}, state, problem.load_stepping.get()};
       run.hierarchy = &problem.hierarchy;
       results.push_back(minimise(objective, problem.starts[l], p_.newton, run));
       results.back().from_initial_state = true;

@@ -22,7 +22,7 @@ Positions bent(const Level& level) {
 /// Three levels without pins.
 struct Fixture {
   Solved s;
-  Problem problem;
+  const Problem& problem;
 
   explicit Fixture(const std::string& bending_modulus = "1e6")
       : s(scene_from(R"(
@@ -34,7 +34,7 @@ material: {thickness: 0.01, membrane_modulus: 1e4, poisson_ratio: 0.3, bending_m
 energies: [neo_hookean, hinge, gravity]
 methods: {pcs: {}}
 )")),
-        problem(s.scene->problem()) {}
+        problem(*s.scene) {}
 
   Positions state(int level) const { return bent(s.scene->hierarchy.levels[level]); }
 };
@@ -80,7 +80,7 @@ material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson
 energies: [neo_hookean, hinge, gravity, {type: pressure, pressure: 20}]
 methods: {pcs: {}}
 )");
-  const Problem problem = s.scene->problem();
+  const Problem& problem = *s.scene;
   for (int level : {0, 1}) {
     const Positions x = bent(s.scene->hierarchy.levels[level]);
     const Positions fine = problem.hierarchy.prolong(x, level, 2, problem.hierarchy.midpoints);
@@ -103,7 +103,7 @@ material: {thickness: 0.01, membrane_modulus: 1e4, bending_modulus: 1e6, poisson
 energies: [neo_hookean, midedge_bending, gravity]
 methods: {pcs: {}}
 )");
-  const Problem problem = s.scene->problem();
+  const Problem& problem = *s.scene;
   const auto parts = proxy_parts(problem, 0, 1, by_midpoints);
   REQUIRE(parts.size() == 2);
   CHECK(parts[0].above == 0);
@@ -194,7 +194,7 @@ contact: shapes
 obstacles: [{name: floor, shape: half_space}]
 methods: {pcs: {}}
 )");
-  const Problem problem = s.scene->problem();
+  const Problem& problem = *s.scene;
   ProxyObjective proxy = proxy_of(problem, 0, 8);
   Positions x = s.scene->hierarchy.levels[0].rest.vertices;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {

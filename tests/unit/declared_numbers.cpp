@@ -1,4 +1,4 @@
-#include "core/kernel/plugin/parameter_path.h"
+#include "core/kernel/plugin/declared_numbers.h"
 
 #include <catch2/catch.hpp>
 
@@ -44,38 +44,31 @@ const Schema& schema() {
   return schema;
 }
 
-ConfigNode list_of(const std::vector<double>& numbers) {
-  ConfigNode list;
-  list.kind = ConfigNode::Kind::list;
-  for (const double number : numbers) list.items.push_back(ConfigNode::of(number));
-  return list;
-}
-
 }  // namespace
 
-TEST_CASE("A path leads to a parameter of any struct of the same shape") {
+TEST_CASE("A path leads to the numbers of any struct of the same shape") {
   Model first = two_bodies();
-  const auto set = [&](const std::vector<std::string>& words, const ConfigNode& value) {
-    const auto path = ParameterPath::find(schema(), &first, words);
-    REQUIRE(path);
+  const auto set = [&](const std::vector<std::string>& words, const std::vector<double>& values) {
+    const auto numbers = DeclaredNumbers::find(schema(), &first, words);
+    REQUIRE(numbers);
+    REQUIRE(numbers->count() == values.size());
     Model model = two_bodies();
     ConfigErrors errors;
-    path->set(&model, value, errors);
+    numbers->set(&model, values.data(), errors);
     CHECK(errors.empty());
+    for (std::size_t k = 0; k < values.size(); ++k) CHECK(*numbers->at(&model, k) == values[k]);
     return model;
   };
-  CHECK(set({"dhat"}, ConfigNode::of(0.1 + 0.2)).dhat == 0.1 + 0.2);
-  CHECK(set({"tree", "depth"}, ConfigNode::of(7)).tree.depth == 7);
-  CHECK(set({"bodies", "1", "friction"}, ConfigNode::of(0.25)).bodies[1].friction == 0.25);
-  CHECK(set({"bodies", "ball", "translate"}, list_of({7, 8, 9})).bodies[1].translate ==
-        Eigen::Vector3d(7, 8, 9));
-  const Model one_number = set({"bodies", "floor", "translate", "2"}, ConfigNode::of(-0.1));
+  CHECK(set({"dhat"}, {0.1 + 0.2}).dhat == 0.1 + 0.2);
+  CHECK(set({"bodies", "1", "friction"}, {0.25}).bodies[1].friction == 0.25);
+  CHECK(set({"bodies", "ball", "translate"}, {7, 8, 9}).bodies[1].translate == Eigen::Vector3d(7, 8, 9));
+  const Model one_number = set({"bodies", "floor", "translate", "2"}, {-0.1});
   CHECK(one_number.bodies[0].translate == Eigen::Vector3d(1, 2, -0.1));
   CHECK(one_number.bodies[1].translate == Eigen::Vector3d(4, 5, 6));
   CHECK(first.bodies[0].translate == Eigen::Vector3d(1, 2, 3));
 }
 
-TEST_CASE("A path that names no parameter is not found") {
+TEST_CASE("A path that names no number is not found") {
   Model model = two_bodies();
   for (const std::vector<std::string>& words :
        std::vector<std::vector<std::string>>{{},
@@ -85,26 +78,28 @@ TEST_CASE("A path that names no parameter is not found") {
                                              {"tree", "height"},
                                              {"bodies"},
                                              {"bodies", "1"},
+                                             {"bodies", "1", "name"},
+                                             {"bodies", "0", "friction"},  // without a value
                                              {"bodies", "2", "friction"},
                                              {"bodies", "wall", "friction"},
                                              {"bodies", "0", "translate", "3"},
                                              {"bodies", "0", "translate", "2", "0"}})
-    CHECK_FALSE(ParameterPath::find(schema(), &model, words));
+    CHECK_FALSE(DeclaredNumbers::find(schema(), &model, words));
 }
 
 TEST_CASE("A value that the parameter refuses is reported and changes nothing") {
   Model model = two_bodies();
-  const auto fault = [&](const std::vector<std::string>& words, const ConfigNode& value) {
+  const auto fault = [&](const std::vector<std::string>& words, double value) {
     ConfigErrors errors;
-    ParameterPath::find(schema(), &model, words).value().set(&model, value, errors);
+    DeclaredNumbers::find(schema(), &model, words).value().set(&model, &value, errors);
     REQUIRE(errors.size() == 1);
     return errors[0].message;
   };
-  CHECK(fault({"tree", "depth"}, ConfigNode::of(1.5)) == "\"depth\" must be an integer, not 1.5");
-  CHECK(fault({"bodies", "ball", "friction"}, ConfigNode::of(-1)) ==
-        "\"friction\" must be at least 0, not -1");
-  CHECK(fault({"bodies", "ball", "translate", "0"}, ConfigNode::of(11)) ==
+  CHECK(fault({"tree", "depth"}, 1.5) == "\"depth\" must be an integer, not 1.5");
+  CHECK(fault({"bodies", "ball", "friction"}, -1) == "\"friction\" must be at least 0, not -1");
+  CHECK(fault({"bodies", "ball", "translate", "0"}, 11) ==
         "item 1 of \"translate\" must be at most 10, not 11");
+  CHECK(fault({"dhat"}, INFINITY) == "\"dhat\" must be a finite number, not inf");
   CHECK(model.tree.depth == 1);
   CHECK(model.bodies[1].friction == 0.5);
   CHECK(model.bodies[1].translate == Eigen::Vector3d(4, 5, 6));
