@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/app/report/viewer_page.h"
+#include "core/app/report/report.h"
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
@@ -27,7 +27,7 @@ T at(const std::string& bytes, std::size_t place) {
   return value;
 }
 
-/// As viewer_data.js reads them.
+/// As viewer/blocks.js reads them.
 Positions decoded(const std::string& bytes, Eigen::Index n) {
   Positions x(n, 3);
   for (int k = 0; k < 3; ++k) {

@@ -29,7 +29,6 @@
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_table.h"
-#include "core/app/report/runs_report.h"
 #include "core/app/run/runner.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/file.h"
