@@ -140,7 +140,7 @@ export class Chart {
   legend(series, left, right) {
     let x = left, row = 0;
     const items = unique(series.map(line => line.label)).map(label => {
-      const line = series.find(one => one.label === label), width = 44 + 7 * label.length;
+      const line = series.find(one => one.label === label), width = 46 + 7.6 * label.length;
       if (x > left && x + width > right) x = left, ++row;
       const item = {label, line, x, row};
       x += width;
@@ -149,7 +149,7 @@ export class Chart {
     const toggle = label => () => { this.hidden[this.hidden.has(label) ? 'delete' : 'add'](label); this.render(); };
     const group = top => s('g', {class: 'legend', fill: 'var(--ink)'}, ...items.map(({label, line, x: at, row: r}) => {
       const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': !this.hidden.has(label), opacity: this.hidden.has(label) ? .4 : 1});
-      g.append(s('rect', {x: at, y: y - 11, width: 38 + 7 * label.length, height: 17, fill: 'transparent'}),
+      g.append(s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
         s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': 2, 'stroke-dasharray': line.dash || ''}));
       if (line.mark) g.append(s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}));
       g.append(s('text', {x: at + 34, y: y + 1}, label));

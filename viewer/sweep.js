@@ -112,7 +112,7 @@ function table(all) {
   const draw = () => {
     const rows = state.medians ? medians() : all.rows.map(row => ({...row, comparable: converged(row.status)}));
     const columns = columnsOf(state.medians ? [...names.slice(0, names.indexOf('method') + 1), 'converged', ...names.slice(names.indexOf('method') + 1)] : names, few, all.of);
-    if (!state.medians) columns.find(column => column.name === (keys[0] || 'run')).show = cell => words(cell);
+    columns.filter(column => keys.includes(column.name)).forEach(column => Object.assign(column, {title: column.name.split('.').at(-1), show: cell => String(cell ?? '–')}));
     frame.replaceChildren(dataTable('table', 'of runs', columns, rows, {rivals: row => row.physics}));
   };
   draw();

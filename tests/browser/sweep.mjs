@@ -58,6 +58,25 @@ test('a value is shown against a parameter: medians, with ranges over starts', a
   assert.deepEqual(errors, []);
 });
 
+test('distance against time is the median over starts at equal cost, between the lowest and the highest', async () => {
+  const {page, errors} = await open('sweep/report.html');
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await page.locator('#error-cost').selectOption('iterations');
+  const rows = JSON.parse((await downloaded(page, '#errors button:text-is("JSON")')).bytes);
+  const name = 'refiner=loop,levels=2,step_growth=1.5', curve = rows.filter(row => row.series === name + ', pcs');
+  assert.equal(curve.length, 40);
+  curve.forEach((point, k) => {
+    assert.equal(point.runs, 3);
+    assert.ok(point.low <= point.reference_rms && point.reference_rms <= point.high);
+    assert.ok(k === 0 || point.iterations > curve[k - 1].iterations);
+  });
+  // It ends where the last of the three starts does.
+  const ends = [1, 2, 3].map(seed => fs.readFileSync(path.join(folder, `sweep/runs/${name}/seed_${seed}/errors.csv`), 'utf8').split('\n')
+    .filter(line => line.startsWith('pcs,')).map(line => Number(line.split(',')[4])).pop());
+  assert.equal(curve.at(-1).iterations, Math.max(...ends));
+  assert.deepEqual(errors, []);
+});
+
 test('the table sorts and filters, by medians or by run, and compares within one physics only', async () => {
   const {page, errors} = await open('sweep/report.html');
   assert.equal(await page.locator('#table tbody tr').count(), 16);
