@@ -21,14 +21,9 @@ async function reportPictures() {
     await page.screenshot({path: path.join(here, name), clip: {x: box.x - margin, y: box.y - margin,
       width: box.width + 2 * margin, height: box.height + 2 * margin}});
   };
-  await page.locator('#error-target').selectOption('own');
-  await page.evaluate(() => {  // a picture has no controls
-    const section = document.querySelector('#errors-section');
-    section.querySelectorAll('.controls, .data, figcaption label').forEach(element => { element.style.display = 'none'; });
-    section.querySelector('figcaption label').parentElement.append('Distance, RMS, from the final state.');
-  });
-  await picture('#errors-section .charts', 'speed_against_error.png');
-  await picture('#viewer', 'viewer.png');
+  await page.locator('#distance-target').selectOption('own');
+  await picture('#distance .plot', 'speed_against_error.png');
+  await picture('#in-3d', 'viewer.png');
 }
 
 /// A figure of the hero: a state as `drape export` draws it.

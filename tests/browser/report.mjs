@@ -4,7 +4,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {before} from 'node:test';
 import {pathToFileURL} from 'node:url';
-import {contactConfig, drawnShare, guarded, newPage, openPage, run, scratch, test, until} from './support.mjs';
+import {contactConfig, downloaded, drawnShare, faultsOf, guarded, newPage, onFirstScreen, openPage, run, scratch, screens, test, until} from './support.mjs';
 
 const folder = scratch(), report = pathToFileURL(path.join(folder, 'out/report.html')).href;
 
@@ -16,27 +16,48 @@ async function writeReport(of) {
 before(() => guarded('the run that is reported', () => run(folder, 'run', contactConfig, '--out', 'out', '--method', 'all', '--quiet',
   '--threads', '1', '--set', 'snapshots=0')));
 
-test('opens without a complaint or a request, and draws', async () => {
+test('opens without a complaint or a request, on the preview beside its end', async () => {
   const {page, heard, state} = await openPage(report);
   const shown = await state();
-  assert.equal(shown.level, 1);
-  assert.deepEqual(shown.panels.map(p => p.method), ['pcs', 'cascadic', 'newton']);
-  assert.deepEqual(shown.panels.map(p => p.vertices), [289, 289, 289]);
-  assert.equal(new Set(shown.panels.map(p => p.sum)).size, 3);  // each method has its own state
+  assert.equal(shown.level, 0);
+  assert.deepEqual(shown.panels.map(p => [p.method, p.end, p.level, p.vertices]), [['pcs', false, 0, 81], ['pcs', true, 1, 289]]);
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
   assert.match(await page.locator('#viewer-rounding').textContent(), /^Positions are rounded to [0-9.]+ µm here/);
+  await page.locator('#viewer-beside').uncheck();
+  for (const k of [1, 2]) await page.locator('#viewer-methods input').nth(k).check();
+  await until('three views', async () => (await state()).panels.map(p => p.method).join() === 'pcs,cascadic,newton');
+  await page.locator('#viewer-level').fill('1');
+  await until('level 1', async () => (await state()).panels.every(p => p.level === 1));
+  assert.equal(new Set((await state()).panels.map(p => p.sum)).size, 3);  // each method has its own state
   assert.deepEqual(heard.errors, []);
   assert.deepEqual(heard.requests.filter(url => !url.startsWith('data:')), [report]);
   assert.ok(fs.statSync(path.join(folder, 'out/report.html')).size < 8e6);
 });
 
+test('the first screen has the cloth and the time of the preview, wide and narrow, light and dark', async () => {
+  for (const screen of screens) {
+    const {page, heard} = await openPage(report, screen);
+    const {width} = screen.viewport;
+    for (const part of ['#viewer-canvas', '.preview-time']) assert.ok(await onFirstScreen(page, part), `${part} at ${width}`);
+    assert.match(await page.locator('.sentences li').first().textContent(), /^pcs: preview after [0-9.]+ s, end after [0-9.]+ s, 289 vertices, 0 intersections, at rest to 0.01\.$/);
+    assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
+    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+    await until('the plots are drawn', () => page.evaluate(() => document.querySelectorAll('.plot svg').length >= 1));
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    assert.deepEqual(await faultsOf(page), []);
+    assert.deepEqual(heard.errors, []);
+    await page.context().close();
+  }
+});
+
 test('the level slider changes the mesh, the colours and the legend follow the choice', async () => {
   const {page, heard, state} = await openPage(report);
+  await page.locator('#viewer-beside').uncheck();
   await page.locator('#viewer-level').fill('0');
   await until('level 0', async () => (await state()).panels.every(p => p.level === 0 && p.vertices === 81));
   assert.match(await page.locator('#viewer-level-text').textContent(), /^0, 81 vertices/);
   const fields = await page.locator('#viewer-field option').evaluateAll(all => all.map(o => o.value));
-  assert.deepEqual(fields, ['', 'mean_curvature', 'stretch', 'gap', 'H_difference']);
+  assert.deepEqual(fields, ['', 'mean_curvature', 'stretch', 'gap', 'H_difference', 'principal_curvature']);
   const seen = new Set();
   for (const field of fields.slice(1)) {
     await page.locator('#viewer-field').selectOption(field);
@@ -49,8 +70,12 @@ test('the level slider changes the mesh, the colours and the legend follow the c
   await page.locator('#viewer-field').selectOption('');
   await until('no tint', async () => (await state()).panels.every(p => p.tints === null));
   assert.ok(!(await page.locator('#viewer-legend').isVisible()));
-  await page.locator('#viewer-methods input').nth(1).uncheck();
-  await until('two views', async () => (await state()).panels.map(p => p.method).join() === 'pcs,newton');
+  await page.locator('#viewer-obstacles').uncheck();
+  await page.locator('#viewer-xray').check();
+  assert.ok(await drawnShare(page, '#viewer-canvas') > .02);
+  const picture = await downloaded(page, '#viewer-png');
+  assert.equal(picture.name, 'contact.png');
+  assert.equal(picture.bytes.subarray(1, 4).toString(), 'PNG');
   assert.deepEqual(heard.errors, []);
 });
 
@@ -60,7 +85,9 @@ test('a schedule has plots of its own', async () => {
     '--method', 'newton', '--set', 'schedule=' + schedule);
   await writeReport('changing');
   const {page, heard} = await openPage(pathToFileURL(path.join(folder, 'changing/report.html')).href);
-  for (const plot of ['#increment-energy', '#increment-steps']) assert.ok(await drawnShare(page, plot) > .01, plot);
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  for (const plot of ['#increment-energy', '#increment-steps'])
+    await until(plot, () => page.evaluate(id => document.querySelectorAll(id + ' .mark').length >= 4, plot));
   assert.deepEqual(heard.errors, []);
 });
 
@@ -77,7 +104,10 @@ test('the progression plays, snapshots between the levels included', async () =>
       setCloth.call(scene, k, shape);
     };
   });
-  await page.locator('#viewer-play').click();
+  await page.locator('#viewer-stop').fill('4');
+  await until('the last', async () => (await state()).panels[0].level === 1);
+  await page.evaluate(() => { window.shown = []; });
+  await page.locator('#viewer-play').click();  // from the end it plays from the start
   await until('the end', async () => !(await state()).playing && (await state()).stop === 4);
   const shown = await page.evaluate(() => window.shown);
   assert.deepEqual(shown.map(text => text.split(' ')[0]), ['0', '1', '2', '3', '4']);
@@ -101,9 +131,11 @@ test('keys and pointer turn all views together', async () => {
   assert.notDeepEqual(turned.target, home.target);
   await page.keyboard.press('0');
   assert.deepEqual((await state()).camera, home);
+  await page.keyboard.press('PageUp');
+  await until('the level above', async () => (await state()).panels.every(p => p.level === 1));
   await page.keyboard.press('PageDown');
-  await until('the level below', async () => (await state()).panels.every(p => p.level === 0));
-  await page.keyboard.press('PageUp');  // from the end it plays from the start
+  await until('the level below', async () => (await state()).panels[0].level === 0);
+  await page.keyboard.press('PageUp');
   // Noted in the page: it may have played to the end before it is asked.
   await page.evaluate(() => window.addEventListener('keydown', () => { window.plays = window.drapeViewer.state().playing; }));
   const playsAfterSpace = async () => {
@@ -123,76 +155,98 @@ test('keys and pointer turn all views together', async () => {
   assert.deepEqual(heard.errors, []);
 });
 
-/// Entries of a plot's legend.
-const legendOf = (page, id) => page.evaluate(name => Chart.getChart(name).legend.legendItems.map(item => item.text), id);
-
-/// Heads of the tables that are shown and wider than the page.
-const wideTables = page => page.evaluate(() => [...document.querySelectorAll('.scroll')]
-  .filter(frame => frame.scrollWidth > frame.clientWidth).map(frame => frame.querySelector('thead').textContent));
-
-test('opens on fine energy and distance over time, a line a method, and no table is wider than the page', async () => {
+test('plots have a line a method, are saved, and follow the choices', async () => {
   await run(folder, 'run', contactConfig, '--out', 'timed', '--quiet', '--no-report', '--threads', '1', '--method', 'all', '--set', 'snapshots=4');
   await writeReport('timed');
-  const timed = pathToFileURL(path.join(folder, 'timed/report.html')).href;
-  const {page, heard} = await openPage(timed);
-  const methods = ['pcs', 'cascadic', 'newton'];
-  for (const id of ['fine-energy', 'errors']) {
-    assert.deepEqual(await legendOf(page, id), methods);
-    assert.ok(await drawnShare(page, '#' + id) > .01, id);
-    const titles = await page.evaluate(name => ['x', 'y'].map(k => Chart.getChart(name).options.scales[k].title.text), id);
-    assert.deepEqual(titles, ['time [s]', id === 'errors' ? 'distance, RMS [diagonal]' : 'energy gap, over the energy released']);
-    const levels = await page.evaluate(name => Chart.getChart(name).data.datasets.map(set =>
-      [...new Set(set.data.map(point => point.level))].join()), id);
-    assert.ok(levels[0].startsWith('0') && levels[1].startsWith('0'), levels.join('; '));
-    assert.equal(levels[2], '1');  // the direct method's coarse level leads nowhere
-  }
-  // Without a reference the plots open on the methods' own ends.
-  assert.equal(await page.locator('#error-target').inputValue(), 'own');
-  await page.locator('#error-measure').selectOption('hausdorff');
-  assert.match(await page.evaluate(() => Chart.getChart('errors').options.scales.y.title.text), /^Hausdorff/);
-  for (const width of [1200, 700, 360]) {
-    await page.setViewportSize({width, height: 900});
-    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
-    await until('tables fit ' + width, async () => (await wideTables(page)).length === 0);
-    if (width === 1200) assert.equal(await page.locator('.stacked').count(), 0);
-  }
-  assert.ok(await page.locator('.stacked').count() > 0);  // the last width is too narrow for rows
-  assert.deepEqual(heard.errors, []);
-  await page.context().close();
+  const {page, heard} = await openPage(pathToFileURL(path.join(folder, 'timed/report.html')).href);
+  const label = () => page.locator('#distance svg').getAttribute('aria-label');
+  // Without a reference the plot opens on the methods' own ends.
+  assert.equal(await label(), 'distance, RMS [diagonal] against time [s]: pcs, cascadic, newton');
+  assert.equal(await page.locator('#distance-target').inputValue(), 'own');
+  const csv = (await downloaded(page, '#distance button:text-is("CSV")')).bytes.toString().split('\n');
+  assert.equal(csv[0], 'series,seconds,own_rms,level');
+  const levels = method => new Set(csv.filter(row => row.startsWith(method)).map(row => row.split(',')[3]));
+  assert.deepEqual([...levels('pcs')], ['0', '1']);
+  assert.deepEqual([...levels('newton')], ['1']);  // the direct method's coarse level leads nowhere
 
-  // More methods than a legend has entries.
-  const file = path.join(folder, 'timed/results.json'), results = JSON.parse(fs.readFileSync(file));
-  const errors = path.join(folder, 'timed/errors.csv'), rows = fs.readFileSync(errors, 'utf8');
-  let more = rows;
-  for (let k = 0; k < 5; ++k) {
-    results.methods['cascadic' + k] = results.methods.cascadic;
-    more += rows.split('\n').filter(row => row.startsWith('cascadic,')).map(row => row.replace('cascadic', 'cascadic' + k) + '\n').join('');
-  }
-  fs.writeFileSync(file, JSON.stringify(results));
-  fs.writeFileSync(errors, more);
-  await writeReport('timed');
-  const crowded = await openPage(timed);
-  assert.deepEqual(await legendOf(crowded.page, 'errors'), [...methods, 'cascadic0', 'cascadic1', '3 more']);
-  assert.deepEqual(crowded.heard.errors, []);
-  await crowded.page.context().close();
+  const svg = await downloaded(page, '#distance button:text-is("SVG")');
+  assert.equal(svg.name, 'distance.svg');
+  const file = path.join(folder, 'distance.svg'), drawn = await newPage();
+  fs.writeFileSync(file, svg.bytes);
+  await drawn.goto(pathToFileURL(file).href);
+  const looks = () => [...document.querySelectorAll('.series')].map(g => [g.querySelector('title').textContent, g.getAttribute('stroke'), g.querySelectorAll('.mark').length]);
+  const onPage = await page.evaluate(looks), inFile = await drawn.evaluate(looks);
+  assert.deepEqual(inFile.map(([name, , marks]) => [name, marks]), onPage.map(([name, , marks]) => [name, marks]));
+  assert.deepEqual(inFile.map(([, colour]) => colour), ['#0072b2', '#d55e00', '#009e73']);
+  assert.equal(await drawn.evaluate(() => document.documentElement.localName), 'svg');
+
+  await page.locator('#distance-measure').selectOption('hausdorff');
+  assert.match(await label(), /^Hausdorff/);
+  await page.locator('#distance .legend > g').nth(1).focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await page.locator('#distance .series').count(), 2);
+  assert.equal(await page.locator('#distance .legend > g').nth(1).getAttribute('aria-pressed'), 'false');
+  assert.deepEqual(heard.errors, []);
 });
 
-test('dark, narrow, printed, and without WebGL', async () => {
+test('a table begins with few columns, sorts by every one and is saved', async () => {
+  const {page, heard} = await openPage(report);
+  const first = () => page.locator('#methods tbody tr th').first().textContent();
+  assert.ok(await page.locator('#methods thead th').count() <= 8);
+  const button = page.locator('#methods [data-column="method"] button');
+  await button.focus();
+  await page.keyboard.press('Enter');
+  assert.equal(await first(), 'cascadic');
+  await page.keyboard.press('Enter');
+  assert.equal(await first(), 'pcs');
+  assert.equal(await page.locator('#methods [data-column="method"]').getAttribute('aria-sort'), 'descending');
+  await page.locator('#methods input[type="checkbox"]').check();
+  assert.ok(await page.locator('#methods thead th').count() > 12);
+  const rows = JSON.parse((await downloaded(page, '#methods button:text-is("JSON")')).bytes);
+  assert.deepEqual(rows.map(row => row.method), ['pcs', 'newton', 'cascadic']);
+  const results = JSON.parse(fs.readFileSync(path.join(folder, 'out/results.json'))).methods.pcs.levels;
+  assert.equal(rows[0].energy_released, results[1].energy_released);
+  // Energies that count from the potentials' origin are nowhere.
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await page.locator('#levels input[type="checkbox"]').check();
+  const names = await page.locator('#levels th[data-column]').evaluateAll(all => all.map(th => th.dataset.column));
+  assert.ok(names.includes('energy_parts_released.gravity'));
+  for (const name of ['energy', 'energy_on_finest', 'energy_parts.gravity']) assert.ok(!names.includes(name), name);
+  assert.deepEqual(heard.errors, []);
+});
+
+test('names from the results are texts, never parts of the page', async () => {
+  fs.cpSync(path.join(folder, 'out'), path.join(folder, 'evil'), {recursive: true});
+  const file = path.join(folder, 'evil/results.json'), evil = '</script><img src=x onerror="window.broken = 1">';
+  const results = JSON.parse(fs.readFileSync(file));
+  Object.assign(results, {experiment: evil, description: evil, remarks: [evil]});
+  results.methods.pcs.levels[0].message = evil;
+  results.methods[evil] = results.methods.newton;
+  fs.writeFileSync(file, JSON.stringify(results));
+  await writeReport('evil');
+  const {page, heard} = await openPage(pathToFileURL(path.join(folder, 'evil/report.html')).href);
+  assert.equal(await page.locator('h1').textContent(), evil);
+  assert.match(await page.locator('#remarks').textContent(), /onerror/);
+  assert.equal(await page.evaluate(() => window.broken), undefined);
+  assert.deepEqual(heard.errors, []);
+});
+
+test('printed, and without WebGL', async () => {
   const {page, heard} = await openPage(report, {colorScheme: 'dark', viewport: {width: 400, height: 800}});
   assert.ok(await drawnShare(page, '#viewer-canvas') > .05);
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
   await page.emulateMedia({media: 'print'});
-  assert.ok(!(await page.locator('#in-3d').isVisible()));
-  assert.ok(await page.locator('#states img').first().isVisible());
+  assert.ok(!(await page.locator('#viewer-canvas').isVisible()));
+  assert.ok(await page.locator('img.fallback').isVisible());
   assert.deepEqual(heard.errors, []);
   await page.context().close();
 
   const bare = await newPage();
   await bare.addInitScript(() => { HTMLCanvasElement.prototype.getContext = () => null; });
   await bare.goto(report);
-  await bare.locator('#viewer').scrollIntoViewIfNeeded();
   await until('the sentence', async () => (await bare.locator('#viewer-note').textContent()).includes('no WebGL'));
   assert.ok(!(await bare.locator('#viewer-stage').isVisible()));
+  assert.ok(await bare.locator('img.fallback').isVisible());
 });
 
 /// Writes four snapshots of pcs's level 0 into the run, as a recorded run has them: the sheet sinking to its last state.

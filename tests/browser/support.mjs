@@ -7,7 +7,7 @@ import path from 'node:path';
 import nodeTest, {after} from 'node:test';
 
 const drape = path.join(process.env.DRAPE_BIN, 'drape');
-const source = path.resolve(path.dirname(new URL(import.meta.url).pathname), '../..');
+export const source = path.resolve(path.dirname(new URL(import.meta.url).pathname), '../..');
 
 export const contactConfig = path.join(source, 'tests/configs/data/contact.yaml');
 
@@ -172,6 +172,30 @@ export async function openPage(url, options = {}) {
   });
   return {page, heard, state: () => page.evaluate(() => window.drapeViewer.state())};
 }
+
+/// Serious faults of accessibility that axe-core finds in a page.
+export async function faultsOf(page) {
+  const {source} = createRequire(path.join(process.env.DRAPE_NODE_MODULES, '/'))('axe-core');
+  await page.evaluate(source);
+  const {violations} = await page.evaluate(() => window.axe.run());
+  return violations.filter(fault => ['serious', 'critical'].includes(fault.impact)).map(fault => `${fault.id}: ${fault.nodes.map(node => node.html).join(' ').slice(0, 300)}`);
+}
+
+/// Whether all of an element is on the first screen, and the page is no wider than the screen.
+export function onFirstScreen(page, selector) {
+  return page.evaluate(of => {
+    const box = document.querySelector(of).getBoundingClientRect();
+    return box.width > 0 && box.top >= 0 && box.bottom <= innerHeight && document.documentElement.scrollWidth <= innerWidth;
+  }, selector);
+}
+
+/// What a press of a button downloads.
+export async function downloaded(page, button) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator(button).click()]);
+  return {name: download.suggestedFilename(), bytes: fs.readFileSync(await download.path())};
+}
+
+export const screens = ['light', 'dark'].flatMap(colorScheme => [1200, 400].map(width => ({colorScheme, viewport: {width, height: 800}})));
 
 /// The share of a screenshot of the element whose colour differs from its most frequent one.
 export async function drawnShare(page, selector) {

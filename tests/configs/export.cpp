@@ -407,9 +407,9 @@ TEST_CASE("an export that cannot be is refused, with what there is") {
   CHECK(export_refusal(run + " --to a.obj --frames") ==
         "error: --frames makes an animation, which .obj cannot hold; take .glb, or .png for numbered "
         "pictures\n");
-  for (const std::string option : {"--width 90", "--view 0,0,1", "--outline"})
+  for (const std::string option : {"--width 90", "--view 0,0,1", "--outline", "--xray"})
     CHECK(export_refusal(run + " --to a.glb " + option) ==
-          "error: --width, --view and --outline are of pictures; take .png\n");
+          "error: --width, --view, --outline and --xray are of pictures; take .png\n");
   CHECK_THAT(export_refusal(run + " --to a.png --width 15"), Contains("must be 16 to 8000 pixels, not 15"));
   for (const std::string direction : {"0,0,0", "1,2", "1,2,x", "1,2,3,4", "1,,2"})
     CHECK_THAT(export_refusal(run + " --to a.png --view " + direction),

@@ -28,7 +28,8 @@ std::string scene(double degrees, const Eigen::Vector3d& by) {
   return text.str();
 }
 
-/// What depends on the clock, on bits, or on where potentials have their origin. No page shows the last.
+/// What depends on the clock, on bits, or on where potentials have their origin. No page shows the last
+/// (viewer/run.js).
 const std::set<std::string> excepted = {"seconds", "preview_seconds", "seconds_by_phase", "peak_memory_bytes",
                                         "time",    "mesh_checksum",   "checksum",         "fields_checksum",
                                         "energy",  "energy_parts",    "energy_on_finest", "machine"};
@@ -51,14 +52,6 @@ void check_same(const Json& a, const Json& b, const std::string& path) {
   }
 }
 
-/// The texts of a report's tables, without the columns of time and memory.
-std::string tables_of(const std::filesystem::path& page) {
-  std::string text = text_of(page), all;
-  for (std::size_t at = 0; (at = text.find("<table>", at)) != std::string::npos; ++at)
-    all += text.substr(at, text.find("</table>", at) - at);
-  return all;
-}
-
 }  // namespace
 
 TEST_CASE("a scene that is moved and turned has the same figures on every page") {
@@ -76,11 +69,6 @@ TEST_CASE("a scene that is moved and turned has the same figures on every page")
   };
   CHECK(on_finest(there) > on_finest(here) + 1);  // so far does the origin matter
   check_same(here, there, "results.json");
-  REQUIRE(drape_with("report there --width 100", folder.path).exit_code == 0);
-  for (const char* excluded : {"\"energy\"", "\"energy_parts\"", "\"energy_on_finest\""}) {
-    CHECK(tables_of(folder / "there/report.html").find(std::string("data-column=") + excluded) ==
-          std::string::npos);
-  }
   const auto rows = [&](const std::string& run) {
     return Json::parse(drape_with("table " + run + " --format json", folder.path).out);
   };

@@ -5,10 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/app/experiment/error_measures.h"
-#include "core/app/report/metric_columns.h"
 #include "core/app/report/run_data.h"
-#include "core/app/report/tables.h"
-#include "core/app/view/html.h"
+#include "core/app/report/run_table.h"
 #include "tests/support/command.h"
 #include "tests/support/declared_metrics.h"
 #include "tests/support/folders.h"
@@ -136,25 +134,6 @@ TEST_CASE("errors are those that metrics declare, and the energy gap; what ranks
   CHECK(error_measures({})[0].name == "energy_gap");
 }
 
-TEST_CASE("a report shows a column that nothing but its metric knows") {
-  MetricDeclaration wrinkles;
-  wrinkles.columns = {{.name = "wrinkles", .label = "n_w^max", .unit = "1/m", .better = Better::higher},
-                      {.name = "hidden", .label = "hidden", .unit = "1", .shown = Shown::stored}};
-  Json results = {{"metrics", json_of({{"wrinkles", MetricScope::pair, wrinkles}})}};
-  for (const std::string method : {"a", "b"})
-    results["methods"][method] = {{"status", "converged"},
-                                  {"consistency", Json::array({{{"coarse", 0},
-                                                                {"fine", 1},
-                                                                {"wrinkles", method == "a" ? 3 : 5},
-                                                                {"hidden", 77},
-                                                                {"of_start", {{"wrinkles", 1}}}}})}};
-  const RunData run = run_of(results);
-  const std::string table = consistency_table(run);
-  CHECK(table.find("n<sub>w</sub><sup>max</sup>") != std::string::npos);
-  CHECK(table.find("<td>3.00</td><td><strong>5.00</strong></td><td>1.00</td>") != std::string::npos);
-  CHECK(table.find("77") == std::string::npos);
-}
-
 TEST_CASE("a summary has the worst of a method's levels") {
   MethodRecord method;
   const MetricColumn lower{.name = "m"}, higher{.name = "m", .better = Better::higher},
@@ -164,13 +143,6 @@ TEST_CASE("a summary has the worst of a method's levels") {
   CHECK(worst_over_levels(lower, method) == 5);
   CHECK(worst_over_levels(higher, method) == 2);
   CHECK(worst_over_levels(neither, method) == 5);
-}
-
-TEST_CASE("labels have subscripts and superscripts, and cannot break a page") {
-  CHECK(html::formula("d_H^fit") == "d<sub>H</sub><sup>fit</sup>");
-  CHECK(html::formula("of d_H, [1/m]") == "of d<sub>H</sub>, [1/m]");
-  CHECK(html::formula("_a b_ ^") == "_a b_ ^");
-  CHECK(html::formula("a_<b>") == "a_&lt;b&gt;");
 }
 
 TEST_CASE(

@@ -22,7 +22,7 @@ TriangleMesh unit_square() {
 
 Image grey() { return {size, size, std::vector<unsigned char>(3 * size * size, 128)}; }
 
-/// Half the side of the square as Camera::facing shows it, whose margin is 1.06 [pixels].
+/// Half the side of the square as from_above shows it, whose margin is 1.06 [pixels].
 constexpr double half = size / 2 / 1.06;
 
 /// The distance of a pixel's centre from the sides of the square [pixels].
@@ -32,12 +32,15 @@ double distance_from_sides(int column, int row) {
   return std::hypot(std::max(u - half, 0.0), std::max(v - half, 0.0));
 }
 
+/// The camera that sees a mesh in the plane z = 0 from above, y upwards.
+Camera from_above(const TriangleMesh& flat) { return Camera::around({&flat.vertices}, {0, 0, 1}, 1); }
+
 }  // namespace
 
 TEST_CASE("the outline of a square that faces the camera lies on its four sides") {
   const TriangleMesh square = unit_square();
   Image image = grey();
-  draw_outline(image, square, Camera::facing(square, 1), red);
+  draw_outline(image, square, from_above(square), red);
   int on = 0, off = 0;
   for (int row = 0; row < size; ++row)
     for (int column = 0; column < size; ++column) {
@@ -68,7 +71,7 @@ TEST_CASE("a hole in a mesh has an outline too, an edge between two triangles no
     frame.triangles.row(2 * k + 1) << k, 4 + next, 4 + k;
   }
   Image image = grey();
-  draw_outline(image, frame, Camera::facing(frame, 1), red);
+  draw_outline(image, frame, from_above(frame), red);
   const auto is_drawn = [&](int column, int row) { return image.pixels[3 * (row * size + column)] > 170; };
   const int hole = static_cast<int>(size / 2 + half / 2);  // the pixel of its right side
   CHECK((is_drawn(hole, size / 2) || is_drawn(hole - 1, size / 2) || is_drawn(hole + 1, size / 2)));
@@ -80,7 +83,7 @@ TEST_CASE("a hole in a mesh has an outline too, an edge between two triangles no
 
 TEST_CASE("a mesh that the camera does not see changes no pixel") {
   const TriangleMesh square = unit_square();
-  const Camera camera = Camera::facing(square, 1);
+  const Camera camera = from_above(square);
   for (const Eigen::RowVector3d& away : {Eigen::RowVector3d(10, 0, 0), Eigen::RowVector3d(0, 0, 10)}) {
     CAPTURE(away[0], away[2]);
     TriangleMesh other = square;

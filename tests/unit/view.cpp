@@ -4,7 +4,7 @@
 #include <cstring>
 #include <limits>
 
-#include "core/app/report/viewer_page.h"
+#include "core/app/report/report.h"
 #include "core/app/view/surface_fields.h"
 #include "core/app/view/view_blocks.h"
 #include "core/app/view/view_document.h"
@@ -27,7 +27,7 @@ T at(const std::string& bytes, std::size_t place) {
   return value;
 }
 
-/// As viewer_data.js reads them.
+/// As viewer/blocks.js reads them.
 Positions decoded(const std::string& bytes, Eigen::Index n) {
   Positions x(n, 3);
   for (int k = 0; k < 3; ++k) {
@@ -147,8 +147,8 @@ TEST_CASE("the document names what can be coloured, and blocks of every state") 
 TEST_CASE("a page of one state holds its blocks and names no other file") {
   const Level level = sheet(3);
   const std::string page = viewer_page("a <state>", level, 1.1 * level.rest.vertices, {sheet(1).rest});
-  for (const char* part : {"<title>a &lt;state&gt;", "id=\"viewer-data\"", "id=\"viewer-state\"",
-                           "id=\"viewer-l0\"", "id=\"viewer-obstacle0\"", "id=\"viewer-canvas\""})
+  for (const char* part : {"<title>a &lt;state>", "\"kind\":\"states\"", "id=\"viewer-state\"",
+                           "id=\"viewer-l0\"", "id=\"viewer-obstacle0\""})
     CHECK(page.find(part) != std::string::npos);
   CHECK(page.find("<script src") == std::string::npos);
 }

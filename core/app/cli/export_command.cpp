@@ -76,6 +76,8 @@ ExportCommand::ExportCommand(CLI::App& app)
       ->type_name("X,Y,Z");
   command_->add_flag("--outline", options_.picture.outline,
                      "with .png: draw the outline of the method's coarsest state over the picture");
+  command_->add_flag("--xray", options_.picture.xray,
+                     "with .png: let obstacles show faintly through the cloth");
   command_->add_flag("--overwrite", options_.overwrite, "replace existing files");
 }
 

@@ -13,6 +13,7 @@
 
 #include "core/app/cli/check_command.h"
 #include "core/app/cli/export_command.h"
+#include "core/app/cli/figures_command.h"
 #include "core/app/cli/help.h"
 #include "core/app/cli/new_command.h"
 #include "core/app/cli/plugin_files.h"
@@ -29,7 +30,6 @@
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
 #include "core/app/report/run_table.h"
-#include "core/app/report/runs_report.h"
 #include "core/app/run/runner.h"
 #include "core/app/sweep/sweep.h"
 #include "core/kernel/files/file.h"
@@ -174,6 +174,7 @@ int main_checked(int argc, char** argv) {
   const RunCommand run(app);
   const ViewCommand view(app);
   const ExportCommand export_command(app);
+  const FiguresCommand figures(app);
 
   std::string kind, plugin, help_on, out, readmes_folder, schema_kind = "experiment";
   std::vector<std::string> report_folders, compared, bounds, columns;
@@ -255,6 +256,7 @@ int main_checked(int argc, char** argv) {
   if (new_command.chosen()) return new_command.run();
   if (view.chosen()) return view.run();
   if (export_command.chosen()) return export_command.run();
+  if (figures.chosen()) return figures.run();
   if (*report_command) {
     return report({report_folders.begin(), report_folders.end()}, out, picture_width);
   }

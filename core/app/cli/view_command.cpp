@@ -13,8 +13,7 @@
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/report/report.h"
 #include "core/app/report/run_collection.h"
-#include "core/app/report/runs_report.h"
-#include "core/app/view/html.h"
+#include "core/app/view/page.h"
 #include "core/kernel/files/message_text.h"
 
 namespace drape {
@@ -75,7 +74,7 @@ int ViewCommand::run() const {
   }
   std::cout << "report: " << printable(page.string()) << "\n";
   if (!has_display() || !open_in_browser(page))
-    std::cout << "open it in a browser: file://" << html::url_path(fs::absolute(page).lexically_normal())
+    std::cout << "open it in a browser: file://" << url_path(fs::absolute(page).lexically_normal())
               << (sweep ? "" : "#in-3d") << "\n";
   return exit_done;
 }

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/app/picture/render.h"
-#include "core/app/picture/surface.h"
 
 namespace drape {
 
@@ -85,26 +84,6 @@ Camera Camera::around(const std::vector<const Positions*>& states, const Eigen::
   camera.projection(2, 2) = -(far + near) / (far - near);
   camera.projection(2, 3) = -2 * far * near / (far - near);
   camera.projection(3, 2) = -1;
-  return camera;
-}
-
-Camera Camera::facing(const TriangleMesh& flat, double aspect) {
-  Eigen::Vector3d normal = smooth_normals(flat).colwise().sum().transpose();
-  if (!(normal.norm() > 0)) normal = Eigen::Vector3d::UnitZ();
-  const bool horizontal = std::abs(normal.normalized()[2]) > 0.9;
-  const Eigen::Matrix3d frame =
-      camera_frame(normal, horizontal ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ());
-  const Eigen::AlignedBox3d box = bounds_in(frame, {&flat.vertices});
-  const Eigen::Vector3d size = box.sizes().cwiseMax(1e-9);
-  const double half_height = margin / 2 * std::max(size[1], size[0] / aspect);
-  Eigen::Vector3d eye = box.center();
-  eye[2] = box.max()[2] + half_height;
-
-  Camera camera{view_matrix(frame, eye), Eigen::Matrix4d::Identity()};
-  camera.projection(0, 0) = 1 / (half_height * aspect);
-  camera.projection(1, 1) = 1 / half_height;
-  camera.projection(2, 2) = -2 / (2 * half_height + size[2]);
-  camera.projection(2, 3) = -1;
   return camera;
 }
 

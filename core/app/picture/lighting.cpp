@@ -38,8 +38,7 @@ Rgb Lighting::backdrop() {
   return colour;
 }
 
-Lighting::Lighting(const RayScene& scene, const Camera& camera, bool coloured)
-    : scene_(scene), coloured_(coloured) {
+Lighting::Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) {
   const Eigen::Matrix3f to_world = camera.view.topLeftCorner<3, 3>().transpose().cast<float>();
   key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
   tangents(key_, key_u_, key_v_);
@@ -49,12 +48,9 @@ Lighting::Lighting(const RayScene& scene, const Camera& camera, bool coloured)
 Light Lighting::at(const SurfacePoint& point, const Ray& ray) const {
   if (point.surface == SurfacePoint::Surface::floor)
     return {floor_key_share * backdrop(), (1 - floor_key_share) * backdrop(), Rgb::Zero()};
-  const bool obstacle = point.surface == SurfacePoint::Surface::obstacle;
-  const bool coloured = coloured_ && !obstacle;
-  const Rgb base = coloured      ? linear_of_srgb(point.colour)
-                   : obstacle    ? obstacle_colour
-                   : point.front ? front_colour
-                                 : back_colour;
+  const Rgb base = point.surface == SurfacePoint::Surface::obstacle ? obstacle_colour
+                   : point.front                                    ? front_colour
+                                                                    : back_colour;
   const float side = std::max(point.normal.dot(fill_), 0.0f);
   // A faint sheen where cloth turns away separates a fold from what lies behind it.
   const float grazing = 1 - std::clamp(-point.normal.dot(ray.direction()), 0.0f, 1.0f);
@@ -63,11 +59,6 @@ Light Lighting::at(const SurfacePoint& point, const Ray& ray) const {
   light.key = base * key_light * std::max(point.normal.dot(key_), 0.0f);
   light.sky = base * (sky_light + 0.7f * side * fill_light) + sheen;
   light.other = base * 0.3f * side * fill_light;
-  if (coloured) {
-    light.key *= 0.5f;
-    light.sky *= 0.5f;
-    light.other = 0.5f * light.other + 0.32f * base;
-  }
   return light;
 }
 

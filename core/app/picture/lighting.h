@@ -24,9 +24,8 @@ using Arriving = Eigen::Array2f;
 /// a sky that is brighter above than below.
 class Lighting {
  public:
-  /// `coloured`: the cloth's colours stand for values, so that folds must not hide them. Keeps a reference to
-  /// the scene.
-  Lighting(const RayScene& scene, const Camera& camera, bool coloured);
+  /// Keeps a reference to the scene.
+  Lighting(const RayScene& scene, const Camera& camera);
 
   /// From a point to the eye, which the ray comes from.
   Light at(const SurfacePoint& point, const Ray& ray) const;
@@ -41,7 +40,6 @@ class Lighting {
   float sky_arriving(const SurfacePoint& point, const Eigen::Vector2f& sample) const;
 
   const RayScene& scene_;
-  const bool coloured_;
   Eigen::Vector3f key_, key_u_, key_v_, fill_;  // towards the lights, and across the key light
 };
 

@@ -110,11 +110,11 @@ RayScene::RayScene(const Drawing& drawing) : embree_(std::make_unique<Embree>())
   centre_ = box.center();
   radius_ = static_cast<float>(std::max(box.diagonal().norm() / 2, 1e-9));
   if (drawing.floor) floor_ = static_cast<float>(*drawing.floor - centre_[2]);
-  embree_->surfaces[0] = DrawnSurface(drawing.mesh, centre_, drawing.normals, drawing.colours);
+  embree_->surfaces[0] = DrawnSurface(drawing.mesh, centre_, smooth_normals(drawing.mesh));
   if (drawing.obstacle) {
     Positions normals;
     const TriangleMesh creased = split_at_creases(*drawing.obstacle, normals);
-    embree_->surfaces[1] = DrawnSurface(creased, centre_, &normals, nullptr);
+    embree_->surfaces[1] = DrawnSurface(creased, centre_, normals);
   }
   embree_->attach(0);
   embree_->attach(1);

@@ -22,7 +22,6 @@ constexpr float edge_width = 1e-3f;  // of the picture's height
 constexpr float edge_opacity = 0.5f;
 constexpr int border_rays = 16;  // through a pixel where surfaces end
 constexpr int light_rays = 2;    // from a pixel to each light; more would cost as much again and hardly show
-const Rgb map_backdrop = linear_of_srgb({0.871f, 0.878f, 0.894f});
 enum Seed : std::uint32_t { border_seed = 0x68bc21ebu, key_seed = 0x02e5be93u, sky_seed = 0x967a889bu };
 
 /// How much of a pixel at a point the lines along the edges of its triangle cover, with soft borders.
@@ -45,7 +44,7 @@ class Painting {
   Painting(const Drawing& drawing, const Camera& camera, LightBuffer& buffer)
       : drawing_(drawing),
         scene_(drawing),
-        lighting_(scene_, camera, drawing.colours != nullptr),
+        lighting_(scene_, camera),
         eye_(camera, scene_.centre(), buffer.width(), buffer.height()),
         buffer_(buffer) {}
 
@@ -58,7 +57,6 @@ class Painting {
     if (!seen.point) return;
     pixel.position = seen.point->position;
     pixel.normal = seen.point->normal;
-    if (!drawing_.lit) return;
     Arriving& arriving = buffer_.arriving(column, row);
     const std::uint32_t first = morton_number(column, row) * light_rays;
     for (int k = 0; k < light_rays; ++k)
@@ -102,25 +100,21 @@ class Painting {
     const Ray ray = eye_.through(column, row);
     Seen seen{scene_.nearest(ray), {}};
     if (!seen.point) {
-      seen.light.other = drawing_.lit ? Lighting::backdrop() : map_backdrop;
+      seen.light.other = Lighting::backdrop();
       return seen;
     }
     seen.kind = 1 + static_cast<std::uint8_t>(seen.point->surface);
-    if (drawing_.lit) {
-      seen.light = lighting_.at(*seen.point, ray);
-    } else {
-      seen.light.other = linear_of_srgb(seen.point->colour);
-    }
+    seen.light = lighting_.at(*seen.point, ray);
     if (seen.point->surface == SurfacePoint::Surface::cloth) add_lines(ray, seen);
     return seen;
   }
 
-  /// Darkens cloth by its edges and by the obstacle behind it.
+  /// Darkens cloth by its edges and, under X-rays, by the obstacle behind it.
   void add_lines(const Ray& ray, Seen& seen) const {
     float share = 0;
     if (drawing_.edges)
       share = edge_opacity * edge_cover(*seen.point, pixel_size(seen.point->position), buffer_.height());
-    if (drawing_.obstacle && !drawing_.colours) {
+    if (drawing_.obstacle && drawing_.xray) {
       if (const auto behind = scene_.nearest_obstacle(ray)) {
         seen.veil = show_through(*behind, ray);
         share = std::max(share, seen.veil);
@@ -156,7 +150,7 @@ Image Renderer::draw(const Drawing& drawing, const Camera& camera) const {
   LightBuffer buffer(width_, height_);
   Painting painting(drawing, camera, buffer);
   for_tiles([&](int column, int row) { painting.see(column, row); });
-  if (drawing.lit) buffer.smooth(painting.pixel_size(Eigen::Vector3f::Zero()));
+  buffer.smooth(painting.pixel_size(Eigen::Vector3f::Zero()));
   Image image{width_, height_, {}};
   image.pixels.resize(3 * static_cast<std::size_t>(width_) * height_);
   for_tiles([&](int column, int row) {

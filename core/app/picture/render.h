@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/app/picture/image.h"
-#include "core/app/view/colours.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
@@ -21,20 +20,15 @@ struct Camera {
   /// points in view.
   static Camera around(const std::vector<const Positions*>& states, const Eigen::Vector3d& direction,
                        double aspect);
-  /// Orthographic, perpendicular to a nearly flat mesh.
-  static Camera facing(const TriangleMesh& flat, double aspect);
 };
 
 /// Contents of a picture. Triangles with a vertex that is not finite are skipped.
 struct Drawing {
   const TriangleMesh& mesh;
-  const Positions* normals = nullptr;  ///< n×3 unit normals; otherwise the mesh's own smooth ones
-  const Colours* colours = nullptr;    ///< n×3; otherwise plain cloth
-  bool edges = false;                  ///< thin lines along the triangles' edges
-  bool lit = true;                     ///< otherwise flat colours, for maps
-  const TriangleMesh* obstacle =
-      nullptr;                       ///< plain and dark; plain cloth in front of it lets it show faintly
-  std::optional<double> floor = {};  ///< height of a floor that shows shadows only [m]
+  bool edges = false;                      ///< thin lines along the triangles' edges
+  bool xray = false;                       ///< cloth in front of the obstacle lets it show faintly
+  const TriangleMesh* obstacle = nullptr;  ///< dark
+  std::optional<double> floor = {};        ///< height of a floor that shows shadows only [m]
 };
 
 /// A Renderer stopped before its picture was finished.

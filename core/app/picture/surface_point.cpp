@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/app/picture/surface.h"
-
 namespace drape {
 
 namespace {
@@ -24,11 +22,9 @@ Triangles finite_triangles(const TriangleMesh& mesh) {
 
 }  // namespace
 
-DrawnSurface::DrawnSurface(const TriangleMesh& mesh, const Eigen::Vector3d& centre, const Positions* normals,
-                           const Colours* colours)
+DrawnSurface::DrawnSurface(const TriangleMesh& mesh, const Eigen::Vector3d& centre, const Positions& normals)
     : x((mesh.vertices.rowwise() - centre.transpose()).cast<float>()),
-      normals((normals ? *normals : smooth_normals(mesh)).cast<float>()),
-      colours(colours ? *colours : Rows(Rows::Ones(mesh.vertices.rows(), 3))),
+      normals(normals.cast<float>()),
       triangles(finite_triangles(mesh)) {
   for (Eigen::Index i = 0; i < x.rows(); ++i)
     if (!x.row(i).allFinite()) x.row(i).setZero();
@@ -38,12 +34,10 @@ SurfacePoint DrawnSurface::point(int triangle, float u, float v, const Ray& ray)
   const Eigen::Vector3f weight(1 - u - v, u, v);
   Eigen::Matrix3f corners, n;
   SurfacePoint point;
-  point.colour.setZero();
   for (int k = 0; k < 3; ++k) {
     const int i = triangles(triangle, k);
     corners.col(k) = x.row(i);
     n.col(k) = normals.row(i);
-    point.colour += weight[k] * colours.row(i).transpose();
   }
   const Eigen::Vector3f across = (corners.col(1) - corners.col(0)).cross(corners.col(2) - corners.col(0));
   const float twice_area = across.norm();

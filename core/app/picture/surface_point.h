@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "core/app/view/colours.h"
 #include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
@@ -21,20 +20,18 @@ struct SurfacePoint {
   Eigen::Vector3f face_normal = Eigen::Vector3f::Zero();
   /// Where rays to lights start: off the smooth surface that the normals suggest.
   Eigen::Vector3f light_origin = Eigen::Vector3f::Zero();
-  Eigen::Vector3f colour = Eigen::Vector3f::Zero();         ///< sRGB
   Eigen::Vector3f edge_distance = Eigen::Vector3f::Zero();  ///< across the ray, to the triangle's edges [m]
 };
 
 /// A mesh ready for rays: vertices relative to a scene's centre, and what is interpolated between them.
 struct DrawnSurface {
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
-  Rows x, normals, colours;  ///< n×3
-  Triangles triangles;       ///< those whose vertices are all finite
+  Rows x, normals;      ///< n×3
+  Triangles triangles;  ///< those whose vertices are all finite
 
   DrawnSurface() = default;
-  /// Without normals, the mesh's own smooth ones; without colours, white.
-  DrawnSurface(const TriangleMesh& mesh, const Eigen::Vector3d& centre, const Positions* normals,
-               const Colours* colours);
+  /// With n×3 unit normals.
+  DrawnSurface(const TriangleMesh& mesh, const Eigen::Vector3d& centre, const Positions& normals);
 
   /// The point with barycentric coordinates (1 - u - v, u, v) of a triangle, met by a ray.
   SurfacePoint point(int triangle, float u, float v, const Ray& ray) const;

@@ -5,7 +5,7 @@
 #include "core/app/python/module.h"
 #include "core/app/python/run_store.h"
 #include "core/app/report/run_table.h"
-#include "core/app/report/viewer_page.h"
+#include "core/app/report/report.h"
 #include "core/app/view/colours.h"
 
 namespace drape::python {

@@ -4,7 +4,7 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/module.h"
 #include "core/app/python/scene_handle.h"
-#include "core/app/report/viewer_page.h"
+#include "core/app/report/report.h"
 
 namespace drape::python {
 

@@ -8,7 +8,6 @@
 #include "core/app/report/model_keys.h"
 #include "core/app/report/run_rows.h"
 #include "core/app/report/text_table.h"
-#include "core/app/view/html.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"
@@ -112,7 +111,8 @@ Sheet sheet_of(const RunCollection& collection, const ComparedQuantities& quanti
   Sheet sheet;
   for (const RunRecord& run : collection.runs) {
     std::string prefix;
-    if (named) prefix = run.variation + (run.seed ? ", seed " + html::count(run.seed) : "") + ": ";
+    if (named)
+      prefix = run.variation + (run.seed ? ", seed " + std::to_string(std::llround(*run.seed)) : "") + ": ";
     if (!run.data) continue;
     sheet.run = &*run.data;
     for (const MethodRecord& method : run.data->methods)
@@ -155,8 +155,8 @@ class ModelDifferences {
 };
 
 std::string change_of(const Change& c) {
-  if (c.before > 0 && c.after > 0) return "×" + html::number_text(c.after / c.before);
-  return (c.after > c.before ? "+" : "") + html::number_text(c.after - c.before);
+  if (c.before > 0 && c.after > 0) return "×" + number_text(c.after / c.before);
+  return (c.after > c.before ? "+" : "") + number_text(c.after - c.before);
 }
 
 }  // namespace
@@ -225,8 +225,8 @@ Comparison::Comparison(const RunCollection& before, const RunCollection& after,
       ++met;
       if (holds(change, bound.ratio)) continue;
       change.broken = true;
-      broken_.push_back(change.where + ": " + bound.key + " went from " + html::number_text(change.before) +
-                        " to " + html::number_text(change.after) + ", more than the bound of " +
+      broken_.push_back(change.where + ": " + bound.key + " went from " + number_text(change.before) +
+                        " to " + number_text(change.after) + ", more than the bound of " +
                         ConfigNode::of(bound.ratio).scalar +
                         (change.better == Better::higher ? " lets it fall" : " allows"));
     }
@@ -248,7 +248,7 @@ std::string Comparison::text() const {
   for (const Change& c : changes_) {
     ++counts[c.verdict];
     if (!c.verdict.empty() || c.broken)
-      rows.push_back({c.where, c.key, html::number_text(c.before), html::number_text(c.after), change_of(c),
+      rows.push_back({c.where, c.key, number_text(c.before), number_text(c.after), change_of(c),
                       c.verdict + (c.broken ? " (bound broken)" : "")});
   }
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";

@@ -39,6 +39,15 @@ void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string
 
 }  // namespace
 
+std::string model_of(const std::string& configuration) {
+  ConfigErrors errors;
+  const ConfigNode config = parse_yaml(configuration, "config.yaml", errors);
+  std::string text;
+  for (const char* key : model_keys)
+    if (const ConfigNode* node = config.find(key)) text += std::string(key) + ": " + node->one_line() + "\n";
+  return text;
+}
+
 std::vector<std::string> differing_model_keys(const std::string& a, const std::string& b) {
   ConfigErrors errors;
   const ConfigNode one = parse_yaml(a, "config.yaml", errors), other = parse_yaml(b, "config.yaml", errors);

@@ -11,4 +11,7 @@ namespace drape {
 /// Empty if a text is no YAML.
 std::vector<std::string> differing_model_keys(const std::string& a, const std::string& b);
 
+/// The values of these keys as one text, which two experiments share if they minimise the same energy.
+std::string model_of(const std::string& configuration);
+
 }  // namespace drape

@@ -14,10 +14,6 @@ PictureCanvas::PictureCanvas(const RunData& run, const std::function<bool()>& ca
       set_(set),
       scene_(run, set.notes, {.width = width}) {}
 
-std::optional<TriangleMesh> PictureCanvas::try_mesh(const std::string& name) {
-  return try_run_mesh(run_, name, set_.notes);
-}
-
 void PictureCanvas::draw(const std::string& name, const Drawing& drawing) {
   if (!renderer_) renderer_ = std::make_unique<Renderer>(width_, height_, cancelled_);
   keep(name, scene_.draw(*renderer_, drawing));
@@ -27,11 +23,6 @@ void PictureCanvas::draw_outlined(const std::string& name, Image picture, const 
   if (cancelled_ && cancelled_()) throw RenderingCancelled();
   draw_outline(picture, state, scene_.camera(), outline_colour());
   keep(name, std::move(picture));
-}
-
-void PictureCanvas::draw_map(const std::string& name, const TriangleMesh& flat, const Colours& colours) {
-  if (!map_renderer_) map_renderer_ = std::make_unique<Renderer>(height_, height_, cancelled_);
-  keep(name, map_renderer_->draw({flat, nullptr, &colours, false, false}, Camera::facing(flat, 1)));
 }
 
 void PictureCanvas::keep(const std::string& name, Image image) {

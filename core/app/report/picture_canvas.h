@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "core/app/picture/render.h"
@@ -19,16 +18,12 @@ class PictureCanvas {
   PictureCanvas(const RunData& run, const std::function<bool()>& cancelled, int width, PictureSet& set);
 
   const PictureScene& scene() const { return scene_; }
-  /// A mesh of the run's folder; empty if there is none, with a note if it cannot be read.
-  std::optional<TriangleMesh> try_mesh(const std::string& name);
 
   /// Draws cloth and obstacles with the common camera and stores the picture. Throws RenderingCancelled.
   void draw(const std::string& name, const Drawing& drawing);
   /// Draws the outline of a state over a picture that this canvas drew and stores the result. Throws
   /// RenderingCancelled.
   void draw_outlined(const std::string& name, Image picture, const TriangleMesh& state);
-  /// Draws a flat mesh in flat colours, seen from above, and stores the picture. Throws RenderingCancelled.
-  void draw_map(const std::string& name, const TriangleMesh& flat, const Colours& colours);
 
  private:
   void keep(const std::string& name, Image image);
@@ -38,7 +33,7 @@ class PictureCanvas {
   const int width_, height_;
   PictureSet& set_;
   const PictureScene scene_;
-  std::unique_ptr<Renderer> renderer_, map_renderer_;
+  std::unique_ptr<Renderer> renderer_;
 };
 
 }  // namespace drape

@@ -69,7 +69,9 @@ std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& me
     if (options.outline && !coarsest && !level.mesh.empty()) coarsest = run_mesh(run, level.mesh);
   const Renderer renderer(frame.width, picture_height(frame.width));
   for (std::size_t k = 0; k < states.size(); ++k) {
-    Image image = scene.draw(renderer, plain_cloth(states[k]));
+    Drawing drawing = plain_cloth(states[k]);
+    drawing.xray = options.xray;
+    Image image = scene.draw(renderer, drawing);
     if (coarsest) draw_outline(image, *coarsest, scene.camera(), outline_colour());
     write_file(files[k], encode_png(image));
   }

@@ -14,6 +14,7 @@ struct PictureOptions {
   std::optional<int> width;                  ///< [pixels]
   std::optional<Eigen::Vector3d> direction;  ///< towards the camera; of any length but 0
   bool outline = false;                      ///< draw the outline of the method's coarsest state
+  bool xray = false;                         ///< let obstacles show faintly through the cloth
 };
 
 /// Writes the final states of these levels as PNG files, or with `snapshots` all their recorded snapshots in

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/app/report/field_pictures.h"
 #include "core/app/report/picture_canvas.h"
 #include "core/kernel/files/file.h"
 
@@ -72,26 +71,6 @@ std::string outline_picture(const MethodRecord& method, const LevelPair& levels)
          std::to_string(levels.fine) + ".png";
 }
 
-std::string threshold_picture(const MetricPicture& picture, const MethodRecord& method, int level) {
-  return file_part(method.name) + "_l" + std::to_string(level) + "_" + file_part(picture.name) + ".png";
-}
-
-std::string difference_picture(const MetricPicture& picture, const MethodRecord& method,
-                               const ConsistencyRecord& pair) {
-  return file_part(method.name) + "_l" + std::to_string(pair.coarse) + "_l" + std::to_string(pair.fine) +
-         "_" + file_part(picture.name) + ".png";
-}
-
-const ConsistencyRecord* widest_pair(const MethodRecord& method) {
-  const ConsistencyRecord* widest = nullptr;
-  for (const ConsistencyRecord& pair : method.consistency) {
-    const bool wider = !widest || pair.coarse < widest->coarse ||
-                       (pair.coarse == widest->coarse && pair.fine > widest->fine);
-    if (wider) widest = &pair;
-  }
-  return widest;
-}
-
 std::optional<LevelPair> widest_levels(const MethodRecord& method) {
   std::optional<LevelPair> widest;
   for (const LevelRecord& level : method.levels) {
@@ -106,13 +85,10 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
                          std::optional<int> width) {
   PictureSet set;
   make_folder(run.folder / "pictures");
-  for (const DeclaredMetric& metric : run.metrics)
-    for (const MetricPicture& picture : metric.declaration.pictures) set.fields.push_back({picture});
   PictureCanvas canvas(run, cancelled, width.value_or(default_picture_width), set);
   try {
     draw_states(run, canvas);
     draw_outlines(run, canvas, set);
-    draw_fields(run, canvas, set);
     remove_stale(run, set);
   } catch (const RenderingCancelled&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +

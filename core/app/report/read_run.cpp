@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/app/experiment/experiment.h"
 #include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/files/yaml_file.h"
@@ -33,13 +32,6 @@ std::vector<std::string> texts(const Json& json) {
   return all;
 }
 
-NamedNumbers named_numbers(const Json& json) {
-  NamedNumbers numbers;
-  if (!json.is_object()) return numbers;
-  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
-  return numbers;
-}
-
 using Metrics = std::vector<DeclaredMetric>;
 
 Values metric_values(const Json& json, const Metrics& metrics, MetricScope scope) {
@@ -58,9 +50,6 @@ LevelRecord level_record(const JsonFile& file, const Metrics& metrics, const Jso
     r.*quantity.member = number(member_of(json, quantity.name));
   r.from_initial_state =
       member_of(json, "from_initial_state").is_boolean() && member_of(json, "from_initial_state").get<bool>();
-  r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
-  r.energy_parts = named_numbers(member_of(json, "energy_parts"));
-  r.energy_parts_released = named_numbers(member_of(json, "energy_parts_released"));
   r.metrics = metric_values(json, metrics, MetricScope::state);
   r.mesh = text_member(json, "mesh");
   return r;
@@ -82,8 +71,6 @@ MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const s
   method.name = name;
   method.status = text_member(json, "status");
   method.solver = text_member(json, "solver");
-  method.seconds = number(member_of(json, "seconds"));
-  method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
   const Json& levels = member_of(json, "levels");
   const Json& pairs = member_of(json, "consistency");
   if (levels.is_array()) {
@@ -101,11 +88,6 @@ MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const s
   std::stable_sort(method.levels.begin(), method.levels.end(),
                    [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
   return method;
-}
-
-IncrementRecord increment_record(const Json& json) {
-  return {number(member_of(json, "time")), number(member_of(json, "steps")),
-          number(member_of(json, "energy_released"))};
 }
 
 std::string file_if_there(const std::filesystem::path& path) {
@@ -166,24 +148,6 @@ std::vector<ErrorSeries> read_errors(const std::filesystem::path& path,
   return all;
 }
 
-std::vector<IncrementSeries> increments_of(const JsonFile& file, const std::string& method,
-                                           const Json& increments) {
-  std::vector<IncrementSeries> all;
-  if (!increments.is_array()) return all;
-  for (const Json& increment : increments)
-    series_of(all, method, file.find<int>(increment, "level").value_or(0))
-        .rows.push_back(increment_record(increment));
-  return all;
-}
-
-void add_last_contacts(RunData& run) {
-  for (const IterationSeries& series : run.iterations)
-    for (MethodRecord& method : run.methods)
-      for (LevelRecord& level : method.levels)
-        if (method.name == series.method && level.level == series.level)
-          level.contacts = series.rows.back().contacts;
-}
-
 void add_step_sizes(RunData& run) {
   ConfigErrors unread;
   const ConfigNode config = parse_yaml(run.configuration, "config.yaml", unread);
@@ -208,35 +172,24 @@ RunData read_run(const std::filesystem::path& folder) {
   RunData run;
   run.folder = folder;
   run.experiment = text_member(json, "experiment");
-  run.description = text_member(json, "description");
   run.version = text_member(json, "version");
   run.obstacles = texts(member_of(json, "obstacles"));
   run.obstacle_names = texts(member_of(json, "obstacle_names"));
   run.obstacle_names.resize(run.obstacles.size());
-  run.remarks = texts(member_of(json, "remarks"));
   run.complete = member_of(json, "complete").is_boolean() && member_of(json, "complete").get<bool>();
-  run.aborted = text_member(json, "aborted");
   const Json& machine = member_of(json, "machine");
   run.cpu = text_member(machine, "cpu");
-  run.cores = number(member_of(machine, "cores"));
   run.threads = number(member_of(machine, "threads"));
   const Json& reference = member_of(json, "reference");
   for (const char* key : {"method", "file"})
     if (!text_member(reference, key).empty()) run.reference = text_member(reference, key);
   run.reference_is_file = !text_member(reference, "file").empty();
-  run.reference_is_lowest = text_member(reference, "chosen") == ReferenceParameters::lowest;
-  run.reference_tolerance = number(member_of(reference, "force_tolerance"));
-  run.force_tolerance = number(member_of(member_of(json, "tolerance"), "force_residual"));
   const Json& methods = member_of(json, "methods");
   run.metrics = declared_metrics(member_of(json, "metrics"));
   run.error_measures = error_measures(run.metrics);
   if (methods.is_object()) {
-    for (const auto& [name, value] : methods.items()) {
+    for (const auto& [name, value] : methods.items())
       run.methods.push_back(method_record(file, run.metrics, name, value));
-      const std::vector<IncrementSeries> increments =
-          increments_of(file, name, member_of(value, "increments"));
-      run.increments.insert(run.increments.end(), increments.begin(), increments.end());
-    }
   }
   // The progressive method comes first; the others stay in file order.
   std::stable_partition(run.methods.begin(), run.methods.end(),
@@ -252,10 +205,7 @@ RunData read_run(const std::filesystem::path& folder) {
   run.errors = read_errors(folder / "errors.csv", run.error_measures);
   std::stable_sort(run.errors.begin(), run.errors.end(),
                    [&](const ErrorSeries& a, const ErrorSeries& b) { return place(a) < place(b); });
-  std::stable_sort(run.increments.begin(), run.increments.end(),
-                   [&](const IncrementSeries& a, const IncrementSeries& b) { return place(a) < place(b); });
   run.configuration = file_if_there(folder / "config.yaml");
-  add_last_contacts(run);
   add_step_sizes(run);
   return run;
 }

@@ -2,14 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
-#include "core/app/report/chart_data.h"
-#include "core/app/report/metric_columns.h"
+#include "core/app/files/csv.h"
+#include "core/app/files/json_file.h"
+#include "core/app/report/model_keys.h"
+#include "core/app/report/picture_scene.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report_view.h"
-#include "core/app/report/tables.h"
-#include "core/app/view/embedded.h"
-#include "core/app/view/html.h"
+#include "core/app/report/run_table.h"
+#include "core/app/view/colours.h"
+#include "core/app/view/page.h"
+#include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
 #include "core/numerics/mesh_files/base64.h"
 
@@ -17,237 +23,195 @@ namespace drape {
 
 namespace {
 
-using html::escape;
-using html::number_text;
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
-constexpr std::size_t most_columns = 4;
-constexpr std::size_t most_picture_bytes =
-    11'000'000;  // as PNG; a third more in the page, beside the 3D data
+constexpr std::size_t most_rows = 500;  // of one level of one method; more points are not visible
+constexpr int widest_picture = 900;     // of a page [pixels]
 
-/// Pictures as data URLs, shrunk when all of them would make the page too large.
-class Gallery {
- public:
-  explicit Gallery(const PictureSet& set) : set_(set) {
-    std::size_t bytes = 0;
-    for (const auto& [name, picture] : set.pictures) bytes += picture.png.size();
-    shrink_by_ = std::max(1, static_cast<int>(std::ceil(std::sqrt(double(bytes) / most_picture_bytes))));
-  }
-
-  std::string shown(const std::string& name, const std::string& alt, const std::string& caption) const {
-    const Picture* picture = set_.find(name);
-    if (!picture)
-      return "<figure class=\"absent\"><p>no picture</p><figcaption>" + caption + "</figcaption></figure>\n";
-    const bool whole = shrink_by_ == 1;
-    const Image smaller = whole ? Image() : shrink(picture->image, shrink_by_);
-    const Image& image = whole ? picture->image : smaller;
-    const std::string data = base64(whole ? picture->png : encode_png(image));
-    return "<figure><img width=\"" + std::to_string(image.width) + "\" height=\"" +
-           std::to_string(image.height) + "\" alt=\"" + escape(alt) + "\" src=\"data:image/png;base64," +
-           data + "\"><figcaption>" + caption + "</figcaption></figure>\n";
-  }
-
- private:
-  const PictureSet& set_;
-  int shrink_by_ = 1;
-};
-
-std::string grid_open(std::size_t columns) {
-  return "<div class=\"grid\" style=\"--columns:" + std::to_string(columns) + "\">\n";
-}
-
-std::string grid_head(const RunData& run) {
-  std::string text;
-  for (const MethodRecord& method : run.methods) text += "<h3>" + escape(method.name) + "</h3>\n";
-  return text;
-}
-
-std::string label(const MethodRecord& method, int level) {
-  return "<b>" + escape(method.name) + "</b>, level " + std::to_string(level);
-}
-
-/// A column for each method; the levels of a single method stand in rows.
-std::string state_grid(const RunData& run, const Gallery& gallery) {
-  const bool single = run.methods.size() == 1;
-  std::string text = single ? grid_open(std::clamp<std::size_t>(run.level_indices().size(), 1, most_columns))
-                            : grid_open(run.methods.size()) + grid_head(run);
-  for (const int level : run.level_indices()) {
-    for (const MethodRecord& method : run.methods) {
-      const LevelRecord* r = method.level(level);
-      const std::string caption = label(method, level) + ": " +
-                                  html::count(r ? r->vertices : OptionalNumber()) + " vertices, " +
-                                  number_text(r ? r->energy_released : OptionalNumber()) + "&nbsp;J released";
-      text += gallery.shown(state_picture(method, level),
-                            method.name + ": the cloth at level " + std::to_string(level), caption);
+/// A CSV file of a run, with the number of each row in its series; of a long series evenly chosen rows.
+Json csv_json(const fs::path& path) {
+  const Csv csv(path);
+  const auto series = [&](std::size_t k) { return csv.text(k, "method") + "/" + csv.text(k, "level"); };
+  std::map<std::string, std::size_t> counts, seen;
+  for (std::size_t k = 0; k < csv.size(); ++k) ++counts[series(k)];
+  Json rows = Json::array(), names = csv.names();
+  for (std::size_t k = 0; k < csv.size(); ++k) {
+    const std::size_t count = counts[series(k)], number = ++seen[series(k)];
+    const std::size_t stride = (count + most_rows - 1) / most_rows;
+    if ((number - 1) % stride != 0 && number != count) continue;
+    Json row = Json::array();
+    for (const std::string& name : csv.names()) {
+      const OptionalNumber value = csv.number(k, name);
+      row.push_back(name == "method" ? Json(csv.text(k, name)) : value ? Json(*value) : Json());
     }
+    row.push_back(number);
+    rows.push_back(std::move(row));
   }
-  return text + "</div>\n";
+  names.push_back("row");
+  return {{"names", names}, {"rows", rows}};
 }
 
-/// What the coarsest states foretold of the finest ones; empty for a run without two levels.
-std::string outline_grid(const RunData& run, const Gallery& gallery) {
-  std::string figures;
-  std::size_t count = 0;
+Json table_json(const RunTable& table) { return {{"columns", table.columns}, {"rows", table.rows}}; }
+
+Json measures_json(const std::vector<ErrorMeasure>& measures) {
+  Json all = Json::array();
+  for (const ErrorMeasure& m : measures)
+    all.push_back(
+        {{"name", m.name}, {"label", m.label}, {"use", m.use == ErrorUse::ranking ? "ranking" : "other"}});
+  return all;
+}
+
+Json styles_json(const RunCollection& collection) {
+  Json styles = Json::object();
+  for (const RunRecord& run : collection.runs)
+    if (run.data)
+      for (const MethodRecord& method : run.data->methods)
+        styles.emplace(method.name, solver_style(method.solver));
+  return styles;
+}
+
+/// The outline of each method's preview on its end, or its only state.
+Json pictures_json(const RunData& run, const PictureSet& set) {
+  Json pictures = Json::array();
   for (const MethodRecord& method : run.methods) {
     const std::optional<LevelPair> levels = widest_levels(method);
-    if (!levels) continue;
-    ++count;
-    figures += gallery.shown(
-        outline_picture(method, *levels),
-        method.name + ": the cloth at level " + std::to_string(levels->fine) + " with the outline of level " +
-            std::to_string(levels->coarse),
-        label(method, levels->fine) + ", with the outline of level " + std::to_string(levels->coarse));
-  }
-  if (count == 0) return "";
-  return "<h3>Outline of the preview</h3>\n<p>The finest state of each method, and as a blue line the "
-         "outline "
-         "of its coarsest state. The closer the line follows the cloth, the better the preview showed its "
-         "shape.</p>\n" +
-         grid_open(count) + figures + "</div>\n";
-}
-
-std::string difference_grid(const RunData& run, const Gallery& gallery, const FieldPictures& pictures) {
-  const MetricPicture& declared = pictures.declared;
-  const std::string end = number_text(pictures.scale);
-  std::string text = "<p class=\"legend\"><span>−" + end + "</span><i class=\"diverging\"></i><span>+" + end +
-                     " " + escape(declared.unit) + "</span></p>\n" + grid_open(run.methods.size());
-  for (const MethodRecord& method : run.methods) {
-    const ConsistencyRecord* pair = widest_pair(method);
-    const std::string levels =
-        pair ? "level " + std::to_string(pair->coarse) + " to " + std::to_string(pair->fine) : "no pair";
-    std::string caption = "<b>" + escape(method.name) + "</b>, " + levels;
-    for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::stored))
-      if (column.name == declared.column)
-        caption += ": " + label_html(column) + " = " +
-                   value_text(column, pair ? pair->metrics.of(column.name) : OptionalNumber());
-    text += gallery.shown(pair ? difference_picture(declared, method, *pair) : "",
-                          method.name + ": " + declared.label + ", " + levels, caption);
-  }
-  return text + "</div>\n";
-}
-
-std::string threshold_grid(const RunData& run, const Gallery& gallery, const FieldPictures& pictures) {
-  const MetricPicture& declared = pictures.declared;
-  const std::string threshold = number_text(pictures.scale);
-  std::string text = "<p class=\"legend\"><i class=\"below\"></i><span>below −" + threshold +
-                     "</span><i class=\"flat\"></i><span>between</span><i class=\"above\"></i><span>above +" +
-                     threshold + " " + escape(declared.unit) + "</span></p>\n" +
-                     grid_open(run.methods.size()) + grid_head(run);
-  for (const int level : run.level_indices()) {
-    for (const MethodRecord& method : run.methods) {
-      text += gallery.shown(threshold_picture(declared, method, level),
-                            method.name + ": " + declared.label + " at level " + std::to_string(level),
-                            label(method, level));
+    if (method.levels.empty()) continue;
+    const Picture* picture = set.find(levels ? outline_picture(method, *levels)
+                                             : state_picture(method, method.levels.back().level));
+    if (!picture) continue;
+    const int shrink_by = (picture->image.width + widest_picture - 1) / widest_picture;
+    const std::string png = shrink_by > 1 ? encode_png(shrink(picture->image, shrink_by)) : picture->png;
+    Json entry = {{"method", method.name}, {"png", base64(png)}, {"alt", method.name + ": the cloth"}};
+    if (levels) {
+      entry["coarse"] = levels->coarse, entry["fine"] = levels->fine;
+      entry["alt"] = method.name + ": the end, with the outline of the preview";
     }
+    pictures.push_back(std::move(entry));
   }
-  return text + "</div>\n";
+  return pictures;
 }
 
-/// What the pictures of a field have in common, after the metric's own text.
-std::string scale_text(const FieldPictures& pictures) {
-  if (pictures.declared.kind == PictureKind::difference)
-    return std::string("Drawn on ") + (pictures.on_rest ? "the flat rest shape" : "the finer state") +
-           ". The scale is equal for all methods and covers " + html::count(100 * difference_quantile) +
-           "&nbsp;% of all values; the others have its end colours.";
-  return "The threshold is equal everywhere: " + html::count(100 * threshold_quantile) +
-         "&nbsp;% of the first method's finest state lie below it. Coarse levels have the values of their "
-         "prolonged surface.";
+/// Small pictures of the ends of a run's methods.
+Json thumbnails(const RunData& run) {
+  constexpr int width = 240;
+  std::vector<std::string> notes;
+  const PictureScene scene(run, notes, {.width = width});
+  const Renderer renderer(width, picture_height(width));
+  Json all = Json::array();
+  for (const MethodRecord& method : run.methods)
+    if (const TriangleMesh* end =
+            method.levels.empty() ? nullptr : scene.state(method.name, method.levels.back().level))
+      all.push_back({{"method", method.name}, {"png", base64(encode_png(scene.draw(renderer, {*end})))}});
+  return all;
 }
 
-/// A section for each field that metrics declare a picture of.
-std::string metric_pictures(const RunData& run, const Gallery& gallery, const PictureSet& set) {
-  std::string text;
-  for (const FieldPictures& pictures : set.fields) {
-    const MetricPicture& declared = pictures.declared;
-    text += "<section id=\"" + escape(declared.name) + "\">\n<h2>" + escape(declared.title) + "</h2>\n<p>" +
-            html::formula(declared.text) + " " + scale_text(pictures) + "</p>\n";
-    if (!(pictures.scale > 0))
-      text += "<p class=\"absent\">No field was stored for these pictures in this run.</p>\n";
-    else
-      text += declared.kind == PictureKind::difference ? difference_grid(run, gallery, pictures)
-                                                       : threshold_grid(run, gallery, pictures);
-    text += "</section>\n\n";
-  }
-  return text;
+Json run_json(const RunRecord& run, std::size_t rows, std::map<std::string, int>& physics,
+              const fs::path& from) {
+  const fs::path report = fs::absolute(run.folder / "report.html");
+  Json entry = {
+      {"variation", run.variation},
+      {"seed", run.seed ? Json(*run.seed) : Json()},
+      {"status", run.status},
+      {"error", run.error},
+      {"count", rows},
+      {"report", fs::is_regular_file(report) ? Json(url_path(report.lexically_relative(from))) : Json()},
+      {"pictures", Json::array()},
+      {"errors", csv_json(run.data ? run.folder / "errors.csv" : fs::path())},
+      {"first_levels", Json::object()}};
+  if (!run.data) return entry;
+  entry["physics"] =
+      physics.emplace(model_of(run.data->configuration), static_cast<int>(physics.size())).first->second;
+  entry["pictures"] = thumbnails(*run.data);
+  entry["reference"] = run.data->reference_is_file ? "" : run.data->reference;
+  for (const MethodRecord& method : run.data->methods)
+    entry["first_levels"][method.name] = method.first_level();
+  entry["machine"] = run.data->version + " · " + run.data->cpu;
+  if (run.data->threads)
+    entry["machine"] = entry["machine"].get<std::string>() +
+                       " · threads of a run: " + std::to_string(std::lround(*run.data->threads));
+  return entry;
 }
 
-std::string verdict_line(const RunData& run) {
-  const std::optional<Verdict> verdict = intersection_verdict(run);
-  if (!verdict) return "";
-  return "<p class=\"outcome " + std::string(verdict->intersection_free ? "good" : "poor") + "\">" +
-         escape(verdict->text) + "</p>\n";
-}
-
-std::string load_stepping_section(const RunData& run) {
-  return run.increments.empty() ? "" : std::string(Embedded::load_stepping_html());
-}
-
-std::string machine_line(const RunData& run) {
-  std::string text;
-  if (!run.version.empty()) text += escape(run.version);
-  if (!run.cpu.empty()) text += (text.empty() ? "" : " · ") + escape(run.cpu);
-  if (run.cores) text += " · " + html::count(run.cores) + " cores";
-  if (run.threads) text += " · " + html::count(run.threads) + (*run.threads == 1 ? " thread" : " threads");
-  return text;
-}
-
-std::string reference_sentence(const RunData& run) {
-  if (run.errors.empty()) return "No states were recorded in this run (<code>snapshots: 0</code>).";
-  if (run.reference.empty()) return "This run has no reference (<code>reference</code> in the experiment).";
-  if (run.reference_is_file) return "The reference is the file <code>" + escape(run.reference) + "</code>.";
-  std::string text = "The reference is <b>" + escape(run.reference) + "</b>'s finest state";
-  if (run.reference_is_lowest) text += ", the lowest in energy of all that have converged";
-  if (run.reference_tolerance)
-    text += ", solved on to a force residual of " + number_text(run.reference_tolerance);
-  return text + ".";
-}
-
-std::string notes(const PictureSet& set) {
-  if (set.notes.empty()) return "";
-  std::string text = "<details><summary>Not drawn</summary><ul>\n";
-  for (const std::string& note : set.notes) text += "<li>" + escape(note) + "</li>\n";
-  return text + "</ul></details>\n";
+/// Only a page of drape's may be replaced: its title says so.
+void refuse_other_file(const fs::path& page) {
+  if (fs::exists(page) && read_file(page).find(" – drape</title>") == std::string::npos)
+    throw std::runtime_error(page.string() +
+                             ": is there already, and no report of drape; name another page with --out");
 }
 
 }  // namespace
 
-std::vector<std::string> write_report(const std::filesystem::path& run_directory,
-                                      const std::function<bool()>& cancelled,
+std::vector<std::string> write_report(const fs::path& folder, const std::function<bool()>& cancelled,
                                       std::optional<int> picture_width) {
-  const RunData run = read_run(run_directory);
+  const RunCollection collection = read_runs({folder});
+  const RunData& run = *collection.runs.front().data;
   PictureSet set = draw_pictures(run, cancelled, picture_width);
-  const Gallery gallery(set);
   const ReportView view = report_view(run);
   for (const std::string& note : view.notes)
     if (std::find(set.notes.begin(), set.notes.end(), note) == set.notes.end()) set.notes.push_back(note);
-  const std::string page =
-      html::fill(Embedded::page_html(),
-                 {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},
-                  {"title", escape(run.experiment.empty() ? "Unnamed experiment" : run.experiment)},
-                  {"description", escape(run.description)},
-                  {"machine", machine_line(run)},
-                  {"outcome", outcome_sentence(run)},
-                  {"verdict", verdict_line(run)},
-                  {"summary", summary_table(run)},
-                  {"troubles", troubles(run)},
-                  {"levels", level_table(run)},
-                  {"states", state_grid(run, gallery) + outline_grid(run, gallery)},
-                  {"notes", notes(set)},
-                  {"view", view.section},
-                  {"view_scripts", view.scripts},
-                  {"state_metrics", metric_texts(run, MetricScope::state)},
-                  {"pair_metrics", metric_texts(run, MetricScope::pair)},
-                  {"consistency", consistency_table(run)},
-                  {"metric_pictures", metric_pictures(run, gallery, set)},
-                  {"load_stepping", load_stepping_section(run)},
-                  {"configuration",
-                   run.configuration.empty() ? "config.yaml was not stored." : escape(run.configuration)},
-                  {"data", chart_data(run)},
-                  {"chart_library", std::string(Embedded::chart_js())},
-                  {"reference", reference_sentence(run)},
-                  {"charts", std::string(Embedded::charts_js())},
-                  {"script", std::string(Embedded::page_js())}});
-  write_file(run_directory / "report.html", page);
+  Json step_sizes = Json::object();
+  for (const MethodRecord& method : run.methods)
+    if (method.step_size) step_sizes[method.name] = *method.step_size;
+  const Json data = {{"kind", "run"},
+                     {"results", parse_json(read_file(folder / "results.json"))},
+                     {"table", table_json(table_of(collection))},
+                     {"measures", measures_json(run.error_measures)},
+                     {"styles", styles_json(collection)},
+                     {"step_sizes", step_sizes},
+                     {"errors", csv_json(folder / "errors.csv")},
+                     {"iterations", csv_json(folder / "iterations.csv")},
+                     {"config", run.configuration},
+                     {"pictures", pictures_json(run, set)},
+                     {"notes", set.notes},
+                     {"view", view.document}};
+  write_file(folder / "report.html",
+             page(run.experiment.empty() ? "Unnamed experiment" : run.experiment, data, view.blocks));
   return set.notes;
+}
+
+void write_runs_report(const std::vector<fs::path>& folders, const fs::path& file) {
+  refuse_other_file(file);
+  const RunCollection collection = read_runs(folders);
+  std::map<std::string, int> physics;
+  const RunTable table = table_of(collection);
+  Json runs = Json::array();
+  for (const RunRecord& run : collection.runs)
+    runs.push_back(
+        run_json(run, run.data ? run.data->methods.size() : 1, physics, fs::absolute(file).parent_path()));
+  write_file(file, page(collection.name.empty() ? "Several runs" : collection.name,
+                        {{"kind", "runs"},
+                         {"name", collection.name},
+                         {"complete", collection.complete},
+                         {"table", table_json(table)},
+                         {"measures", measures_json(collection.error_measures())},
+                         {"metrics", json_of(collection.metrics())},
+                         {"styles", styles_json(collection)},
+                         {"runs", runs}}));
+}
+
+std::string viewer_page(const RunData& run) {
+  const ReportView view = report_view(run);
+  if (view.document.is_null())
+    throw std::runtime_error(view.notes.empty() ? run.folder.string() + ": the run has no state to show"
+                                                : view.notes.front());
+  return page(run.experiment, {{"kind", "states"}, {"view", view.document}}, view.blocks);
+}
+
+std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
+                        const std::vector<TriangleMesh>& obstacles) {
+  std::vector<Level> levels = {level};
+  levels.front().index = 0;  // the only one of its document
+  std::string blocks;
+  ViewDocument document(levels, obstacles, false, [&](const std::string& name, const std::string& bytes) {
+    blocks += block_element(name, bytes);
+  });
+  const SurfaceFields fields = document.fields(0, x);
+  document.set_ranges({&fields});
+  const Json state = document.state("state", x, fields);
+  const Json entry = {{"level", 0}, {"status", ""}, {"states", Json::array({state})}};
+  const Json method = {{"name", title}, {"levels", Json::array({entry})}};
+  return page(title, {{"kind", "states"}, {"view", document.document(title, Json::array({method}))}}, blocks);
 }
 
 }  // namespace drape

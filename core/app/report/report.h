@@ -6,16 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "core/app/report/run_data.h"
+#include "core/kernel/interfaces/level.h"
+
 namespace drape {
 
 /// Writes DIR/report.html, one page that needs no other file and no network, and DIR/pictures/*.png from
-/// what a finished or interrupted run has left in DIR (results.json, iterations.csv, config.yaml, levels/,
-/// fields/, rest/). Missing values show as a dash or a sentence. Pictures are `picture_width` (default: 900)
-/// pixels wide, and skipped once `cancelled` (may be empty) returns true. Returns what could not be drawn,
-/// one line each. Throws std::runtime_error with one line if DIR has no readable results.json or is not
-/// writable.
+/// what a finished or interrupted run has left in DIR (results.json, iterations.csv, errors.csv, config.yaml,
+/// levels/, fields/, rest/). Pictures are `picture_width` (default: 900) pixels wide, and skipped once
+/// `cancelled` (may be empty) returns true. Returns what could not be drawn, one line each. Throws
+/// std::runtime_error with one line if DIR has no readable results.json or is not writable.
 std::vector<std::string> write_report(const std::filesystem::path& run_directory,
                                       const std::function<bool()>& cancelled = {},
                                       std::optional<int> picture_width = {});
+
+/// Writes a page about several runs and sweeps. Throws std::runtime_error with one line for a folder that is
+/// neither, and for a page that is there and not one of drape's.
+void write_runs_report(const std::vector<std::filesystem::path>& folders, const std::filesystem::path& page);
+
+/// A page with nothing but the 3D view of a run's states. Throws std::runtime_error with the reason if the
+/// run has nothing to show.
+std::string viewer_page(const RunData& run);
+
+/// The same of one state x (n×3) [m] of a level, with obstacles.
+std::string viewer_page(const std::string& title, const Level& level, const Positions& x,
+                        const std::vector<TriangleMesh>& obstacles);
 
 }  // namespace drape

@@ -7,7 +7,6 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/recorded_snapshots.h"
-#include "core/app/view/embedded.h"
 #include "core/app/view/view_document.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
@@ -21,13 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
 
-constexpr const char* section_open =
-    "<section id=\"in-3d\">\n<h2>In 3D</h2>\n<noscript><p class=\"absent\">The 3D view needs "
-    "JavaScript.</p></noscript>\n"
-    "<p>The same states, to turn around: one view per method. The slider goes from level to level; Play "
-    "shows the "
-    "progression as it went: every level in turn and, where they were recorded, states on the way.</p>\n";
-
 /// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
 /// state, which is always shown.
 std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
@@ -38,16 +30,16 @@ std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
   return chosen;
 }
 
-/// The differences from the finest level that metrics declare pictures of.
-std::vector<FieldKind> differences(const RunData& run) {
+/// The fields that metrics of pairs declare pictures of.
+std::vector<FieldKind> declared_fields(const RunData& run) {
   std::vector<FieldKind> kinds;
   for (const DeclaredMetric& metric : run.metrics)
-    for (const MetricPicture& picture : metric.declaration.pictures)
-      if (picture.kind == PictureKind::difference)
-        kinds.push_back(
-            {picture.field, picture.label + " from the finest level", picture.unit, "diverging",
-             picture.label +
-                 " from the finest level, at the vertices both have; known for last states only"});
+    for (const MetricPicture& picture : metric.declaration.pictures) {
+      const std::string label =
+          picture.label + (picture.kind == PictureKind::difference ? " from the finest level" : "");
+      kinds.push_back({picture.field, label, picture.unit, "diverging",
+                       label + ", at the vertices that the finest level shares; known for last states only"});
+    }
   return kinds;
 }
 
@@ -56,7 +48,7 @@ class ReportViewMaker {
   explicit ReportViewMaker(const RunData& run)
       : run_(run),
         results_(parse_json(read_file(run.folder / "results.json"))),
-        differences_(differences(run)) {}
+        declared_(declared_fields(run)) {}
 
   ReportView make() {
     for (int l = 0; l <= run_.finest_level(); ++l)
@@ -65,14 +57,12 @@ class ReportViewMaker {
     document_.emplace(
         levels_, obstacles_, run_.has_contact(),
         [this](const std::string& name, const std::string& bytes) { blocks_ += block_element(name, bytes); },
-        differences_);
+        declared_);
     read_states();
     if (states_.empty()) return {};
     Json methods = Json::array();
     for (std::size_t m = 0; m < run_.methods.size(); ++m) methods.push_back(method_entry(m));
-    return {section_open + std::string(Embedded::viewer_html()) + "</section>\n\n",
-            document_element(document_->document(run_.experiment, methods)) + blocks_ + viewer_scripts(),
-            notes_};
+    return {document_->document(run_.experiment, methods), blocks_, notes_};
   }
 
  private:
@@ -91,7 +81,7 @@ class ReportViewMaker {
           state.x = read_mesh(run_.folder / level.mesh).vertices;
           if (state.x.rows() != levels_[level.level].vertex_count()) continue;
           state.fields = document_->fields(level.level, state.x);
-          add_differences(run_.methods[m], level.level, state);
+          add_declared(run_.methods[m], level.level, state);
         } catch (const std::exception&) {
           continue;  // the pictures name it
         }
@@ -100,24 +90,29 @@ class ReportViewMaker {
     document_->set_ranges(shown);
   }
 
-  /// As it was recorded on the finest mesh, at the vertices that it shares with the coarse level: those come
-  /// first. The finest level does not differ from itself.
-  void add_differences(const MethodRecord& method, int level, State& state) const {
+  /// As they were recorded on the finest mesh, at the vertices that it shares with the coarse level: those
+  /// come first. The finest level does not differ from itself.
+  void add_declared(const MethodRecord& method, int level, State& state) const {
     const int finest = run_.finest_level();
-    const ConsistencyRecord* pair = method.pair(level, finest);
-    if (level == finest && !method.consistency.empty())
-      for (const FieldKind& difference : differences_)
-        state.fields.emplace_back(difference.name, Eigen::VectorXd::Zero(state.x.rows()));
+    const bool is_finest = level == finest;
+    const ConsistencyRecord* pair = nullptr;
+    for (const ConsistencyRecord& each : method.consistency)
+      if (each.fine == finest && (is_finest || each.coarse == level)) pair = &each;
     if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run_.folder / pair->fields))
       return;
-    for (const VertexField& field : read_ply_fields(run_.folder / pair->fields))
-      if (is_difference(field.name) && field.values.size() >= state.x.rows())
-        state.fields.emplace_back(field.name, field.values.head(state.x.rows()));
-  }
-
-  bool is_difference(const std::string& name) const {
-    return std::any_of(differences_.begin(), differences_.end(),
-                       [&](const FieldKind& kind) { return kind.name == name; });
+    const std::vector<VertexField> fields = read_ply_fields(run_.folder / pair->fields);
+    for (const DeclaredMetric& metric : run_.metrics)
+      for (const MetricPicture& picture : metric.declaration.pictures) {
+        const bool difference = picture.kind == PictureKind::difference;
+        if (difference && is_finest) {
+          state.fields.emplace_back(picture.field, Eigen::VectorXd::Zero(state.x.rows()));
+          continue;
+        }
+        const std::string& name = difference || is_finest ? picture.field : picture.other_field;
+        for (const VertexField& field : fields)
+          if (field.name == name && field.values.size() >= state.x.rows())
+            state.fields.emplace_back(picture.field, field.values.head(state.x.rows()));
+      }
   }
 
   /// The recorded snapshots; empty, with a note, if they cannot be read.
@@ -164,7 +159,7 @@ class ReportViewMaker {
 
   const RunData& run_;
   const Json results_;
-  const std::vector<FieldKind> differences_;
+  const std::vector<FieldKind> declared_;
   std::vector<Level> levels_;
   std::vector<TriangleMesh> obstacles_;
   std::optional<ViewDocument> document_;
@@ -180,7 +175,7 @@ ReportView report_view(const RunData& run) {
   try {
     return ReportViewMaker(run).make();
   } catch (const std::exception& error) {
-    return {"", "", {"3D viewer: " + reason_of(error)}};
+    return {nullptr, "", {"3D viewer: " + reason_of(error)}};
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -7,14 +8,15 @@
 
 namespace drape {
 
-/// The report's 3D viewer: its section of the page, and the data and scripts at the page's end.
+/// What the page's 3D view shows of a run.
 struct ReportView {
-  std::string section, scripts;    ///< HTML; both empty if there is nothing to show
-  std::vector<std::string> notes;  ///< what cannot be shown, with reasons, one line each
+  nlohmann::ordered_json document;  ///< as ViewDocument makes it; null if there is nothing to show
+  std::string blocks;               ///< elements of block_element
+  std::vector<std::string> notes;   ///< what cannot be shown, with reasons, one line each
 };
 
-/// The viewer of the meshes in the run's folder: every level's last state and, up to a few megabytes, evenly
-/// chosen snapshots.
+/// The meshes in the run's folder: every level's last state and, up to a few megabytes, evenly chosen
+/// snapshots.
 ReportView report_view(const RunData& run);
 
 }  // namespace drape

@@ -1,20 +1,12 @@
 #include "core/app/report/run_data.h"
 
 #include <algorithm>
-#include <set>
 
 namespace drape {
 
 const LevelQuantity& level_quantity(std::string_view name) {
   return *std::find_if(std::begin(level_quantities), std::end(level_quantities),
                        [&](const LevelQuantity& quantity) { return quantity.name == name; });
-}
-
-OptionalNumber MethodRecord::sum(OptionalNumber LevelRecord::*member) const {
-  OptionalNumber sum;
-  for (const LevelRecord& level : levels)
-    if (level.*member) sum = sum.value_or(0) + *(level.*member);
-  return sum;
 }
 
 int MethodRecord::first_level() const {
@@ -56,30 +48,11 @@ bool RunData::has_contact() const {
   return false;
 }
 
-int RunData::coarsest_level() const {
-  const std::vector<int> all = level_indices();
-  return all.empty() ? -1 : all.front();
-}
-
 int RunData::finest_level() const {
-  const std::vector<int> all = level_indices();
-  return all.empty() ? -1 : all.back();
-}
-
-std::vector<int> RunData::level_indices() const {
-  std::set<int> all;
-  for (const MethodRecord& m : methods) {
-    for (const LevelRecord& r : m.levels) all.insert(r.level);
-  }
-  return {all.begin(), all.end()};
-}
-
-std::vector<std::pair<int, int>> RunData::pairs() const {
-  std::set<std::pair<int, int>> all;
-  for (const MethodRecord& m : methods) {
-    for (const ConsistencyRecord& r : m.consistency) all.emplace(r.coarse, r.fine);
-  }
-  return {all.begin(), all.end()};
+  int finest = -1;
+  for (const MethodRecord& m : methods)
+    for (const LevelRecord& r : m.levels) finest = std::max(finest, r.level);
+  return finest;
 }
 
 }  // namespace drape

@@ -16,9 +16,6 @@
 
 namespace drape {
 
-/// Numbers by name, in file order.
-using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
-
 /// The known values of metrics or errors, by name.
 struct Values : std::map<std::string, double> {
   OptionalNumber of(const std::string& name) const {
@@ -39,8 +36,6 @@ struct LevelRecord {
   OptionalNumber energy, energy_on_finest;  ///< from the potentials' origin [J]
   OptionalNumber energy_released;           ///< of the finest level, since the scene's start [J]
   OptionalNumber decrement, force_residual, intersections, smallest_gap;
-  OptionalNumber contacts;  ///< in the last iteration
-  NamedNumbers seconds_by_phase, energy_parts, energy_parts_released;
   Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
@@ -80,8 +75,7 @@ struct ConsistencyRecord {
 
 struct MethodRecord {
   std::string name, status;
-  std::string solver;  ///< its type: a method is named in the experiment
-  OptionalNumber seconds, peak_memory_bytes;
+  std::string solver;               ///< its type: a method is named in the experiment
   OptionalNumber step_size;         ///< h of the first implicit step, and of the static form's decrement [s]
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
@@ -90,8 +84,6 @@ struct MethodRecord {
   OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
   /// The coarsest level that the last state builds on.
   int first_level() const;
-  /// The sum of the known values over all levels.
-  OptionalNumber sum(OptionalNumber LevelRecord::*member) const;
   const LevelRecord* level(int index) const;
   const ConsistencyRecord* pair(int coarse, int fine) const;
 };
@@ -101,18 +93,6 @@ struct IterationSeries {
   std::string method;
   int level = 0;
   std::vector<RecordedIteration> rows;
-};
-
-/// One load increment, at its end.
-struct IncrementRecord {
-  OptionalNumber time, steps, energy_released;  ///< pseudo-time; the others as in LevelRecord
-};
-
-/// All increments of one level of one method, in order.
-struct IncrementSeries {
-  std::string method;
-  int level = 0;
-  std::vector<IncrementRecord> rows;
 };
 
 /// One row of errors.csv: a state's cost, and its error against each target in each measure.
@@ -130,11 +110,9 @@ struct ErrorSeries {
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
-  std::string experiment, description, version, cpu, configuration;
+  std::string experiment, version, cpu, configuration;
   bool complete = false;
-  std::string aborted;  ///< why the run was aborted; empty if it was not
-  OptionalNumber cores, threads, force_tolerance;
-  std::vector<std::string> remarks;         ///< on the input, such as the repair of an obstacle
+  OptionalNumber threads;
   std::vector<std::string> obstacles;       ///< meshes, relative to the folder
   std::vector<std::string> obstacle_names;  ///< of each of them; empty for an obstacle without a name
   std::vector<DeclaredMetric> metrics;
@@ -142,11 +120,8 @@ struct RunData {
   std::vector<MethodRecord> methods;
   std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
   std::vector<ErrorSeries> errors;          ///< likewise
-  std::vector<IncrementSeries> increments;  ///< likewise; empty without a schedule
   std::string reference;                    ///< method or file of the state that errors are measured against
   bool reference_is_file = false;
-  bool reference_is_lowest = false;    ///< it was chosen for its lowest energy
-  OptionalNumber reference_tolerance;  ///< force tolerance to which it was solved
 
   /// Whether the run had contact: otherwise it has no gaps and intersections.
   bool has_contact() const;
@@ -154,11 +129,7 @@ struct RunData {
   std::vector<MetricColumn> columns(MetricScope scope, Shown least) const {
     return columns_of(metrics, scope, least);
   }
-  int coarsest_level() const;              ///< over all methods; -1 without levels
-  int finest_level() const;                ///< over all methods; -1 without levels
-  std::vector<int> level_indices() const;  ///< of all methods, ascending
-  /// (coarse, fine) of all methods, ascending.
-  std::vector<std::pair<int, int>> pairs() const;
+  int finest_level() const;  ///< over all methods; -1 without levels
 };
 
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are

@@ -139,8 +139,8 @@ void check_options(const fs::path& file, const ExportOptions& options) {
     throw std::runtime_error("--frames makes an animation, which " + extension +
                              " cannot hold; take .glb, or .png for numbered pictures");
   const PictureOptions& picture = options.picture;
-  if (extension != ".png" && (picture.width || picture.direction || picture.outline))
-    throw std::runtime_error("--width, --view and --outline are of pictures; take .png");
+  if (extension != ".png" && (picture.width || picture.direction || picture.outline || picture.xray))
+    throw std::runtime_error("--width, --view, --outline and --xray are of pictures; take .png");
 }
 
 }  // namespace

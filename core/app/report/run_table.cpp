@@ -5,9 +5,7 @@
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
-#include "core/app/report/metric_columns.h"
 #include "core/app/report/run_rows.h"
-#include "core/app/report/tables.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {
@@ -121,6 +119,18 @@ std::vector<std::string> varied_keys(const RunCollection& collection) {
 }
 
 }  // namespace
+
+OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord& method) {
+  OptionalNumber worst;
+  for (const LevelRecord& level : method.levels) {
+    const OptionalNumber value = level.metrics.of(column.name);
+    if (!value) continue;
+    const bool worse =
+        !worst || (column.better == Better::neither ? *value > *worst : beats(column.better, *worst, *value));
+    if (worse) worst = value;
+  }
+  return worst;
+}
 
 RunTable table_of(const RunCollection& collection) {
   RunTable table;

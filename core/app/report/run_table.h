@@ -26,6 +26,10 @@ struct RunTable {
 /// expected status and message, finite energies and no intersection.
 RunTable table_of(const RunCollection& collection);
 
+/// The worst of a state metric's values over a method's levels: where neither direction is better, the
+/// largest.
+OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord& method);
+
 enum class TableFormat { markdown, csv, json };
 
 /// A table of the chosen columns, by default of all non-empty ones, for Markdown without `in_files`. Throws

@@ -4,7 +4,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/report/run_table.h"
-#include "core/app/view/html.h"
+#include "core/app/report/text_table.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/config_node.h"
@@ -19,7 +19,7 @@ std::string cell_text(const Json& value, bool rounded) {
   if (value.is_null()) return "";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "NO";
   if (value.is_string()) return value.get<std::string>();
-  return rounded ? html::number_text(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
+  return rounded ? number_text(value.get<double>()) : ConfigNode::of(value.get<double>()).scalar;
 }
 
 std::string replaced(std::string text, const std::string& what, const std::string& by) {

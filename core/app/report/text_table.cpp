@@ -2,9 +2,21 @@
 
 #include <algorithm>
 
+#include "core/kernel/files/number_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
 
 namespace drape {
+
+std::string number_text(const OptionalNumber& value) {
+  if (!value) return "–";
+  if (*value == 0) return "0";
+  const std::string text = scientific_text(*value, 2);
+  const std::size_t e = text.find('e');
+  const int exponent = std::stoi(text.substr(e + 1));
+  if (exponent < -2 || exponent > 3) return text.substr(0, e) + "e" + std::to_string(exponent);
+  return fixed_text(parse_number(text).value(), std::max(0, 2 - exponent));
+}
 
 std::string text_table(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);

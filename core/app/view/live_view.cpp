@@ -6,8 +6,7 @@
 
 #include "core/app/files/json_file.h"
 #include "core/app/view/colours.h"
-#include "core/app/view/embedded.h"
-#include "core/app/view/html.h"
+#include "core/app/view/page.h"
 
 namespace drape {
 
@@ -197,13 +196,7 @@ std::string LiveView::news(long version, std::size_t rows) {
 }
 
 std::string LiveView::page() const {
-  return html::fill(
-      Embedded::live_html(),
-      {{"style", std::string(Embedded::page_css()) + std::string(Embedded::viewer_css())},
-       {"title", html::escape(title_)},
-       {"viewer", std::string(Embedded::viewer_html())},
-       {"scripts", "<script>\n" + std::string(Embedded::chart_js()) + "\n</script>\n" + viewer_scripts() +
-                       "<script>\n" + std::string(Embedded::live_js()) + "</script>\n"}});
+  return drape::page(title_ + ", live", {{"kind", "live"}, {"title", title_}});
 }
 
 }  // namespace drape

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/app/view/embedded.h"
-#include "core/app/view/html.h"
 #include "core/app/view/view_blocks.h"
 #include "core/numerics/elements/vertex_fields.h"
 #include "core/numerics/mesh_files/base64.h"
@@ -108,22 +106,8 @@ ViewDocument::Json ViewDocument::document(const std::string& title, Json methods
 }
 
 std::string block_element(const std::string& name, const std::string& bytes) {
-  return "<script type=\"application/octet-stream\" id=\"viewer-" + html::escape(name) + "\">" +
-         base64(deflated(bytes)) + "</script>\n";
-}
-
-std::string document_element(const ViewDocument::Json& document) {
-  return "<script type=\"application/json\" id=\"viewer-data\">" + html::script_json(document) +
+  return "<script type=\"application/octet-stream\" id=\"viewer-" + name + "\">" + base64(deflated(bytes)) +
          "</script>\n";
-}
-
-std::string viewer_scripts() {
-  std::string text;
-  for (const std::string_view script :
-       {Embedded::three_js(), Embedded::viewer_data_js(), Embedded::viewer_scene_js(),
-        Embedded::viewer_controls_js(), Embedded::viewer_js()})
-    text += "<script>\n" + std::string(script) + "\n</script>\n";
-  return text;
 }
 
 }  // namespace drape

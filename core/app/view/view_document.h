@@ -50,11 +50,7 @@ class ViewDocument {
   Json level_entries_ = Json::array(), obstacle_entries_ = Json::array();
 };
 
-/// A named block and the document as <script> elements, for pages that embed them.
+/// A named block as a <script> element, for pages that embed it.
 std::string block_element(const std::string& name, const std::string& bytes);
-std::string document_element(const ViewDocument::Json& document);
-
-/// three.js and the viewer's own scripts, as <script> elements.
-std::string viewer_scripts();
 
 }  // namespace drape

@@ -35,16 +35,16 @@ struct MetricColumn {
   ErrorUse error_use = ErrorUse::plots;  ///< where higher is better the error is 1 − value
 };
 
-/// How a picture colours a field.
+/// What the 3D view of a page shows of a field.
 enum class PictureKind {
-  difference,  ///< around 0, for the widest pair of levels, on the flat rest shape
-  threshold    ///< by sign where the magnitude exceeds a threshold, for the state of every level
+  difference,  ///< of each level from the finest
+  threshold    ///< of the state of every level
 };
 
 /// Longest name of a picture [bytes]: the paths of its files are checked before a run.
 inline constexpr std::size_t longest_picture_name = 24;
 
-/// Declares a picture of a field of a pair metric. Reports draw it for every method.
+/// Declares colours of the 3D view for a field of a pair metric.
 struct MetricPicture {
   PictureKind kind = PictureKind::difference;
   std::string name = {};         ///< ends the names of its files; at most longest_picture_name

@@ -1,4 +1,4 @@
-"""Plots by matplotlib, in the report's colours (core/app/view/assets/page.css) and with its marks."""
+"""Plots by matplotlib, in the report's colours (viewer/page.css) and with its marks."""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
-'use strict';
-/// The drawing: one WebGL context, one view per method side by side, with one camera.
-class ViewerScene {
+/// The drawing: one WebGL context, views side by side, with one camera.
+import {normals} from './blocks.js';
+
+/* global THREE */
+export class Scene {
   /// Throws without WebGL.
   constructor(canvas, labels) {
     const context = ['webgl2', 'webgl'].reduce((gl, kind) => gl || canvas.getContext(kind, {antialias: true}), null);
@@ -10,11 +12,13 @@ class ViewerScene {
     this.renderer.setScissorTest(true);
     this.camera = new THREE.PerspectiveCamera(28, 1, .01, 100);
     this.camera.up.set(0, 0, 1);
-    this.cloth = ViewerScene.material(false);
-    this.painted = ViewerScene.material(true);
-    this.solid = ViewerScene.material(false);
+    this.cloth = Scene.material(false);
+    this.painted = Scene.material(true);
+    this.solid = Scene.material(false);
     this.solid.uniforms.front.value.set(.45, .47, .5);
     this.solid.uniforms.back.value.set(.45, .47, .5);
+    // What lies on an obstacle is drawn in front of it, without speckles.
+    Object.assign(this.solid, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
     this.lookAt([0, 0, 0], 1);
     new ResizeObserver(() => this.layOut()).observe(canvas.parentElement);
     canvas.addEventListener('webglcontextrestored', () => this.draw());
@@ -24,7 +28,7 @@ class ViewerScene {
   static material(painted) {
     return new THREE.ShaderMaterial({
       side: THREE.DoubleSide,
-      uniforms: {front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
+      uniforms: {opacity: {value: 1}, front: {value: new THREE.Vector3(.83, .76, .66)}, back: {value: new THREE.Vector3(.62, .70, .77)}},
       defines: painted ? {PAINTED: 1} : {},
       vertexShader: `
         attribute vec3 tint;
@@ -42,6 +46,7 @@ class ViewerScene {
         }`,
       fragmentShader: `
         uniform vec3 front, back;
+        uniform float opacity;
         varying vec3 eyeNormal, eyePosition, colour;
         void main() {
           float side = gl_FrontFacing ? 1.0 : -1.0;
@@ -62,16 +67,26 @@ class ViewerScene {
           #endif
           float sheen = pow(1.0 - max(dot(n, normalize(-eyePosition)), 0.0), 4.0);
           vec3 lit = pow(base, vec3(2.2)) * light + vec3(0.07) * sheen;
-          gl_FragColor = vec4(pow(min(lit, vec3(1.0)), vec3(1.0 / 2.2)), 1.0);
+          gl_FragColor = vec4(pow(min(lit, vec3(1.0)), vec3(1.0 / 2.2)), opacity);
         }`,
     });
+  }
+
+  /// X-ray: everything lets through what is behind it.
+  setXray(on) {
+    for (const material of [this.cloth, this.painted, this.solid]) {
+      material.uniforms.opacity.value = on ? .45 : 1;
+      material.transparent = on;
+      material.depthWrite = !on;
+    }
+    this.draw();
   }
 
   geometry(x, index) {
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(index);
     geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(ViewerData.normals(x, index.array), 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(normals(x, index.array), 3));
     return geometry;
   }
 
@@ -157,16 +172,22 @@ class ViewerScene {
   layOut() {
     const width = this.canvas.parentElement.clientWidth, count = Math.max(this.views.length, 1);
     if (!width) return;
-    this.columns = Math.max(1, Math.min(count, Math.floor(width / 250)));
+    this.columns = Math.max(1, Math.min(count, Math.floor(width / (count > 2 ? 220 : 150))));
     this.rows = Math.ceil(count / this.columns);
     this.panel = {width: width / this.columns};
-    this.panel.height = Math.round(Math.min(this.panel.width * (count > 1 ? .86 : .6), .68 * innerHeight));
+    this.panel.height = Math.round(Math.min(this.panel.width * (this.columns > 1 ? 1.25 : .72), (this.rows > 1 ? .4 : .66) * innerHeight));
     this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
     this.renderer.setSize(width, this.panel.height * this.rows, false);
     this.canvas.style.height = this.panel.height * this.rows + 'px';
     this.labels.style.gridTemplate = `repeat(${this.rows}, ${this.panel.height}px) / repeat(${this.columns}, 1fr)`;
     [...this.labels.children].forEach((label, k) => label.classList.toggle('first', k % this.columns === 0));
     this.draw();
+  }
+
+  /// The picture as a PNG file.
+  async picture() {
+    this.render();
+    return new Promise(resolve => this.canvas.toBlob(resolve));
   }
 
   /// Once per frame, however often it is requested.
@@ -179,12 +200,13 @@ class ViewerScene {
     });
   }
   render() {
-    const {target, azimuth, elevation, distance} = this.view, camera = this.camera, r = this.home.radius;
+    const {target, azimuth, elevation} = this.view, camera = this.camera, r = this.home.radius;
+    const distance = this.view.distance * Math.max(1, this.panel.height / this.panel.width);  // the whole fits a narrow panel too
     camera.position.set(target[0] + distance * Math.cos(elevation) * Math.cos(azimuth),
       target[1] + distance * Math.cos(elevation) * Math.sin(azimuth), target[2] + distance * Math.sin(elevation));
     camera.lookAt(...target);
     camera.aspect = this.panel.width / this.panel.height;
-    camera.near = Math.max(distance - 8 * r, distance / 200);
+    camera.near = Math.max(distance - 8 * r, distance / 40);  // nearer ends would leave too few depths between layers of cloth
     camera.far = distance + 12 * r;
     camera.updateProjectionMatrix();
     this.renderer.setClearColor(getComputedStyle(this.canvas.parentElement).backgroundColor);

@@ -1,0 +1,55 @@
+#include "core/app/cli/figures_command.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include "core/app/cli/help.h"
+#include "core/app/report/run_collection.h"
+
+namespace drape {
+
+namespace {
+
+constexpr const char* program = R"(import sys
+try:
+    import matplotlib
+    import drape.figures as figures
+except ImportError as error:
+    print(f'error: figures are made by the Python module of drape and matplotlib, which {sys.executable} lacks '
+          f'({error}); build it with make python, or name its folder in PYTHONPATH', file=sys.stderr)
+    sys.exit(2)
+sys.exit(figures.main())
+)";
+
+}  // namespace
+
+FiguresCommand::FiguresCommand(CLI::App& app)
+    : command_(app.add_subcommand("figures",
+                                  "write a paper's figures of a run or a sweep: SVG, PNG, CSV and LaTeX")) {
+  show_example(*command_, "drape figures results/sphere -o figures");
+  command_->add_option("folder", folder_, "results folder, or a sweep's")->required();
+  command_->add_option("-o,--out", out_, "folder of the figures, which is made")
+      ->type_name("DIR")
+      ->required();
+}
+
+int FiguresCommand::run() const {
+  namespace fs = std::filesystem;
+  require_run_or_sweep(folder_);
+  const fs::path command = fs::read_symlink("/proc/self/exe");
+  // In the build tree the package lies beside bin/, once installed where Python looks for it.
+  if (const fs::path built = command.parent_path().parent_path() / "python"; fs::exists(built / "drape")) {
+    const char* path = std::getenv("PYTHONPATH");
+    setenv("PYTHONPATH", (built.string() + (path && *path ? std::string(":") + path : "")).c_str(), 1);
+  }
+  setenv("DRAPE_COMMAND", command.c_str(), 1);
+  const char* python = std::getenv("DRAPE_PYTHON");
+  python = python && *python ? python : "/usr/bin/python3";  // for which `make python` builds the module
+  execl(python, python, "-c", program, folder_.c_str(), "--out", out_.c_str(), nullptr);
+  throw std::runtime_error(std::string(python) + ": cannot be started; name a Python in DRAPE_PYTHON");
+}
+
+}  // namespace drape

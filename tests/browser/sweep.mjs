@@ -1,0 +1,107 @@
+// The page of a sweep of 24 runs, and of several runs, in a real browser.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {before} from 'node:test';
+import {pathToFileURL} from 'node:url';
+import {contactConfig, downloaded, drawnShare, faultsOf, guarded, newPage, onFirstScreen, run, scratch, screens, source, test, until} from './support.mjs';
+
+const folder = scratch();
+
+before(() => guarded('the sweep that is reported', async () => {
+  await run(folder, 'sweep', path.join(source, 'tests/sweep/small_sweep.yaml'), '-o', 'sweep');
+  await run(folder, 'report', 'sweep');
+}));
+
+async function open(name, options = {}) {
+  const page = await newPage({viewport: {width: 1200, height: 800}, ...options}), errors = [];
+  page.on('console', message => { if (['error', 'warning'].includes(message.type())) errors.push(message.text()); });
+  page.on('pageerror', error => errors.push(String(error)));
+  const session = await page.context().newCDPSession(page);
+  await session.send('Performance.enable', {timeDomain: 'threadTicks'});
+  await page.goto(pathToFileURL(path.join(folder, name)).href);
+  /// What the page's thread has worked since it was opened [s].
+  const work = async () => (await session.send('Performance.getMetrics')).metrics.find(metric => metric.name === 'TaskDuration').value;
+  return {page, errors, work};
+}
+
+test('24 runs fit one screen of thumbnails, and nothing scrolls sideways', async () => {
+  assert.ok(fs.statSync(path.join(folder, 'sweep/report.html')).size < 8e6);
+  for (const screen of screens) {
+    const {page, errors, work} = await open('sweep/report.html', screen);
+    assert.equal(await page.locator('.tile img').count(), 24);
+    assert.ok(await work() < 2, `${await work()} s`);
+    assert.ok(await onFirstScreen(page, '#matrix'), `at ${screen.viewport.width}`);
+    assert.ok(await drawnShare(page, '#matrix') > .1);
+    assert.equal(await page.locator('#counts').textContent(), '24 runs of 8 variations: 24 converged.');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+    await until('the plots are drawn', () => page.evaluate(() => document.querySelectorAll('.plot svg').length === 2));
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+    assert.deepEqual(await faultsOf(page), []);
+    assert.deepEqual(errors, []);
+    await page.context().close();
+  }
+});
+
+test('a value is shown against a parameter: medians, with ranges over starts', async () => {
+  const {page, errors} = await open('sweep/report.html');
+  await page.locator('#quantity').selectOption('iterations');
+  await page.locator('#parameter-key').selectOption('levels');
+  assert.match(await page.locator('#parameter svg').getAttribute('aria-label'), /^Newton iterations against levels: pcs, refiner loop/);
+  const rows = JSON.parse((await downloaded(page, '#parameter button:text-is("JSON")')).bytes);
+  assert.equal(rows.length, 16);  // two methods, eight variations
+  const results = seed => JSON.parse(fs.readFileSync(path.join(folder, `sweep/runs/refiner=loop,levels=1,step_growth=1.5/seed_${seed}/results.json`)));
+  const iterations = [1, 2, 3].map(seed => results(seed).methods.pcs.levels[0].iterations).sort((a, b) => a - b);
+  const row = rows.find(each => each.series === 'pcs, refiner loop, step_growth 1.5' && each.levels === 1);
+  assert.deepEqual([row.low, row.iterations, row.high, row.runs], [...iterations, 3]);
+  assert.match(await page.locator('.tile .value').first().textContent(), new RegExp(`^(${iterations.join('|')})$`));
+  assert.deepEqual(errors, []);
+});
+
+test('distance against time is the median over starts at equal cost, between the lowest and the highest', async () => {
+  const {page, errors} = await open('sweep/report.html');
+  await page.evaluate(() => document.querySelectorAll('details').forEach(part => { part.open = true; }));
+  await page.locator('#error-cost').selectOption('iterations');
+  const rows = JSON.parse((await downloaded(page, '#errors button:text-is("JSON")')).bytes);
+  const name = 'refiner=loop,levels=2,step_growth=1.5', curve = rows.filter(row => row.series === name + ', pcs');
+  assert.equal(curve.length, 40);
+  curve.forEach((point, k) => {
+    assert.equal(point.runs, 3);
+    assert.ok(point.low <= point.reference_rms && point.reference_rms <= point.high);
+    assert.ok(k === 0 || point.iterations > curve[k - 1].iterations);
+  });
+  // It ends where the last of the three starts does.
+  const ends = [1, 2, 3].map(seed => fs.readFileSync(path.join(folder, `sweep/runs/${name}/seed_${seed}/errors.csv`), 'utf8').split('\n')
+    .filter(line => line.startsWith('pcs,')).map(line => Number(line.split(',')[4])).pop());
+  assert.equal(curve.at(-1).iterations, Math.max(...ends));
+  assert.deepEqual(errors, []);
+});
+
+test('the table sorts and filters, by medians or by run, and compares within one physics only', async () => {
+  const {page, errors} = await open('sweep/report.html');
+  assert.equal(await page.locator('#table tbody tr').count(), 16);
+  await page.locator('#medians').uncheck();
+  assert.equal(await page.locator('#table tbody tr').count(), 48);
+  await page.locator('#table input[type="search"]').fill('midpoint newton');
+  assert.equal(await page.locator('#table tbody tr').count(), 12);
+  const seconds = async () => (await page.locator('#table td[data-name="time [s]"]').allTextContents()).map(Number);
+  await page.locator('#table [data-column="seconds"] button').click();
+  const sorted = await seconds();
+  assert.deepEqual(sorted, [...sorted].sort((a, b) => a - b));
+  await page.locator('#table [data-column="seconds"] button').click();
+  assert.deepEqual(await seconds(), [...sorted].reverse());
+  const rows = JSON.parse((await downloaded(page, '#table button:text-is("JSON")')).bytes);
+  assert.deepEqual(rows.map(row => row.method), Array(12).fill('newton'));
+  assert.ok(rows.every(row => row.refiner === 'midpoint' && Number.isInteger(row.seed) && Number.isInteger(row.levels)));
+  assert.deepEqual(errors, []);
+
+  // Of two runs with other energies neither is the best.
+  const quick = [contactConfig, '--quiet', '--no-report', '--threads', '1', '--set', 'snapshots=0', '--set', 'newton.force_tolerance=0.1'];
+  await run(folder, 'run', ...quick, '-o', 'soft', '--set', 'material.bending_modulus=1e4');
+  await run(folder, 'run', ...quick, '-o', 'stiff', '--set', 'material.bending_modulus=1e6');
+  await run(folder, 'report', 'soft', 'stiff', '-o', 'two.html');
+  const two = await open('two.html');
+  assert.equal(await two.page.locator('#table tbody tr').count(), 2);
+  assert.equal(await two.page.locator('#table strong').count(), 0);
+  assert.deepEqual(two.errors, []);
+});

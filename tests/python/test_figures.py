@@ -1,0 +1,62 @@
+"""`drape figures`: what it writes of a run and of a sweep."""
+
+import csv
+import pathlib
+import subprocess
+
+import pytest
+
+pytest.importorskip("matplotlib")
+
+SWEEP = """name: two
+base: {base}
+seeds: [1, 2]
+methods: [pcs, newton]
+ablation:
+  grid:
+    newton.step_growth: [1.5, 3]
+"""
+
+
+@pytest.fixture
+def written(tmp_path, command):
+    """What the command writes of a folder of results, by name."""
+
+    def write(results) -> dict:
+        out = tmp_path / "figures"
+        subprocess.run([command, "figures", results, "-o", out], check=True)
+        return {file.name: file for file in out.iterdir()}
+
+    return write
+
+
+def test_figures_of_a_run(written, command, small_file, tmp_path):
+    subprocess.run([command, "run", small_file, "--method", "all", "-o", tmp_path / "run", "--no-report", "-q"], check=True)
+    files = written(tmp_path / "run")
+    for method in ("pcs", "cascadic", "newton"):
+        for picture in ("preview", "end", "outline"):
+            assert files[f"{method}_{picture}.png"].read_bytes()[1:4] == b"PNG"
+    for plot in ("convergence", "distance_own", "distance_reference"):
+        assert {plot + ".svg", plot + ".png"} <= set(files)
+    assert "<text" in files["distance_own.svg"].read_text()
+    assert (tmp_path / "run/errors.csv").read_bytes() == files["errors.csv"].read_bytes()
+    table = files["table.tex"].read_text()
+    assert table.startswith(r"\begin{tabular}{l") and r"\toprule" in table
+    assert "pcs & 1 of 1 & " in table
+
+
+def test_figures_of_a_sweep(written, command, small_file, tmp_path):
+    (tmp_path / "two.yaml").write_text(SWEEP.format(base=pathlib.Path(small_file).resolve()))
+    subprocess.run([command, "sweep", tmp_path / "two.yaml", "-o", tmp_path / "sweep"], check=True, stdout=subprocess.DEVNULL)
+    files = written(tmp_path / "sweep")
+    assert {"seconds_by_step_growth.svg", "preview_rms_by_step_growth.png"} <= set(files)
+    with files["table.csv"].open(newline="") as lines:
+        rows = list(csv.DictReader(lines))
+    assert len(rows) == 8 and {row["newton.step_growth"] for row in rows} == {"1.5", "3"}
+    assert r"step\_growth & method & converged" in files["table.tex"].read_text()
+    assert r"1.5 & pcs & 2 of 2 & " in files["table.tex"].read_text()
+
+
+def test_a_folder_without_results_has_no_figures(command, tmp_path):
+    ended = subprocess.run([command, "figures", tmp_path, "-o", tmp_path / "figures"], capture_output=True, text=True)
+    assert ended.returncode == 2 and "neither results.json nor sweep.json here" in ended.stderr

@@ -1,0 +1,187 @@
+/// Plots as SVG: lines with marks, bands and ranges on linear or logarithmic axes.
+import {h, known, number, saving, unique} from './text.js';
+
+const space = 'http://www.w3.org/2000/svg';
+function s(tag, attributes = {}, ...children) {
+  const element = document.createElementNS(space, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+/// The look of a method, the same on every page and in Python: colour and mark are its solver's, dashes tell methods of one
+/// solver apart. `styles` has the index of every method's solver.
+const marks = ['circle', 'square', 'triangle', 'diamond'], dashes = ['', '9 5', '2 3', '12 4 2 4'];
+export function methodLook(styles, method) {
+  const style = styles[method] ?? 3, alike = Object.keys(styles).filter(name => styles[name] === style);
+  return {colour: `var(--solver-${style})`, mark: marks[style], dash: dashes[Math.max(alike.indexOf(method), 0) % dashes.length]};
+}
+/// The look of the k-th of several things that are no methods.
+export const otherLook = k => ({colour: `var(--other-${k % 8})`, mark: marks[(k >> 3) % 4], dash: dashes[(k >> 3) % 4]});
+
+function markPath(mark, x, y, r) {
+  if (mark === 'square') return `M${x - r} ${y - r}h${2 * r}v${2 * r}h${-2 * r}z`;
+  if (mark === 'triangle') return `M${x} ${y - 1.2 * r}l${1.2 * r} ${2.1 * r}h${-2.4 * r}z`;
+  if (mark === 'diamond') return `M${x} ${y - 1.4 * r}l${1.4 * r} ${1.4 * r}l${-1.4 * r} ${1.4 * r}l${-1.4 * r} ${-1.4 * r}z`;
+  return `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0`;
+}
+
+/// {place: value → 0 … 1, ticks: [value, text]}.
+function scale(values, logarithmic, categories, most) {
+  if (categories) return {place: v => (categories.indexOf(v) + .5) / categories.length, ticks: categories.map(c => [c, String(c)])};
+  let low = Math.min(...values), high = Math.max(...values);
+  if (logarithmic) {
+    [low, high] = [Math.log10(low), Math.log10(high)];
+    const margin = Math.max(.04 * (high - low), .02);
+    [low, high] = [low - margin, high + margin];
+    const every = Math.max(1, Math.ceil((high - low) / most)), ticks = [];
+    for (let p = Math.floor(low); p <= high; ++p)
+      for (const m of high - low < 2 ? [1, 2, 5] : [1]) {
+        const t = p + Math.log10(m);
+        if (t >= low && t <= high && p % every === 0) ticks.push([m * 10 ** p, Math.abs(p) < 3 ? String(Number((m * 10 ** p).toPrecision(2))) : m + 'e' + p]);
+      }
+    return {place: v => (Math.log10(v) - low) / (high - low), ticks};
+  }
+  if (low > 0 && low < .5 * high) low = 0;
+  if (low === high) [low, high] = [low - .5, high + .5];
+  const raw = (high - low) / most, unit = 10 ** Math.floor(Math.log10(raw)), step = [1, 2, 5, 10].map(m => m * unit).find(u => u >= raw);
+  const margin = .03 * (high - low), from = low === 0 ? 0 : low - margin, to = high + margin, ticks = [];
+  for (let t = Math.ceil(from / step) * step; t <= to; t += step) ticks.push([t, String(Number(t.toPrecision(6)))]);
+  return {place: v => (v - from) / (to - from), ticks};
+}
+
+/// A plot that follows its width: draw({x, y, series}) shows other lines. An axis is {title, name, log, categories}; a series
+/// {label, colour, mark, dash, width, points: [{x, y, low, high, end, …}], band}. Points that an axis cannot show are left out.
+export class Chart {
+  constructor(name, caption, height = 360) {
+    Object.assign(this, {name, caption, height, hidden: new Set(), width: 0});
+    this.box = h('div', {class: 'plot'});
+    this.element = h('figure', {class: 'chart', id: name}, h('figcaption', {}, caption), this.box,
+      saving(name, 'the plot ' + name, () => this.rows(), {SVG: () => new Blob([this.text()], {type: 'image/svg+xml'})}));
+    new ResizeObserver(() => { if (this.box.clientWidth !== this.width) this.render(); }).observe(this.box);
+  }
+
+  draw(plot) {
+    const fits = (axis, v) => axis.categories ? true : known(v) && (!axis.log || v > 0);
+    const series = plot.series.map(line => ({...line, points: line.points.filter(p => fits(plot.x, p.x) && fits(plot.y, p.y))}));
+    this.plot = {...plot, series: series.filter(line => line.points.length)};
+    this.render();
+  }
+
+  rows() {
+    const {x, y, series} = this.plot;
+    return series.flatMap(line => line.points.map(({x: a, y: b, end, ...more}) => ({series: line.label, [x.name]: a, [y.name]: b, ...more})));
+  }
+
+  /// The plot as a file: colours are those on paper.
+  text() {
+    const root = document.documentElement;
+    root.dataset.theme = 'light';
+    const light = getComputedStyle(root), copy = this.box.firstChild.cloneNode(true);
+    copy.querySelectorAll('.hint').forEach(hint => hint.remove());
+    const text = new XMLSerializer().serializeToString(copy).replace(/var\((--[\w-]+)\)/g, (_, v) => light.getPropertyValue(v).trim());
+    delete root.dataset.theme;
+    return text;
+  }
+
+  render() {
+    this.width = this.box.clientWidth;
+    if (!this.plot || !this.width) return;
+    const {x, y, series} = this.plot;
+    this.element.querySelector('.saving').hidden = !series.length;
+    if (!series.length) return this.box.replaceChildren(h('p', {class: 'absent'}, this.plot.absent || 'Nothing was recorded for this plot.'));
+    const W = this.width, H = this.height, left = 62, right = W - 14, top = 10;
+    const legend = this.legend(series, left, right), bottom = H - 46 - legend.height;
+    const shown = series.filter(line => !this.hidden.has(line.label)), of = shown.length ? shown : series;
+    const points = of.flatMap(line => line.points), ends = p => [p.y, p.low, p.high].filter(v => known(v) && (!y.log || v > 0));
+    const sx = scale(points.map(p => p.x), x.log, x.categories, Math.max(2, Math.floor((right - left) / 80)));
+    const sy = scale(points.flatMap(ends), y.log, null, 6);
+    const px = v => left + sx.place(v) * (right - left), py = v => bottom - sy.place(v) * (bottom - top), r2 = v => Math.round(100 * v) / 100;
+    const svg = s('svg', {xmlns: space, width: W, height: H, viewBox: `0 0 ${W} ${H}`, role: 'group', 'font-family': 'system-ui, "DejaVu Sans", sans-serif',
+      'font-size': 12, 'aria-label': `${y.title} against ${x.title}: ${series.map(line => line.label).join(', ')}`});
+    const grid = s('g', {class: 'grid', stroke: 'var(--line)', fill: 'var(--soft)'});
+    const text = (at, value, anchor = 'middle', more = {}) => grid.append(s('text', {x: at[0], y: at[1], 'text-anchor': anchor, stroke: 'none', ...more}, value));
+    for (const [value, label] of sx.ticks) {
+      if (!x.categories) grid.append(s('line', {x1: r2(px(value)), x2: r2(px(value)), y1: top, y2: bottom}));
+      text([r2(px(value)), bottom + 16], label);
+    }
+    for (const [value, label] of sy.ticks) {
+      grid.append(s('line', {x1: left, x2: right, y1: r2(py(value)), y2: r2(py(value))}));
+      text([left - 6, r2(py(value)) + 4], label, 'end');
+    }
+    text([(left + right) / 2, bottom + 33], x.title);
+    text([0, 0], y.title, 'middle', {transform: `translate(13 ${(top + bottom) / 2}) rotate(-90)`});
+    svg.append(grid);
+    shown.forEach((line, k) => svg.append(this.line(line, k, p => [r2(px(p.x)), r2(py(p.y))], v => r2(py(v)), x)));
+    svg.append(legend.group(bottom + 55));
+    const hint = s('g', {class: 'hint', 'pointer-events': 'none'});
+    svg.append(hint);
+    svg.addEventListener('pointermove', event => this.hint(hint, event, shown, p => [px(p.x), py(p.y)], W));
+    svg.addEventListener('pointerleave', () => hint.replaceChildren());
+    this.box.replaceChildren(svg);
+  }
+
+  line({label, colour, mark, dash = '', width = 2, points, band}, k, at, py, x) {
+    const group = s('g', {class: `series series-${k}`, fill: 'none', stroke: colour, 'stroke-width': width});
+    const path = list => list.map(p => at(p).join(' ')).join('L');
+    group.append(s('title', {}, label));
+    if (band && points.length > 1)
+      group.append(s('path', {class: 'band', d: `M${points.map(p => `${at(p)[0]} ${py(p.high)}`).join('L')}L${
+        [...points].reverse().map(p => `${at(p)[0]} ${py(p.low)}`).join('L')}z`, fill: colour, 'fill-opacity': .15, stroke: 'none'}));
+    if (points.length > 1) group.append(s('path', {class: 'line', d: 'M' + path(points), 'stroke-dasharray': dash}));
+    for (const p of points) {
+      if (!band && known(p.low) && p.low < p.high) group.append(s('path', {class: 'range', d: `M${at(p)[0]} ${py(p.low)}V${py(p.high)}`, 'stroke-width': 1.2}));
+      if (mark) group.append(s('path', {class: 'mark', d: markPath(mark, ...at(p), p.end === undefined ? 3 : p.end ? 4.5 : 2), fill: colour, stroke: 'none'}));
+    }
+    return group;
+  }
+
+  /// Names in rows below the plot; a click, Enter or Space hides or shows a line.
+  legend(series, left, right) {
+    let x = left, row = 0;
+    const items = unique(series.map(line => line.label)).map(label => {
+      const line = series.find(one => one.label === label), width = 46 + 7.6 * label.length;
+      if (x > left && x + width > right) x = left, ++row;
+      const item = {label, line, x, row};
+      x += width;
+      return item;
+    });
+    const toggle = label => () => { this.hidden[this.hidden.has(label) ? 'delete' : 'add'](label); this.render(); };
+    const group = top => s('g', {class: 'legend', fill: 'var(--ink)'}, ...items.map(({label, line, x: at, row: r}) => {
+      const y = top + 18 * r, g = s('g', {role: 'button', tabindex: 0, 'aria-pressed': !this.hidden.has(label), opacity: this.hidden.has(label) ? .4 : 1});
+      g.append(s('rect', {x: at, y: y - 11, width: 38 + 7.6 * label.length, height: 17, fill: 'transparent'}),
+        s('path', {d: `M${at} ${y - 3}h28`, stroke: line.colour, 'stroke-width': 2, 'stroke-dasharray': line.dash || ''}));
+      if (line.mark) g.append(s('path', {d: markPath(line.mark, at + 14, y - 3, 3.5), fill: line.colour}));
+      g.append(s('text', {x: at + 34, y: y + 1}, label));
+      g.addEventListener('click', toggle(label));
+      g.addEventListener('keydown', event => {
+        if (event.key !== 'Enter' && event.key !== ' ') return;
+        event.preventDefault();
+        toggle(label)();
+        [...this.box.querySelectorAll('.legend > g')].find(other => other.lastChild.textContent === label).focus();
+      });
+      return g;
+    }));
+    return {height: 18 * (row + 1), group};
+  }
+
+  /// The values of the point that is nearest to the pointer.
+  hint(group, event, shown, at, W) {
+    const box = group.ownerSVGElement.getBoundingClientRect(), x = event.clientX - box.left, y = event.clientY - box.top;
+    let best = null, least = 40;
+    for (const line of shown)
+      for (const p of line.points) {
+        const [a, b] = at(p), distance = Math.hypot(a - x, b - y);
+        if (distance < least) [best, least] = [{line, p, a, b}, distance];
+      }
+    group.replaceChildren();
+    if (!best) return;
+    const value = v => typeof v === 'number' ? number(v) : v, {p, a, b} = best;
+    const range = known(p.low) && p.low < p.high ? ` (${value(p.low)} … ${value(p.high)})` : '';
+    const text = `${best.line.label}${p.level === undefined ? '' : ', level ' + p.level}: ${value(p.x)}, ${value(p.y)}${range}`, wide = 7 * text.length + 12;
+    const left = Math.min(Math.max(a - wide / 2, 2), Math.max(W - wide - 2, 2)), above = b > 40 ? b - 32 : b + 12;
+    group.append(s('circle', {cx: a, cy: b, r: 6, fill: 'none', stroke: 'var(--ink)'}),
+      s('rect', {x: left, y: above, width: wide, height: 22, rx: 4, fill: 'var(--panel)', stroke: 'var(--line)'}),
+      s('text', {x: left + 6, y: above + 15, fill: 'var(--ink)'}, text));
+  }
+}

@@ -1,0 +1,31 @@
+/// The columns of `drape table`, as pages show them.
+import {formula} from './text.js';
+
+const titles = {
+  run: 'run', seed: 'seed', method: 'method', level: 'level', status: 'status', vertices: 'vertices', triangles: 'triangles', steps: 'steps',
+  iterations: 'Newton iterations', shortened_steps: 'shortened steps', seconds: 'time [s]', preview_seconds: 'preview after [s]', flops: 'flops',
+  energy_released: 'energy released [J]', smallest_gap: 'smallest gap [m]', intersections: 'intersections', force_residual: 'force residual',
+  decrement: 'decrement [m/s]', peak_memory_bytes: 'peak memory [B]', message: 'message', pass: 'passes',
+};
+const lower = ['iterations', 'seconds', 'preview_seconds', 'flops'];
+export const costs = {seconds: 'time [s]', iterations: 'Newton iterations', flops: 'flops of factorisations'};
+export const targets = {reference: 'the reference', own: 'the method’s own end'};
+
+/// All columns that the metrics of results.json declare, with their scope.
+export const metricColumns = (metrics, scope) => Object.values(metrics || {}).filter(metric => metric.scope === scope).flatMap(metric => metric.columns);
+export const withUnit = ({name, label, unit}) => (label || name) + (unit && unit !== '1' ? ` [${unit}]` : '');
+
+/// {title, text, better} of a column by its name. `text` is the title without marks, for plots and lists.
+export function describe(name, {measures = [], metrics = {}} = {}) {
+  const metric = ['state', 'pair'].flatMap(scope => metricColumns(metrics, scope)).find(column => column.name === name);
+  const measure = measures.find(m => name === 'preview_' + m.name || name === 'error_' + m.name || name === m.name && m.name === 'energy_gap');
+  const text = titles[name] || (measure ? (name.startsWith('preview_') ? 'preview error: ' : 'error: ') + measure.label : metric ? withUnit(metric) : name);
+  const better = lower.includes(name) || measure ? 'lower' : name === 'energy_released' ? 'higher' : metric && metric.better !== 'neither' ? metric.better : undefined;
+  return {text, better, title: titles[name] || (!measure && !metric) ? text : formula(text)};
+}
+
+/// Columns for a table; `few` are those that are shown at first.
+export const columnsOf = (names, few, of) => [...few.filter(name => names.includes(name)), ...names.filter(name => !few.includes(name))].map(name => ({name, ...describe(name, of), few: few.includes(name)}));
+
+/// The measure by which pages compare: the first that ranks.
+export const ranking = measures => (measures.find(measure => measure.use === 'ranking') || measures[0] || {name: 'energy_gap'}).name;

@@ -1,0 +1,68 @@
+/// Tables that sort and filter, with few columns at first.
+import {badge, h, number, saving, words} from './text.js';
+
+/// The value of a cell: a number, a word, or a spread over repeats.
+const value = cell => cell !== null && typeof cell === 'object' ? cell.median : cell;
+
+function content(column, cell) {
+  if (column.show) return column.show(cell);
+  if (column.name === 'status' && cell) return badge(cell);
+  if (cell !== null && typeof cell === 'object')
+    return [number(cell.median), number(cell.low) !== number(cell.high) ? h('span', {class: 'range'}, `${number(cell.low)} … ${number(cell.high)}`) : ''];
+  return words(cell);
+}
+
+/// A row's values for a file; a spread has three.
+const plain = (row, columns) => Object.fromEntries(columns.flatMap(({name}) => {
+  const cell = row[name];
+  return cell !== null && typeof cell === 'object'
+    ? [[name, cell.median], [name + '_lowest', cell.low], [name + '_highest', cell.high]] : [[name, cell ?? null]];
+}));
+
+/// A column is {name, title (text or nodes), few: whether it is among the first ones, better: 'lower' or 'higher', show};
+/// `rivals` gives the key of the rows among which the best value is bold. The name is the column's in files.
+export function dataTable(name, what, columns, rows, {rivals = () => '', filter = rows.length > 8} = {}) {
+  const filled = columns.filter(column => rows.some(row => row[column.name] !== null && row[column.name] !== undefined && row[column.name] !== ''));
+  const best = new Map();
+  for (const column of filled) {
+    if (!column.better) continue;
+    const groups = Map.groupBy ? Map.groupBy(rows, rivals) : rows.reduce((all, row) => all.set(rivals(row), [...(all.get(rivals(row)) || []), row]), new Map());
+    for (const group of groups.values()) {
+      const known = group.filter(row => typeof value(row[column.name]) === 'number' && row.comparable !== false);
+      const text = row => words(value(row[column.name]));
+      if (new Set(known.map(text)).size < 2) continue;  // equal as shown
+      // Where lower is better, what is nearer to zero is: a difference of energies may be negative.
+      const rank = row => column.better === 'higher' ? -value(row[column.name]) : Math.abs(value(row[column.name])), first = known.reduce((a, b) => rank(b) < rank(a) ? b : a);
+      known.filter(row => text(row) === text(first)).forEach(row => best.set(row, (best.get(row) || new Set()).add(column.name)));
+    }
+  }
+  const state = {sort: null, down: false, filter: '', all: false};
+  const table = h('table'), frame = h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'table: ' + what}, table);
+  const shownRows = () => {
+    const parts = state.filter.toLowerCase().split(/\s+/);
+    const found = rows.filter(row => parts.every(part => filled.some(({name: n}) => words(value(row[n])).toLowerCase().includes(part))));
+    if (!state.sort) return found;
+    const key = row => value(row[state.sort]) ?? '', order = (a, b) => typeof a === 'number' && typeof b === 'number' ? a - b
+      : typeof a === 'number' ? -1 : typeof b === 'number' ? 1 : String(a).localeCompare(String(b), 'en', {numeric: true});
+    return [...found].sort((a, b) => (state.down ? -1 : 1) * order(key(a), key(b)));
+  };
+  const draw = () => {
+    const shown = filled.filter(column => state.all || column.few), number = column => rows.some(row => typeof value(row[column.name]) === 'number');
+    table.replaceChildren(h('thead', {}, h('tr', {}, shown.map(column => h('th', {scope: 'col', class: number(column) ? '' : 'text', 'data-column': column.name,
+      'aria-sort': state.sort !== column.name ? 'none' : state.down ? 'descending' : 'ascending'},
+    h('button', {type: 'button', click: () => {
+      state.down = state.sort === column.name && !state.down;
+      state.sort = column.name;
+      draw();
+      table.querySelector(`[data-column="${CSS.escape(column.name)}"] button`).focus();
+    }}, column.title ?? column.name))))),
+    h('tbody', {}, shownRows().map(row => h('tr', {}, shown.map((column, k) => h(k ? 'td' : 'th', {scope: k ? null : 'row', class: number(column) ? '' : 'text',
+      'data-name': column.text ?? column.name}, best.get(row)?.has(column.name) ? h('strong', {}, content(column, row[column.name])) : content(column, row[column.name])))))));
+  };
+  draw();
+  const more = filled.some(column => !column.few);
+  return h('div', {class: 'table', id: name}, h('p', {class: 'controls'},
+    filter ? h('label', {}, 'Filter ', h('input', {type: 'search', size: 14, input: event => { state.filter = event.target.value; draw(); }})) : '',
+    more ? h('label', {}, h('input', {type: 'checkbox', change: event => { state.all = event.target.checked; draw(); }}), ' all columns') : ''),
+  frame, saving(name, 'the table ' + what, () => shownRows().map(row => plain(row, filled))));
+}

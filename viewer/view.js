@@ -1,0 +1,295 @@
+/// The 3D view and its controls: which states are shown, in which colours, in which panels.
+import {embedded, gradient, paint, positions, scalars, triangles} from './blocks.js';
+import {Scene} from './scene.js';
+import {choice, count, fold, h, save} from './text.js';
+
+export class View {
+  /// `load(name)` is a promise of a block's bytes. Of the methods `first` is shown, or all; with `beside` the panel of a state
+  /// has that of the method's end beside it.
+  constructor(view, {load = embedded, live = false, first = null, beside = false, picture = null} = {}) {
+    Object.assign(this, {load, live, beside, blocks: new Map(), stops: [], stop: -1, panels: [], obstacles: true,
+      hidden: new Set(first === null ? [] : view.methods.map(m => m.name).filter(name => name !== first)), fieldName: ''});
+    const button = (id, text, click) => h('button', {type: 'button', id, click}, text);
+    const tick = (id, text, on, change) => h('label', {}, h('input', {type: 'checkbox', id, checked: on, change: event => change(event.target.checked)}), ' ' + text);
+    const range = (id, label, input) => h('input', {type: 'range', id, 'aria-label': label, min: 0, max: 0, step: 1, value: 0, input: event => input(Number(event.target.value))});
+    this.canvas = h('canvas', {id: 'viewer-canvas', tabindex: 0, role: 'application', 'aria-describedby': 'viewer-keys',
+      'aria-label': 'The cloth in 3D, panels side by side, turned together'});
+    this.labels = h('div', {class: 'viewer-labels', id: 'viewer-labels'});
+    this.stage = h('div', {class: 'viewer-stage', id: 'viewer-stage'}, this.canvas, this.labels);
+    this.note = h('p', {class: 'note', id: 'viewer-note', role: 'status'});
+    this.level = range('viewer-level', 'Level', level => { this.play(false); this.showLevel(level); });
+    this.levelText = h('output', {id: 'viewer-level-text', for: 'viewer-level'});
+    this.scrubber = range('viewer-stop', 'Position in the progression', stop => { this.play(false); this.show(stop); });
+    this.playing = h('button', {type: 'button', id: 'viewer-play', 'aria-pressed': 'false', click: () => this.play(!this.plays)}, 'Play');
+    this.fields = h('span');
+    this.ticks = h('span', {class: 'controls', id: 'viewer-methods', role: 'group', 'aria-label': 'Methods shown'});
+    this.legend = h('p', {class: 'legend', id: 'viewer-legend', hidden: true});
+    this.rounding = h('span', {id: 'viewer-rounding'});
+    this.controls = h('div', {class: 'viewer-controls'},
+      h('p', {class: 'controls'}, this.playing, this.scrubber, h('label', {}, 'Level ', this.level, this.levelText)),
+      h('p', {class: 'controls'}, this.fields, this.ticks,
+        tick('viewer-beside', 'beside its end', beside, on => { this.beside = on; this.listPanels(); this.show(this.stop); }),
+        tick('viewer-obstacles', 'obstacles', true, on => { this.obstacles = on; this.show(this.stop); }),
+        tick('viewer-xray', 'x-ray', false, on => this.scene.setXray(on)),
+        button('viewer-reset', 'Reset', () => this.scene.resetView()), button('viewer-png', 'PNG', () => this.savePicture())),
+      this.legend,
+      fold('Keys and precision', h('p', {class: 'note', id: 'viewer-keys'}, 'All panels share a camera. Drag to turn, with Shift or two fingers to pan; the wheel zooms ' +
+        'once the view is clicked. Keys, with the view focused: arrows turn, Shift and arrows pan, + and − zoom, 0 resets, Page Up and Page Down change the level, ' +
+        'Space plays. '), h('p', {class: 'note'}, this.rounding)));
+    this.element = h('div', {class: 'viewer', id: 'viewer'}, this.stage, this.note, picture);
+    try {
+      this.scene = new Scene(this.canvas, this.labels);
+    } catch (error) {
+      this.stage.hidden = this.controls.hidden = true;
+      this.element.classList.add('flat');
+      this.note.textContent = 'This browser has no WebGL: there is no 3D view.';
+      return;
+    }
+    this.listen();
+    this.update(view);
+  }
+
+  /// Takes a document, also while it grows; a view of the newest state follows. Resolves once it is shown.
+  update(view) {
+    const following = this.stop === this.stops.length - 1 && this.live;
+    this.data = view;
+    const levels = view.methods.flatMap(method => method.levels);
+    this.stops = [];
+    for (let level = 0; level <= Math.max(-1, ...levels.map(l => l.level)); ++level) {
+      const most = Math.max(0, ...levels.filter(l => l.level === level).map(l => l.states.length));
+      for (let k = 0; k < most; ++k) this.stops.push({level, share: most > 1 ? k / (most - 1) : 1, last: k === most - 1});
+    }
+    if (this.live) this.forget();
+    this.listFields();
+    this.listMethods();
+    this.rounding.textContent = view.rounding > 0
+      ? `Positions are rounded to ${Number((view.rounding * 1e6).toPrecision(2))} µm here; the files in levels/ are exact.` : '';
+    if (!this.stops.length) return null;
+    // The preview at first, beside the end; without that the end.
+    const begin = this.beside && this.stops.some(s => s.level > this.stops[0].level) ? this.stops.findIndex(s => s.last) : this.stops.length - 1;
+    return this.show(this.stop < 0 || following ? begin : this.stop);
+  }
+
+  /// Drops the blocks of states that newer ones have replaced.
+  forget() {
+    const states = this.data.methods.flatMap(m => m.levels).flatMap(l => l.states);
+    const named = new Set(states.flatMap(state => [state.x, ...Object.values(state.fields), ...Object.values(state.obstacles || {})]));
+    for (const key of this.blocks.keys()) {
+      const [kind, name] = key.split(' ');
+      if ((kind === 'x' && name[0] === 'm' || kind === 'scalars') && !named.has(name)) this.blocks.delete(key);
+    }
+  }
+
+  field() { return this.data.fields.find(field => field.name === this.fieldName); }
+  listFields() {
+    const names = JSON.stringify(this.data.fields.map(f => f.name));
+    if (this.fields.dataset.names !== names) {
+      this.fields.dataset.names = names;
+      this.fieldName = this.field() ? this.fieldName : '';
+      this.fields.replaceChildren(choice('Colour', {'': 'cloth', ...Object.fromEntries(this.data.fields.map(f => [f.name, f.label]))}, this.fieldName,
+        name => { this.fieldName = name; this.listFields(); this.show(this.stop); }, 'viewer-field'));
+    }
+    const field = this.field(), text = v => String(Number(v.toPrecision(3))).replace('-', '−');
+    this.legend.hidden = !field;
+    if (!field) return;
+    const bar = h('i');
+    bar.style.background = gradient(field.map);
+    this.legend.replaceChildren(text(field.low), bar, text(field.high) + (field.unit === '1' ? '' : ' ' + field.unit), h('span', {}, field.note));
+  }
+
+  listMethods() {
+    const names = this.data.methods.map(method => method.name);
+    // While a run goes on, methods that it has not reached have no panel.
+    const known = JSON.stringify([names, this.live && this.data.methods.map(method => method.levels.length > 0)]);
+    if (this.ticks.dataset.names === known) return;
+    this.ticks.dataset.names = known;
+    this.ticks.replaceChildren(...(names.length < 2 ? [] : names).map(name => h('label', {}, h('input', {type: 'checkbox', checked: !this.hidden.has(name),
+      change: event => {
+        this.hidden[event.target.checked ? 'delete' : 'add'](name);
+        this.listPanels();
+        this.show(this.stop);
+      }}), ' ' + name)));
+    this.listPanels();
+  }
+
+  listPanels() {
+    this.shown = this.data.methods.filter(m => !this.hidden.has(m.name) && !(this.live && !m.levels.length)).flatMap(m =>
+      this.beside && m.levels.length + (m.levels[0]?.states.length || 0) > 2 ? [{name: m.name}, {name: m.name, end: true}] : [{name: m.name}]);
+    this.labels.replaceChildren(...this.shown.map(() => h('div')));
+    this.scene.setViews(this.shown.length);
+    this.panels = [];
+  }
+
+  /// A block, decoded once.
+  block(kind, name, decode) {
+    const key = kind + ' ' + name;
+    if (!this.blocks.has(key)) {
+      const promise = this.load(name).then(decode);
+      promise.catch(() => this.blocks.delete(key));
+      this.blocks.set(key, promise);
+    }
+    return this.blocks.get(key);
+  }
+  index(entry) {
+    return this.block('index', entry.block, bytes => new THREE.BufferAttribute(triangles(bytes, entry.triangles), 1));
+  }
+
+  /// The state of a method at a stop: of that level, or of the last one that it reached.
+  stateAt(method, stop) {
+    const level = method.levels.filter(l => l.level <= stop.level && l.states.length).pop();
+    if (!level) return null;
+    const share = level.level === stop.level ? stop.share : 1;
+    return {level, state: level.states[Math.round(share * (level.states.length - 1))]};
+  }
+
+  async panel({name, end}, stop, field) {
+    const method = this.data.methods.find(m => m.name === name);
+    const found = this.stateAt(method, end ? this.stops[this.stops.length - 1] : stop);
+    if (!found) return {method, end, shape: null, obstacles: await this.obstaclesOf({})};
+    const entry = this.data.levels[found.level.level], block = field && found.state.fields[field.name];
+    const [obstacles, index, x, tints] = await Promise.all([this.obstaclesOf(found.state), this.index(entry),
+      this.block('x', found.state.x, bytes => positions(bytes, entry.vertices)),
+      block ? this.block('scalars', block, scalars).then(values => paint(values, field)) : null]);
+    return {method, end, found, shape: {index, x, tints}, obstacles};
+  }
+
+  /// Shows a stop once its data are loaded; a later call supersedes it.
+  async show(to) {
+    this.stop = Math.min(Math.max(to, 0), this.stops.length - 1);
+    const stop = this.stops[this.stop], ticket = this.ticket = {};
+    this.level.max = Math.max(...this.stops.map(each => each.level));
+    this.level.value = stop.level;
+    this.scrubber.max = this.stops.length - 1;
+    this.scrubber.value = this.stop;
+    this.levelText.textContent = `${stop.level}, ${count(this.data.levels[stop.level].vertices)} vertices`;
+    let panels;
+    try {
+      panels = await Promise.all(this.shown.map(panel => this.panel(panel, stop, this.field())));
+    } catch (error) {
+      if (this.ticket === ticket && !this.live) this.note.textContent = 'A state could not be read: ' + error.message;
+      return;
+    }
+    if (this.ticket !== ticket) return;
+    if (!this.aimed) this.aim(panels);
+    panels.forEach((panel, k) => {
+      this.scene.setCloth(k, panel.shape);
+      this.scene.setObstacles(k, this.obstacles ? panel.obstacles : []);
+      this.label(this.labels.children[k], panel);
+    });
+    this.scrubber.setAttribute('aria-valuetext', `level ${stop.level}, ${Math.round(100 * stop.share)} % of it`);
+    this.panels = panels;
+    this.scene.draw();
+  }
+
+  /// The obstacles where a state has them; a state names those that have moved.
+  obstaclesOf(state) {
+    return Promise.all(this.data.obstacles.map(async (o, k) => {
+      const name = state.obstacles && state.obstacles[k] || o.x;
+      const [index, x] = await Promise.all([this.index(o), this.block('x', name, b => positions(b, o.vertices))]);
+      return {index, x};
+    }));
+  }
+
+  /// Points the camera at the cloth's bounding box.
+  aim(panels) {
+    const shapes = panels.filter(panel => panel.shape).map(panel => panel.shape.x), lower = [Infinity, Infinity, Infinity], upper = lower.map(v => -v);
+    for (const x of shapes)
+      x.forEach((v, i) => { lower[i % 3] = Math.min(lower[i % 3], v); upper[i % 3] = Math.max(upper[i % 3], v); });
+    if (!(upper[0] >= lower[0])) return;
+    const centre = lower.map((v, k) => (v + upper[k]) / 2);
+    let radius = 0;
+    for (const x of shapes)
+      for (let i = 0; i < x.length; i += 3) radius = Math.max(radius, Math.hypot(x[i] - centre[0], x[i + 1] - centre[1], x[i + 2] - centre[2]));
+    this.scene.lookAt(centre, radius || 1);
+    this.aimed = true;
+  }
+
+  label(box, {method, end, found}) {
+    const {iteration = null, seconds = null, total = null} = found ? found.state : {}, running = found && found.level.status === 'running';
+    const text = !found ? 'not reached yet' : [`level ${found.level.level}` + (running ? ', running' : ''),
+      ...(total !== null ? [`after ${total.toPrecision(2)} s`] : [iteration === null ? null : `${iteration} iterations`, seconds === null ? null : `${seconds.toPrecision(3)} s`])]
+      .filter(part => part).join(', ');
+    box.replaceChildren(h('b', {}, method.name + (end ? ', end' : '')), h('span', {}, text));
+  }
+
+  play(on) {
+    clearTimeout(this.timer);
+    this.plays = on;
+    this.playing.textContent = on ? 'Pause' : 'Play';
+    this.playing.setAttribute('aria-pressed', String(on));
+    if (!on) return;
+    const step = async stop => {
+      await this.show(stop);
+      if (!this.plays) return;
+      if (stop + 1 >= this.stops.length) return this.play(false);
+      this.timer = setTimeout(() => step(stop + 1), this.stops[stop].last ? 900 : 140);
+    };
+    step(this.stop + 1 < this.stops.length ? this.stop + 1 : 0);
+  }
+
+  changeLevel(by) {
+    const level = (this.stops.length ? this.stops[this.stop].level : 0) + by;
+    if (this.stops.some(stop => stop.level === level)) this.showLevel(level);
+  }
+  showLevel(level) { this.show(this.stops.findIndex(stop => stop.level === level && stop.last)); }
+  async savePicture() { save((this.data.title || 'cloth') + '.png', await this.scene.picture()); }
+
+  /// Keys, wheel and pointers on the view.
+  listen() {
+    const {canvas, scene} = this;
+    matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => scene.draw());
+    canvas.addEventListener('keydown', event => {
+      const way = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]}[event.key];
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      if (way && event.shiftKey) scene.move(.05 * way[0], .05 * way[1]);
+      else if (way) scene.turn(.1 * way[0], .1 * way[1]);
+      else if (event.key === '+' || event.key === '=') scene.zoom(1 / 1.15);
+      else if (event.key === '-') scene.zoom(1.15);
+      else if (event.key === '0' || event.key === 'Home') scene.resetView();
+      else if (event.key === 'PageUp') this.changeLevel(1);
+      else if (event.key === 'PageDown') this.changeLevel(-1);
+      else if (event.key === ' ') this.play(!this.plays);
+      else return;
+      event.preventDefault();
+    });
+    canvas.addEventListener('wheel', event => {
+      if (document.activeElement !== canvas && !event.ctrlKey) return;  // the page scrolls
+      event.preventDefault();
+      scene.zoom(Math.exp(event.deltaY * (event.deltaMode ? .05 : .0015)));
+    }, {passive: false});
+
+    // One pointer turns, or pans with Shift or another button; two pan and zoom.
+    const down = new Map();
+    const middle = () => [...down.values()].reduce((m, p) => [m[0] + p[0] / down.size, m[1] + p[1] / down.size], [0, 0]);
+    const apart = () => { const [a, b] = [...down.values()]; return Math.hypot(a[0] - b[0], a[1] - b[1]); };
+    canvas.addEventListener('contextmenu', event => event.preventDefault());
+    canvas.addEventListener('pointerdown', event => {
+      canvas.setPointerCapture(event.pointerId);
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+    });
+    for (const end of ['pointerup', 'pointercancel']) canvas.addEventListener(end, event => down.delete(event.pointerId));
+    canvas.addEventListener('pointermove', event => {
+      if (!down.has(event.pointerId)) return;
+      const before = middle(), distance = down.size === 2 && apart();
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      const after = middle(), right = after[0] - before[0], up = before[1] - after[1], height = scene.panel.height;
+      if (down.size > 1 || event.shiftKey || event.buttons > 1) scene.move(right / height, up / height);
+      else scene.turn(right * 3 / height, -up * 3 / height);
+      if (distance) scene.zoom(distance / Math.max(apart(), 1));
+    });
+  }
+
+  /// What is shown, for tests and scripts.
+  state() {
+    const stop = this.stops[this.stop], sum = values => values.reduce((a, b) => a + b, 0);
+    return {
+      level: stop ? stop.level : -1, stop: this.stop, stops: this.stops.length, playing: !!this.plays,
+      field: this.fieldName, renders: this.scene ? this.scene.renders : 0, webgl: !!this.scene,
+      camera: this.scene && {...this.scene.view},
+      panels: this.panels.map(({method, end, found, shape, obstacles}) => ({method: method.name, end: !!end, level: found ? found.level.level : -1,
+        vertices: shape ? shape.x.length / 3 : 0, triangles: shape ? shape.index.count / 3 : 0,
+        sum: shape ? shape.x.reduce((a, b) => a + Math.abs(b), 0) : 0, tints: shape && shape.tints ? sum(shape.tints) : null,
+        obstacles: obstacles.map(({x}) => sum(x))})),
+    };
+  }
+}
