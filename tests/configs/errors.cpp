@@ -5,7 +5,6 @@
 #include <catch2/catch.hpp>
 
 #include "core/app/files/snapshot_file.h"
-#include "core/app/run/reference.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh_files/io.h"
 #include "tests/support/command.h"

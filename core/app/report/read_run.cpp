@@ -32,6 +32,13 @@ std::vector<std::string> texts(const Json& json) {
   return all;
 }
 
+NamedNumbers named_numbers(const Json& json) {
+  NamedNumbers numbers;
+  if (!json.is_object()) return numbers;
+  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
+  return numbers;
+}
+
 using Metrics = std::vector<DeclaredMetric>;
 
 Values metric_values(const Json& json, const Metrics& metrics, MetricScope scope) {
@@ -50,6 +57,8 @@ LevelRecord level_record(const JsonFile& file, const Metrics& metrics, const Jso
     r.*quantity.member = number(member_of(json, quantity.name));
   r.from_initial_state =
       member_of(json, "from_initial_state").is_boolean() && member_of(json, "from_initial_state").get<bool>();
+  r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
+  r.energy_parts = named_numbers(member_of(json, "energy_parts"));
   r.metrics = metric_values(json, metrics, MetricScope::state);
   r.mesh = text_member(json, "mesh");
   return r;
@@ -71,6 +80,8 @@ MethodRecord method_record(const JsonFile& file, const Metrics& metrics, const s
   method.name = name;
   method.status = text_member(json, "status");
   method.solver = text_member(json, "solver");
+  method.seconds = number(member_of(json, "seconds"));
+  method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
   const Json& levels = member_of(json, "levels");
   const Json& pairs = member_of(json, "consistency");
   if (levels.is_array()) {

@@ -16,6 +16,9 @@
 
 namespace drape {
 
+/// Numbers by name, in file order.
+using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
+
 /// The known values of metrics or errors, by name.
 struct Values : std::map<std::string, double> {
   OptionalNumber of(const std::string& name) const {
@@ -36,6 +39,7 @@ struct LevelRecord {
   OptionalNumber energy, energy_on_finest;  ///< from the potentials' origin [J]
   OptionalNumber energy_released;           ///< of the finest level, since the scene's start [J]
   OptionalNumber decrement, force_residual, intersections, smallest_gap;
+  NamedNumbers seconds_by_phase, energy_parts;
   Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
 };
@@ -75,7 +79,8 @@ struct ConsistencyRecord {
 
 struct MethodRecord {
   std::string name, status;
-  std::string solver;               ///< its type: a method is named in the experiment
+  std::string solver;  ///< its type: a method is named in the experiment
+  OptionalNumber seconds, peak_memory_bytes;
   OptionalNumber step_size;         ///< h of the first implicit step, and of the static form's decrement [s]
   std::vector<LevelRecord> levels;  ///< coarse to fine
   std::vector<ConsistencyRecord> consistency;
