@@ -54,8 +54,8 @@ TEST_CASE("help shows a command's options and an example; developers' commands a
   CHECK(all.find(heading) < all.find("\n  reference "));
   CHECK(all.find("\n  reference ") != std::string::npos);
   for (const std::string command :
-       {"new", "check", "check-energy", "run", "view", "export", "figures", "report", "compare", "table", "sweep",
-        "list", "describe", "schema", "help", "reference"}) {
+       {"new", "check", "check-energy", "run", "view", "export", "figures", "report", "compare", "table",
+        "sweep", "list", "describe", "schema", "help", "reference"}) {
     INFO(command);
     const std::string page = shown_by("help " + command);
     CHECK(page == shown_by(command + " --help"));

@@ -7,7 +7,8 @@
 namespace drape {
 
 /// The look of a solver's methods in every chart, of Python too: an index of the colours --solver-N in
-/// viewer/page.css and of the marks in viewer/charts.js. Solvers that drape does not come with share the last one.
+/// viewer/page.css and of the marks in viewer/charts.js. Solvers that drape does not come with share the last
+/// one.
 int solver_style(std::string_view solver);
 
 /// The quantile of all finite |values|; 0 without any.
