@@ -4,8 +4,8 @@
 #include "core/app/python/arrays.h"
 #include "core/app/python/module.h"
 #include "core/app/python/run_store.h"
-#include "core/app/report/run_table.h"
 #include "core/app/report/report.h"
+#include "core/app/report/run_table.h"
 #include "core/app/view/colours.h"
 
 namespace drape::python {
