@@ -104,7 +104,9 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path, drape: str) -> list[pa
         files.append(out / "errors.csv")
     for method in result.methods:
         levels = [entry.level for entry in result[method].levels]
-        pictures = {"end": [], **({"preview": ["--level", str(levels[0])], "outline": ["--outline"]} if len(levels) > 1 else {})}
+        pictures: dict[str, list[str]] = {"end": []}
+        if len(levels) > 1:
+            pictures |= {"preview": ["--level", str(levels[0])], "outline": ["--outline"]}
         for name, options in pictures.items() if levels else ():
             files.append(out / f"{method}_{name}.png")
             subprocess.run([drape, "export", folder, "--to", files[-1], "--method", method, "--overwrite", *options],
