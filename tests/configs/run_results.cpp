@@ -258,7 +258,7 @@ TEST_CASE("a run takes as many threads as there are cores that it may use") {
 
 TEST_CASE("the saved config has the defaults of omitted parameters") {
   const std::string config = text_of(whole_run() / "config.yaml");
-  for (const char* line : {"\n  density: 472.6\n", "\n  type: none\n", "\n  corner_angle: 30\n",
+  for (const char* line : {"\n  density: 472.6\n", "\ncontact: []\n", "\n  corner_angle: 30\n",
                            "\n    acceleration: [0, 0, -9.81]\n", "\n  - type: stretch\n"})
     CHECK_THAT(config, Catch::Matchers::Contains(line));
 }

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "core/numerics/hierarchy/hierarchy.h"
+#include "core/numerics/model/level_model.h"
+
 namespace drape {
 
 void ProxyInterpolation::declare(Declaration<ProxyInterpolation>& d) {
