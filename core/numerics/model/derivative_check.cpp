@@ -123,4 +123,21 @@ DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x,
   return check;
 }
 
+DerivativeCheck check_derivatives(const Energy& energy, const Material& material) {
+  const Level level = checked_level();
+  const Positions x = checked_state(level);
+  const auto bound = energy.bind(level, material);
+  if (!std::isfinite(bound->value(x)))
+    throw std::runtime_error(
+        "the energy is not finite at strains of 0.05, where derivatives are checked; check it with other "
+        "parameters");
+  DerivativeCheck best = check_derivatives(*bound, x, difference_step);
+  for (const double h : {difference_step / 10, difference_step / 100}) {
+    if (best.agrees()) break;
+    const DerivativeCheck check = check_derivatives(*bound, x, h);
+    if (check.worst() < best.worst()) best = check;
+  }
+  return best;
+}
+
 }  // namespace drape

@@ -20,6 +20,7 @@ struct DerivativeCheck {
 
   /// The largest of the three.
   double worst() const;
+  bool agrees() const { return worst() <= 1e-5; }
   /// Two lines that say how large the errors are, and at which vertices.
   std::string text() const;
 };
@@ -35,5 +36,10 @@ inline constexpr double difference_step = 1e-5;
 /// Takes 24 n evaluations and (3n)² numbers: for small meshes. Throws std::runtime_error if the energy is not
 /// finite near x, if add_gradient does not add, or if it returns another number than value().
 DerivativeCheck check_derivatives(const BoundEnergy& energy, const Positions& x, double h);
+
+/// Checks the energy on the checked level. Where the derivatives do not agree, repeats that with a tenth and
+/// a hundredth of difference_step, since differences of a law that curves strongly need short steps, and
+/// returns the best. Throws as the function above does.
+DerivativeCheck check_derivatives(const Energy& energy, const Material& material);
 
 }  // namespace drape

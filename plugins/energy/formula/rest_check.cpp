@@ -48,11 +48,8 @@ void require_computable(const Law& law, const std::string& key, const Energy& en
 
 std::string derivatives_remark(const Energy& energy, const Material& material) {
   try {
-    const Level level = checked_level();
-    const DerivativeCheck check =
-        check_derivatives(*energy.bind(level, material), checked_state(level), difference_step);
-    const double worst = std::max(check.gradient.error, check.hessian.error);
-    return "derivatives " + std::string(worst <= 1e-5 ? "agree with" : "DIFFER from") +
+    const DerivativeCheck check = check_derivatives(energy, material);
+    return "derivatives " + std::string(check.agrees() ? "agree with" : "DIFFER from") +
            " finite differences, forces to " + three_digits(check.gradient.error) + ", stiffness to " +
            three_digits(check.hessian.error);
   } catch (const std::exception& error) {
