@@ -137,10 +137,10 @@ class Newton {
   /// Between two steps: ends the level, or does what the state calls for and begins the next step.
   std::optional<End> begin_step_unless_ended() {
     while (true) {
-      bool at_floor = stuck_ || (check_.is_idle() && is_at_rounding_floor());
+      bool at_floor = stuck_ || (check_.is_idle() && (dirichlet_.active() || is_at_rounding_floor()));
       stuck_ = false;
-      // Pins that contact blocks can squeeze gaps until no step descends: they end at their targets or are
-      // found out of reach, before the level may end.
+      // Pins that contact blocks can squeeze gaps until no step descends, or until steps only stir round-off:
+      // they end at their targets or are found out of reach, before the level may end.
       if (at_floor && dirichlet_.active()) {
         increase_penalty();
         at_floor = false;
