@@ -36,7 +36,7 @@ class Registry {
   /// none. In the second case one that is costly to make can have another constructor, from the parameters
   /// and a `const Implementation&`: when a schedule changes its parameters, that one is given the object
   /// before, to share what stays the same. A static function `details()`, if there is one, gives the entry's
-  /// details. Interface is one of the five of core/kernel/model. Throws std::runtime_error on a repeated
+  /// details. Interface is one of the five of core/kernel/interfaces. Throws std::runtime_error on a repeated
   /// name, with the paths of both libraries.
   template <class Interface, class Implementation>
   void add(const std::string& name, const std::string& summary);

@@ -12,7 +12,7 @@ class Metric;
 class Refiner;
 class Solver;
 
-/// The name of an interface of core/kernel/model.
+/// The name of an interface of core/kernel/interfaces.
 template <class Interface>
 struct Kind;
 template <>
