@@ -188,7 +188,7 @@ TEST_CASE("energy_formula: a load that is linear in positions has no Hessian, an
     CHECK(g(i, 0) == (level.rest.vertices(i, 0) > 0.5 ? -2 * level.vertex_area[i] : 0));
 }
 
-TEST_CASE("energy_formula: an axis turns warp; only an isotropic membrane buckles below the mesh") {
+TEST_CASE("energy_formula: an axis turns warp, and membranes buckle below the mesh") {
   const Level level = sheet();
   Positions x = level.rest.vertices;
   x.col(1) *= 1.1;
@@ -207,7 +207,7 @@ TEST_CASE("energy_formula: an axis turns warp; only an isotropic membrane buckle
                      energy.bind_buckling(level, Material(), 0)->value(x));
   };
   const auto [woven, woven_buckling] = plain_and_buckling(MembraneFormula<formulas::woven>({}));
-  CHECK(woven == woven_buckling);
+  CHECK(woven_buckling < 0.5 * woven);
   const auto [own, buckling] = plain_and_buckling(MembraneFormula<formulas::every_function>({}));
   CHECK(buckling < 0.5 * own);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numerics/elements/buckling_membrane.h"
+#include "core/numerics/elements/buckling_strains.h"
 #include "core/numerics/elements/element_energy.h"
 #include "core/numerics/elements/green_strain.h"
 #include "core/numerics/formulas/formula_law.h"
@@ -125,9 +126,14 @@ class MembraneFormula final : public Energy {
   std::unique_ptr<BoundEnergy> bind_buckling(const Level& level, const Material& material,
                                              double s) const override {
     const Law law(p_, material);
-    const bool isotropic = (reads(law) & Trace::stretches) ||
-                           is_isotropic([&](const Eigen::Vector3d& g) { return density(law, g); });
-    if (!isotropic) return bind(level, material);
+    const double at_origin[] = {1, 0, 0, 0};
+    const bool isotropic = (reads(law) & Trace::stretches) || is_isotropic([&](const Eigen::Vector3d& g) {
+                             return energy(law, g, at_origin).value;
+                           });
+    if (!isotropic)
+      return bind_buckling_strains(
+          [law](const Eigen::Vector3d& g, const double* place) { return energy(law, g, place); },
+          triangles(level), level, s);
     return bind_buckling_membrane(PrincipalFormula<Law>{law}, level, numbers(level), s);
   }
 
@@ -150,14 +156,13 @@ class MembraneFormula final : public Energy {
                                                    Kernel{law});
   }
 
-  /// The density of a triangle of 1 m² at the origin.
-  static double density(const Law& law, const Eigen::Vector3d& g) {
-    using J = Jet<1, double>;
+  /// A StrainLaw.
+  static Jet<3, double> energy(const Law& law, const Eigen::Vector3d& g, const double* place) {
+    using J = Jet<3, double>;
     const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
     const J none(0.0);
-    return law(J(g[0]), J(g[1]), J(g[2]), none, none, area_ratio<1>(g[0], g[1], g[2], det), 1.0, 0.0, 0.0,
-               0.0)
-        .value;
+    return place[0] * law(J::variable(g[0], 0), J::variable(g[1], 1), J::variable(g[2], 2), none, none,
+                          area_ratio<3>(g[0], g[1], g[2], det), place[0], place[1], place[2], place[3]);
   }
 
   /// Of PrincipalFormula.

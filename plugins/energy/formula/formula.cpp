@@ -106,8 +106,8 @@ std::unique_ptr<BoundEnergy> Formula::bind(const Level& level, const Material& m
 
 std::unique_ptr<BoundEnergy> Formula::bind_buckling(const Level& level, const Material& material,
                                                     double s) const {
-  const bool relaxes = law_.kind == ElementKind::triangle && formula::is_isotropic(law_, material);
-  return relaxes ? formula::bind_buckling(law_, level, material, s) : bind(level, material);
+  return law_.kind == ElementKind::triangle ? formula::bind_buckling(law_, axis_, level, material, s)
+                                            : bind(level, material);
 }
 
 std::vector<std::string> Formula::remarks(const Material& material) const {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/numerics/elements/buckling_membrane.h"
+#include "core/numerics/elements/buckling_strains.h"
 #include "core/numerics/formulas/formula_properties.h"
 #include "plugins/energy/formula/strain_kernel.h"
 
@@ -31,18 +32,22 @@ struct PrincipalProgram {
   }
 };
 
-/// The energy of one triangle at the origin.
-double energy_at(const Programs& programs, const Eigen::Vector3d& g) {
+/// A StrainLaw by a program of strains.
+Jet<3, double> energy_at(const Program& program, const Eigen::Vector3d& g, const double* place) {
   double registers[Program::slots] = {};
   using I = TriangleInput;
-  const Program& p = programs.value;
   const double det = (1 + 2 * g[0]) * (1 + 2 * g[1]) - 4 * g[2] * g[2];
   for (const auto& [input, value] :
        {std::pair(I::g11, g[0]), std::pair(I::g22, g[1]), std::pair(I::g12, g[2]), std::pair(I::det, det),
-        std::pair(I::area, 1.0)})
-    registers[p.register_of(input)] = value;
-  p.run<double, 1>(registers);
-  return registers[p.output(0)];
+        std::pair(I::area, place[0]), std::pair(I::u, place[1]), std::pair(I::v, place[2]),
+        std::pair(I::w, place[3])})
+    registers[program.register_of(input)] = value;
+  program.run<double, 1>(registers);
+  const auto output = [&](int k) { return registers[program.output(k)]; };
+  Jet<3, double> w(output(0));
+  for (int k = 0; k < 3; ++k) w.first[k] = output(1 + k);
+  for (int k = 0; k < 6; ++k) w.second[k] = output(4 + k);
+  return w;
 }
 
 }  // namespace
@@ -58,18 +63,21 @@ std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d
                                                        level.triangle_order);
 }
 
-bool is_isotropic(const Law& law, const Material& material) {
-  if (!uses_strains(law)) return true;
-  if (uses_stretches(law)) return false;
-  const Programs programs = compile_triangle(law, material, TriangleVariables::strains);
-  return drape::is_isotropic([&](const Eigen::Vector3d& g) { return energy_at(programs, g); });
-}
-
-std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
-                                           double s) {
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Eigen::Vector3d& axis, const Level& level,
+                                           const Material& material, double s) {
+  const std::vector<MaterialTriangle> triangles = material_triangles(axis, level);
+  if (uses_strains(law)) {
+    if (uses_stretches(law)) return bind_membrane(law, axis, level, material);
+    const Program program = compile_triangle(law, material, TriangleVariables::strains).all;
+    const auto energy = [program](const Eigen::Vector3d& g, const double* place) {
+      return energy_at(program, g, place);
+    };
+    const double at_origin[] = {1, 0, 0, 0};
+    if (!is_isotropic([&](const Eigen::Vector3d& g) { return energy(g, at_origin).value; }))
+      return bind_buckling_strains(energy, triangles, level, s);
+  }
   std::vector<Eigen::Vector4d> numbers;
-  for (const MaterialTriangle& triangle : material_triangles(Eigen::Vector3d::UnitX(), level))
-    numbers.emplace_back(triangle.tail<4>());
+  for (const MaterialTriangle& triangle : triangles) numbers.emplace_back(triangle.tail<4>());
   return bind_buckling_membrane(
       PrincipalProgram{compile_triangle(law, material, TriangleVariables::stretches).all}, level, numbers, s);
 }

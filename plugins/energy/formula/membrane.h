@@ -12,12 +12,10 @@ namespace drape::formula {
 std::unique_ptr<BoundEnergy> bind_membrane(const Law& law, const Eigen::Vector3d& axis, const Level& level,
                                            const Material& material);
 
-/// Whether the energy of a triangle depends on its principal stretches alone, not on their directions.
-bool is_isotropic(const Law& law, const Material& material);
-
-/// Binds an isotropic formula to a level on which the cloth buckles below the mesh, as
-/// bind_buckling_membrane does.
-std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Level& level, const Material& material,
-                                           double s);
+/// Binds a formula to a level on which the cloth buckles below the mesh: as bind_buckling_membrane does if it
+/// depends on principal stretches alone, else as bind_buckling_strains does. A formula of both principal
+/// stretches and strains keeps its plain energy.
+std::unique_ptr<BoundEnergy> bind_buckling(const Law& law, const Eigen::Vector3d& axis, const Level& level,
+                                           const Material& material, double s);
 
 }  // namespace drape::formula
