@@ -1,15 +1,6 @@
 #include "core/numerics/formulas/energy_formula.h"
 
-struct Springs {
-  double stiffness = 20;
-  static void declare(drape::Declaration<Springs>& d) {
-    d.add("stiffness", &Springs::stiffness)
-        .unit("N")
-        .at_least(0)
-        .at_most(1e9)
-        .description("force that doubles the length");
-  }
-};
+DRAPE_PARAMETERS(Springs, (stiffness, 20, "N", 0, 1e9, "force that doubles the length"));
 
 DRAPE_ELEMENT(springs, edges, "Springs along the edges of the mesh.", Springs) {
   const T length = rest[0].norm();

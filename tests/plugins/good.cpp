@@ -14,9 +14,7 @@ class Good final : public drape::Refiner {
     }
   };
   explicit Good(const Parameters& p) : rows_(p.rows) {}
-  drape::Refinement refine(const drape::Level&) const override {
-    return {{}, drape::ProlongationMatrix(rows_, 1)};
-  }
+  drape::ProlongationMatrix weights(const drape::Level&) const override { return {rows_, 1}; }
 
  private:
   int rows_;

@@ -11,7 +11,7 @@ class Nameless final : public drape::Refiner {
     static void declare(drape::Declaration<Parameters>&) {}
   };
   explicit Nameless(const Parameters&) {}
-  drape::Refinement refine(const drape::Level&) const override { return {}; }
+  drape::ProlongationMatrix weights(const drape::Level&) const override { return {}; }
 };
 
 }  // namespace

@@ -121,16 +121,12 @@ class Height(drape.Metric):
 class Midpoint(drape.Refiner):
     """Splits every triangle at its edge midpoints."""
 
-    def refine(self, level):
-        n, edges, t = level.vertex_count, level.edges, level.triangles
-        a, b, c = (n + level.triangle_edges).T  # opposite the corners 0, 1, 2
-        triangles = numpy.stack([
-            numpy.stack([t[:, 0], c, b], axis=1), numpy.stack([c, t[:, 1], a], axis=1),
-            numpy.stack([b, a, t[:, 2]], axis=1), numpy.stack([a, b, c], axis=1)], axis=1).reshape(-1, 3)
+    def weights(self, level):
+        n, edges = level.vertex_count, level.edges
         rows = numpy.repeat(numpy.arange(len(edges)), 2)
         half = scipy.sparse.csr_matrix((numpy.full(2 * len(edges), 0.5), (rows, edges.ravel())),
                                        shape=(len(edges), n))
-        return triangles, scipy.sparse.vstack([scipy.sparse.identity(n), half]).tocsr()
+        return scipy.sparse.vstack([scipy.sparse.identity(n), half]).tocsr()
 
 
 def newton_step(model, x, shift):

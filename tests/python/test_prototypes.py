@@ -200,14 +200,14 @@ def test_a_metric_or_refiner_that_fails(small):
             return {"a": 1.0}
 
     class Thin(drape.Refiner):
-        def refine(self, level):
-            return level.triangles, scipy.sparse.identity(level.vertex_count)
+        def weights(self, level):
+            return scipy.sparse.identity(level.vertex_count)
 
     drape.register("broken", Broken)
     drape.register("thin", Thin)
     with pytest.raises(KeyError, match="lost"):
         drape.Experiment({**small, "metrics": [{"type": "broken", "fails": True}]}).run(progress=False)
-    with pytest.raises(drape.ConfigError, match="triangles must have the shape"):
+    with pytest.raises(drape.ConfigError, match="a row for each vertex, then one for each edge"):
         drape.Experiment({**small, "refiner": "thin"}).check()
 
 

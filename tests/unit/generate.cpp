@@ -115,8 +115,7 @@ TEST_CASE("an equilateral triangulation has angles of 60 degrees, and halves at 
 TEST_CASE("1→4 refinement keeps an equilateral triangulation, its corners and its sides", "[generate]") {
   const Eigen::Vector2d size(0.8, 8 * std::sqrt(0.75) * 0.1);
   const Level coarse = Level::of(0, equilateral(size, 9, 9));
-  const Refinement fine = midpoint_refinement(coarse);
-  const TriangleMesh mesh{fine.weights * coarse.rest.vertices, fine.triangles};
+  const TriangleMesh mesh = refined_rest(coarse, midpoint_weights(coarse));
   require_pattern(mesh, size.prod(), 0, 29.9);
   const auto inside = [&](const Eigen::RowVector3d& p) {
     return p.x() > 0.051 && p.x() < size.x() - 0.051;  // beyond the coarse half triangles

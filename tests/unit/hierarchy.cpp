@@ -5,7 +5,6 @@
 
 #include "core/numerics/hierarchy/midpoint.h"
 #include "core/numerics/mesh/check.h"
-#include "core/numerics/mesh/split_triangles.h"
 #include "core/numerics/patterns/generate.h"
 
 using namespace drape;
@@ -13,35 +12,34 @@ using namespace drape;
 namespace {
 
 struct Midpoint : Refiner {
-  Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
+  ProlongationMatrix weights(const Level& coarse) const override { return midpoint_weights(coarse); }
 };
 
 /// Pulls every vertex half-way to vertex 0, so that P and U differ.
 struct Shrinking : Refiner {
-  Refinement refine(const Level& coarse) const override {
-    Refinement refinement = midpoint_refinement(coarse);
-    ProlongationMatrix first(refinement.weights.rows(), refinement.weights.cols());
+  ProlongationMatrix weights(const Level& coarse) const override {
+    const ProlongationMatrix midpoints = midpoint_weights(coarse);
+    ProlongationMatrix first(midpoints.rows(), midpoints.cols());
     for (int v = 0; v < first.rows(); ++v) first.insert(v, 0) = 0.5;
-    refinement.weights = 0.5 * refinement.weights + first;
-    return refinement;
+    return 0.5 * midpoints + first;
   }
 };
 
-/// The midpoint split with a fault.
+/// Midpoints with a fault.
 struct Faulty : Refiner {
-  explicit Faulty(void (*spoil)(Refinement&)) : spoil(spoil) {}
-  Refinement refine(const Level& coarse) const override {
-    Refinement refinement = midpoint_refinement(coarse);
-    spoil(refinement);
-    return refinement;
+  explicit Faulty(void (*spoil)(ProlongationMatrix&)) : spoil(spoil) {}
+  ProlongationMatrix weights(const Level& coarse) const override {
+    ProlongationMatrix midpoints = midpoint_weights(coarse);
+    spoil(midpoints);
+    return midpoints;
   }
-  void (*spoil)(Refinement&);
+  void (*spoil)(ProlongationMatrix&);
 };
 
 }  // namespace
 
 TEST_CASE("what a faulty refiner returns is refused before anything is computed from it", "[hierarchy]") {
-  const auto refusal = [](void (*spoil)(Refinement&)) -> std::string {
+  const auto refusal = [](void (*spoil)(ProlongationMatrix&)) -> std::string {
     try {
       Hierarchy::of(grid({2, 1}, 4, 3, Diagonals::criss_cross), Faulty(spoil), 2);
       return "";
@@ -50,42 +48,34 @@ TEST_CASE("what a faulty refiner returns is refused before anything is computed 
     }
   };
   const std::string of_level = "the refiner's result for level 0: ";
-  CHECK(refusal([](Refinement&) {}).empty());
-  CHECK_THAT(
-      refusal([](Refinement& r) { r.weights.conservativeResize(r.weights.rows() - 1, r.weights.cols()); }),
-      Catch::Matchers::StartsWith(of_level + "weights of 34 × 12, not 35 × 12"));
-  CHECK_THAT(refusal([](Refinement& r) { r.weights.conservativeResize(r.weights.rows(), 20); }),
+  CHECK(refusal([](ProlongationMatrix&) {}).empty());
+  CHECK_THAT(refusal([](ProlongationMatrix& p) { p.conservativeResize(p.rows() - 1, p.cols()); }),
+             Catch::Matchers::StartsWith(of_level + "weights of 34 × 12, not 35 × 12"));
+  CHECK_THAT(refusal([](ProlongationMatrix& p) { p.conservativeResize(p.rows(), 20); }),
              Catch::Matchers::StartsWith(of_level + "weights of 35 × 20"));
-  CHECK_THAT(refusal([](Refinement& r) { r.weights *= 1.01; }),
+  CHECK_THAT(refusal([](ProlongationMatrix& p) { p *= 1.01; }),
              Catch::Matchers::StartsWith(of_level + "row 0 of its weights sums to 1.01"));
-  CHECK_THAT(refusal([](Refinement& r) { r.weights.coeffRef(5, 5) = std::nan(""); }),
+  CHECK_THAT(refusal([](ProlongationMatrix& p) { p.coeffRef(5, 5) = std::nan(""); }),
              Catch::Matchers::StartsWith(of_level + "row 5"));
-  CHECK_THAT(refusal([](Refinement& r) { r.triangles.conservativeResize(12, 3); }),
-             Catch::Matchers::StartsWith(of_level + "12 triangles, not 48"));
-  CHECK_THAT(refusal([](Refinement& r) { r.triangles.row(0).swap(r.triangles.row(40)); }),
-             Catch::Matchers::Contains("neither a corner nor on an edge of triangle 0"));
-  CHECK_THAT(refusal([](Refinement& r) { r.triangles(7, 1) = 1000; }),
-             Catch::Matchers::Contains("triangle 7 has vertex 1000"));
-  CHECK(refusal([](Refinement&) { throw std::runtime_error("cannot refine"); }) ==
+  CHECK(refusal([](ProlongationMatrix&) { throw std::runtime_error("cannot refine"); }) ==
         "the refiner: cannot refine");
 }
 
-TEST_CASE("children follow the contract of Refinement", "[hierarchy]") {
+TEST_CASE("a level is split into children of its vertices and edges", "[hierarchy]") {
   const Level coarse = Level::of(0, grid({2, 1}, 4, 3, Diagonals::criss_cross));
-  const Triangles fine = split_triangles(coarse.rest.triangles, coarse.topology);
   const int n = coarse.vertex_count();
+  const ProlongationMatrix midpoints = midpoint_weights(coarse);
+  CHECK(midpoints.rows() == n + coarse.topology.edges.rows());
+  CHECK(midpoints.cols() == n);
+  const TriangleMesh mesh = refined_rest(coarse, midpoints);
+  const Triangles& fine = mesh.triangles;
   REQUIRE(fine.rows() == 4 * coarse.triangle_count());
-  const Refinement refinement = midpoint_refinement(coarse);
-  CHECK(refinement.triangles == fine);
-  CHECK(refinement.weights.rows() == n + coarse.topology.edges.rows());
-  CHECK(refinement.weights.cols() == n);
 
   for (int t = 0; t < coarse.triangle_count(); ++t) {
     const auto e = coarse.topology.triangle_edges.row(t);
     for (int k = 0; k < 3; ++k) CHECK(fine(4 * t + k, k) == coarse.rest.triangles(t, k));
     CHECK(fine.row(4 * t + 3) == Eigen::RowVector3i(n + e[0], n + e[1], n + e[2]));
   }
-  const TriangleMesh mesh{refinement.weights * coarse.rest.vertices, fine};
   CHECK(check_mesh(mesh).empty());  // flat: orientation is kept
   for (int v = 0; v < n; ++v) CHECK(mesh.vertices.row(v) == coarse.rest.vertices.row(v));
   for (int i = 0; i < coarse.topology.edges.rows(); ++i) {
@@ -120,7 +110,7 @@ TEST_CASE("rest shapes and positions follow the same operators", "[hierarchy]") 
   const Positions x = Positions::Random(hierarchy.levels[1].vertex_count(), 3);
   CHECK(hierarchy.prolong(x, 1, 1, hierarchy.prolongations) == x);
   CHECK(hierarchy.prolong(x, 1, 2, hierarchy.prolongations) == Positions(hierarchy.prolongations[1] * x));
-  CHECK(hierarchy.midpoints[1].isApprox(midpoint_refinement(hierarchy.levels[1]).weights));
+  CHECK(hierarchy.midpoints[1].isApprox(midpoint_weights(hierarchy.levels[1])));
   CHECK_FALSE(hierarchy.midpoints[1].isApprox(hierarchy.prolongations[1]));
   CHECK(hierarchy.prolong(coarsest, 0, 2, hierarchy.midpoints) ==
         Positions(hierarchy.midpoints[1] * Positions(hierarchy.midpoints[0] * coarsest)));

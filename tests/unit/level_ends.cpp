@@ -6,7 +6,6 @@
 #include "core/numerics/model/objective.h"
 #include "core/numerics/solve/newton.h"
 #include "core/numerics/solve/newton_state.h"
-#include "core/numerics/solve/resumable_solver.h"
 #include "tests/support/solve.h"
 
 using namespace drape;

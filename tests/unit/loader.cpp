@@ -80,7 +80,7 @@ TEST_CASE("a plugin's entries are registered, made and destroyed") {
   const std::shared_ptr<Refiner> refiner = make_from<Refiner>(registry, node, errors);
   REQUIRE(errors.empty());
   REQUIRE(refiner);
-  CHECK(refiner->refine(Level()).weights.rows() == 7);
+  CHECK(refiner->weights(Level()).rows() == 7);
 }
 
 TEST_CASE("a folder named twice is loaded once, and another registry may load it again") {

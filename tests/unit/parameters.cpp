@@ -1,5 +1,3 @@
-#include "core/kernel/plugin/parameters.h"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -7,6 +5,7 @@
 
 #include "core/app/experiment/describe.h"
 #include "core/app/files/yaml_file.h"
+#include "core/kernel/plugin/number_parameters.h"
 
 using namespace drape;
 
@@ -18,6 +17,9 @@ struct Ball {
   double radius = 0.3;
   static void declare(Declaration<Ball>& d) { d.add("radius", &Ball::radius).unit("m").above(0); }
 };
+
+DRAPE_PARAMETERS(Spring, (stiffness, 100, "N/m", 0, 1e9, "force"), (length, 0.1, "1", 0, 1e3, "ratio"));
+struct DampedSpring : Spring {};
 
 struct Everything {
   double step_size = 0.5;
@@ -233,6 +235,19 @@ TEST_CASE("a declaration cannot use a name twice") {
     }
   };
   CHECK_THROWS_WITH(schema_of<Twice>(), "parameter \"a\" is declared twice");
+}
+
+TEST_CASE("numbers of one line each are declared in full, also for a struct that derives from theirs") {
+  const Schema spring = schema_of<Spring>();
+  REQUIRE(spring.parameters.size() == 2);
+  CHECK(spring.parameters[0].unit == "N/m");
+  CHECK(spring.parameters[0].description == "force");
+  CHECK(spring.parameters[1].maximum == 1e3);
+  DampedSpring damped;
+  CHECK(damped.stiffness == 100);
+  CHECK(faults(schema_of<DampedSpring>(), &damped, "stiffness: 7\nlength: 2e3") ==
+        std::vector<std::string>{"f:2:9: \"length\" must be at most 1000, not 2e3"});
+  CHECK(damped.stiffness == 7);
 }
 
 TEST_CASE("a struct is written with everything in it, and reads back") {

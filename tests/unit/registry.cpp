@@ -38,21 +38,21 @@ class Loop final : public Ballast, public Refiner {
     ++alive;
   }
   ~Loop() override { --alive; }
-  Refinement refine(const Level&) const override { return {{}, ProlongationMatrix(int(angle_), 1)}; }
+  ProlongationMatrix weights(const Level&) const override { return {int(angle_), 1}; }
 
  private:
   double angle_;
 };
 
 struct Linear final : Refiner {
-  Refinement refine(const Level&) const override { return {}; }
+  ProlongationMatrix weights(const Level&) const override { return {}; }
 };
 
 /// Its parameters are its own members.
 struct Columns final : Ballast, Refiner {
   int columns = 1;
   static void declare(Declaration<Columns>& d) { d.add("columns", &Columns::columns).at_least(1); }
-  Refinement refine(const Level&) const override { return {{}, ProlongationMatrix(columns, 1)}; }
+  ProlongationMatrix weights(const Level&) const override { return {columns, 1}; }
 };
 
 /// Shares a number with the object that it is made from.
@@ -63,7 +63,7 @@ struct Sharing final : Ballast, Refiner {
   };
   explicit Sharing(const Parameters& p) : columns(p.columns), shared(std::make_shared<int>(p.columns)) {}
   Sharing(const Parameters& p, const Sharing& before) : columns(p.columns), shared(before.shared) {}
-  Refinement refine(const Level&) const override { return {}; }
+  ProlongationMatrix weights(const Level&) const override { return {}; }
   int columns;
   std::shared_ptr<int> shared;
 };
@@ -113,7 +113,7 @@ TEST_CASE("a plugin's own members are its parameters where it declares them") {
   const auto refiner =
       make_from<Refiner>(registry, node_of("{type: columns, columns: 4}"), errors, &resolved);
   REQUIRE(errors.empty());
-  CHECK(refiner->refine({}).weights.rows() == 4);
+  CHECK(refiner->weights({}).rows() == 4);
   CHECK(resolved.one_line() == "{type: columns, columns: 4}");
   CHECK_FALSE(make_from<Refiner>(registry, node_of("{type: columns, columns: 0}"), errors));
   CHECK(errors.size() == 1);
@@ -146,7 +146,7 @@ struct Declared final : Refiner {
     }
   };
   explicit Declared(const Parameters&) {}
-  Refinement refine(const Level&) const override { return {}; }
+  ProlongationMatrix weights(const Level&) const override { return {}; }
 };
 
 template <int fault>
@@ -185,12 +185,12 @@ TEST_CASE("a node makes the object it names, with its parameters") {
     const auto plain = make_from<Refiner>(registry, node_of("loop"), errors, &resolved);
     REQUIRE(plain);
     CHECK(alive == 1);
-    CHECK(plain->refine(Level()).weights.rows() == 30);
+    CHECK(plain->weights(Level()).rows() == 30);
     CHECK(resolved.one_line() == "{type: loop, corner_angle: 30}");
     const ConfigNode node = node_of("{corner_angle: 45, type: loop}");
     const auto set = make_from<Refiner>(registry, node, errors, &resolved);
     REQUIRE(set);
-    CHECK(set->refine(Level()).weights.rows() == 45);
+    CHECK(set->weights(Level()).rows() == 45);
     CHECK(resolved.one_line() == "{type: loop, corner_angle: 45}");
   }
   CHECK(errors.empty());
@@ -289,7 +289,7 @@ TEST_CASE("an object is made from the one before, if its plugin knows how to") {
   const auto other =
       make_from<Refiner>(registry, node_of("{type: loop, corner_angle: 45}"), errors, nullptr, loop.get());
   REQUIRE(other);
-  CHECK(other->refine(Level()).weights.rows() == 45);
+  CHECK(other->weights(Level()).rows() == 45);
 }
 
 TEST_CASE("an entry that is removed leaves its name free, and stays usable") {

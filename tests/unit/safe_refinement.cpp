@@ -299,12 +299,10 @@ TEST_CASE("A refinement that contact cuts to nothing fails after few steps") {
 
 TEST_CASE("If refinement fails, the level starts from the scene's start, and its message says so") {
   const TornApart cloth;
-  NewtonParameters newton;
-  newton.max_steps = 50;
+  Progression cascade;
+  cascade.newton.max_steps = 50;
   Observer silent;
-  const std::vector<LevelResult> results = solve_progressively(
-      cloth, cloth.hierarchy.midpoints,
-      [&](int level) { return std::make_unique<PlainObjective>(cloth.model(level)); }, newton, {}, silent);
+  const std::vector<LevelResult> results = cascade.solve(cloth, silent);
   REQUIRE(results.size() == 2);
   CHECK(results[0].message.empty());
   CHECK_FALSE(results[1].from_initial_state);       // the attempt counts as cost

@@ -49,21 +49,7 @@ TriangleMesh written_and_read(const TriangleMesh& mesh, const std::string& exten
 }
 
 struct MidpointSplit : Refiner {
-  Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
-};
-
-/// Another refiner's numbering of the corners and of the triangles within a coarse one.
-struct TurnedSplit : Refiner {
-  Refinement refine(const Level& coarse) const override {
-    Refinement finer = midpoint_refinement(coarse);
-    Triangles turned(finer.triangles.rows(), 3);
-    for (Eigen::Index t = 0; t < turned.rows(); ++t) {
-      const auto v = finer.triangles.row(t / 4 * 4 + 3 - t % 4);
-      turned.row(t) << v[2], v[0], v[1];
-    }
-    finer.triangles = turned;
-    return finer;
-  }
+  ProlongationMatrix weights(const Level& coarse) const override { return midpoint_weights(coarse); }
 };
 
 Eigen::RowVector2d uv_at(const TriangleMesh& mesh, Eigen::Index t, int k) {
@@ -122,36 +108,31 @@ TEST_CASE("a face without vt has (0, 0) beside faces that have some") {
 }
 
 TEST_CASE("uv are refined linearly in each triangle, and a seam keeps both of its sides") {
-  const MidpointSplit midpoint;
-  const TurnedSplit turned;
-  for (const Refiner* refiner :
-       {static_cast<const Refiner*>(&midpoint), static_cast<const Refiner*>(&turned)}) {
-    const Hierarchy hierarchy = Hierarchy::of(mesh_of(two_squares), *refiner, 3);
-    const TriangleMesh& finest = hierarchy.levels[2].rest;
-    REQUIRE(finest.uv.rows() == 64);
-    int at_seam = 0;
-    for (Eigen::Index t = 0; t < 64; ++t)
-      for (int k = 0; k < 3; ++k) {
-        const Eigen::RowVector3d p = finest.vertices.row(finest.triangles(t, k));
-        CHECK(uv_at(finest, t, k) == expected_uv(t < 32, p));
-        at_seam += p.x() == 1;
-      }
-    const UvVertices split = split_at_seams(finest);
-    CHECK(at_seam > 10);
-    CHECK(split.vertex.size() == static_cast<std::size_t>(finest.vertices.rows() + 5));  // x = 1 twice
-    for (Eigen::Index t = 0; t < 64; ++t)
-      for (int k = 0; k < 3; ++k) {
-        CHECK(split.vertex[split.triangles(t, k)] == finest.triangles(t, k));
-        CHECK(split.uv.row(split.triangles(t, k)) == uv_at(finest, t, k));
-      }
-    for (const char* extension : {".obj", ".ply"}) {
-      const TriangleMesh read = written_and_read(finest, extension);
-      CHECK(read.vertices == finest.vertices);
-      CHECK(read.triangles == finest.triangles);
-      CHECK(read.uv == finest.uv);
+  const Hierarchy hierarchy = Hierarchy::of(mesh_of(two_squares), MidpointSplit(), 3);
+  const TriangleMesh& finest = hierarchy.levels[2].rest;
+  REQUIRE(finest.uv.rows() == 64);
+  int at_seam = 0;
+  for (Eigen::Index t = 0; t < 64; ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::RowVector3d p = finest.vertices.row(finest.triangles(t, k));
+      CHECK(uv_at(finest, t, k) == expected_uv(t < 32, p));
+      at_seam += p.x() == 1;
     }
+  const UvVertices split = split_at_seams(finest);
+  CHECK(at_seam > 10);
+  CHECK(split.vertex.size() == static_cast<std::size_t>(finest.vertices.rows() + 5));  // x = 1 twice
+  for (Eigen::Index t = 0; t < 64; ++t)
+    for (int k = 0; k < 3; ++k) {
+      CHECK(split.vertex[split.triangles(t, k)] == finest.triangles(t, k));
+      CHECK(split.uv.row(split.triangles(t, k)) == uv_at(finest, t, k));
+    }
+  for (const char* extension : {".obj", ".ply"}) {
+    const TriangleMesh read = written_and_read(finest, extension);
+    CHECK(read.vertices == finest.vertices);
+    CHECK(read.triangles == finest.triangles);
+    CHECK(read.uv == finest.uv);
   }
-  CHECK(Hierarchy::of(banner, midpoint, 2).levels[1].rest.uv.rows() == 0);
+  CHECK(Hierarchy::of(banner, MidpointSplit(), 2).levels[1].rest.uv.rows() == 0);
 }
 
 TEST_CASE("OBJ and PLY keep the bits of uv") {

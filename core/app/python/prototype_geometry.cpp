@@ -53,25 +53,11 @@ MetricResult PythonMetric::measure(const MetricInput& input) const {
   });
 }
 
-Refinement PythonRefiner::refine(const Level& coarse) const {
+ProlongationMatrix PythonRefiner::weights(const Level& coarse) const {
   return with_python([&] {
-    const py::object answer = prototype_->attr("refine")(LevelHandle::copy_of(coarse));
-    if (!py::isinstance<py::tuple>(answer) || py::len(answer) != 2)
-      throw py::type_error("refine must return (triangles, weights)");
-    const auto pair = py::reinterpret_borrow<py::tuple>(answer);
-    const auto corners = integer_array(pair[0], "triangles");
-    if (corners.ndim() != 2 || corners.shape(0) != 4 * coarse.triangle_count() || corners.shape(1) != 3)
-      throw py::value_error("triangles must have the shape (" + std::to_string(4 * coarse.triangle_count()) +
-                            ", 3), not " + shape_text(corners));
-    Refinement refinement;
-    refinement.triangles = Eigen::Map<const Triangles>(corners.data(), corners.shape(0), 3);
+    const py::object answer = prototype_->attr("weights")(LevelHandle::copy_of(coarse));
     const py::object to_csr = py::module_::import("scipy.sparse").attr("csr_matrix");
-    refinement.weights = to_csr(py::object(pair[1])).cast<ProlongationMatrix>();
-    const int vertices = coarse.vertex_count(), edges = static_cast<int>(coarse.topology.edges.rows());
-    if (refinement.weights.cols() != vertices || refinement.weights.rows() != vertices + edges)
-      throw py::value_error("weights must have the shape (" + std::to_string(vertices + edges) + ", " +
-                            std::to_string(vertices) + "): vertices, then edges, by vertices");
-    return refinement;
+    return to_csr(answer).cast<ProlongationMatrix>();
   });
 }
 

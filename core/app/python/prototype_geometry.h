@@ -27,7 +27,7 @@ class PythonMetric final : public Metric {
 class PythonRefiner final : public Refiner {
  public:
   explicit PythonRefiner(py::object prototype) : prototype_(share(std::move(prototype))) {}
-  Refinement refine(const Level& coarse) const override;
+  ProlongationMatrix weights(const Level& coarse) const override;
 
  private:
   SharedObject prototype_;

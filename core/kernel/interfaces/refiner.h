@@ -5,18 +5,13 @@
 
 namespace drape {
 
-/// A finer mesh and its prolongation. The first n_c fine vertices are the children of the coarse vertices, in
-/// order; then one vertex for each edge follows, in the order of Topology::edges.
-struct Refinement {
-  Triangles triangles;         ///< of the finer mesh; triangle t becomes 4t … 4t + 3
-  ProlongationMatrix weights;  ///< P_{l→l+1}
-};
-
-/// A 1→4 subdivision. It depends only on the level's rest shape and connectivity.
+/// Says where the vertices of a 1→4 subdivision lie, by the level's rest shape and connectivity alone.
 class Refiner {
  public:
   virtual ~Refiner() = default;
-  virtual Refinement refine(const Level& coarse) const = 0;
+  /// P_{l→l+1}: a row for each vertex of the level, then one for each edge in the order of Topology::edges;
+  /// a column for each vertex. Rows sum to 1.
+  virtual ProlongationMatrix weights(const Level& coarse) const = 0;
 };
 
 /// Which prolongation maps a coarse level's vertices to a finer level.

@@ -113,7 +113,7 @@ class Solver {
   virtual ~Solver() = default;
   /// Results of the levels reached, in order. Only misuse throws.
   virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;
-  /// Whether the solver can resume an interrupted solve of the same problem (ResumableSolver).
+  /// Whether the solver can resume an interrupted solve of the same problem.
   virtual bool can_resume() const { return false; }
   /// Continues from a state, with the results of finished levels at the front; bit for bit as if `solve` had
   /// not been interrupted. A state without a finished level or one under way begins its level from the start.

@@ -182,8 +182,8 @@ class Declaration {
   }
 
   /// A struct with its own `declare`, written as a nested map.
-  template <class Section>
-  ParameterHandle add_section(const std::string& name, Section Struct::*member) {
+  template <class Section, class Owner>
+  ParameterHandle add_section(const std::string& name, Section Owner::*member) {
     Parameter& p = append(name, "section", member);
     const auto section = std::make_shared<const Schema>(schema_of<Section>(name));
     p.section = section;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/kernel/plugin/abi.h"
+#include "core/kernel/plugin/number_parameters.h"
 #include "core/kernel/plugin/registry.h"
 
 /// Registers a plugin library's entries, once per library:

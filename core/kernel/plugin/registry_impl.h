@@ -42,7 +42,7 @@ struct ParametersOf {
   using Type = NoParameters;
 };
 template <class Implementation>
-requires requires { &Implementation::declare; }
+requires requires(Declaration<Implementation>& d) { Implementation::declare(d); }
 struct ParametersOf<Implementation> {
   using Type = Implementation;
 };

@@ -40,12 +40,11 @@ std::optional<double> sampled_midpoint_factor(const BindEnergy& bind) {
     };
     mesh.vertices.leftCols(2) += noise(0.1).leftCols(2);
     const Level level = Level::of(0, mesh);
-    const Refinement split = midpoint_refinement(level);
-    const auto coarse = bind(level),
-               fine = bind(Level::of(1, {split.weights * level.rest.vertices, split.triangles}));
+    const ProlongationMatrix midpoints = midpoint_weights(level);
+    const auto coarse = bind(level), fine = bind(Level::of(1, refined_rest(level, midpoints)));
     for (const double size : {0.001, 0.03, 0.3}) {
       const Positions x = mesh.vertices + noise(size);
-      const double own = coarse->value(x), halved = fine->value(split.weights * x);
+      const double own = coarse->value(x), halved = fine->value(midpoints * x);
       if (!std::isfinite(own) && !std::isfinite(halved)) continue;  // outside the energy's domain
       if (own == 0 && halved == 0) continue;
       if (!factor) factor = std::round(halved / own * 1e9) / 1e9;

@@ -23,43 +23,29 @@ Level checked_level(int index, TriangleMesh rest) {
   return Level::of(index, std::move(rest));
 }
 
-/// Refuses what only a faulty refiner returns, before anything is computed from it.
-void require_subdivision(const Level& coarse, const Refinement& finer) {
-  const auto fail = [&](const std::string& what) {
-    throw std::runtime_error("the refiner's result for level " + std::to_string(coarse.index) + ": " + what);
-  };
-  const Eigen::Index n = coarse.vertex_count(), edges = coarse.topology.edges.rows(),
-                     m = coarse.triangle_count();
-  if (finer.weights.rows() != n + edges || finer.weights.cols() != n)
-    fail("weights of " + std::to_string(finer.weights.rows()) + " × " + std::to_string(finer.weights.cols()) +
-         ", not " + std::to_string(n + edges) + " × " + std::to_string(n) +
-         ": a row for each vertex, then one for each edge, and a column for each vertex");
-  if (finer.triangles.rows() != 4 * m)
-    fail(std::to_string(finer.triangles.rows()) + " triangles, not " + std::to_string(4 * m) +
-         ": four for each of the level's");
-  for (Eigen::Index i = 0; i < n + edges; ++i) {
-    double sum = 0;
-    for (ProlongationMatrix::InnerIterator entry(finer.weights, i); entry; ++entry) sum += entry.value();
-    if (!(std::abs(sum - 1) <= 1e-9))
-      fail("row " + std::to_string(i) + " of its weights sums to " + std::to_string(sum) + ", not to 1");
-  }
-  for (Eigen::Index t = 0; t < 4 * m; ++t) {
-    const auto corners = coarse.rest.triangles.row(t / 4);
-    const auto sides = coarse.topology.triangle_edges.row(t / 4);
-    for (int k = 0; k < 3; ++k) {
-      const int v = finer.triangles(t, k);
-      if ((corners.array() != v).all() && (sides.array() + n != v).all())
-        fail("triangle " + std::to_string(t) + " has vertex " + std::to_string(v) +
-             ", which is neither a corner nor on an edge of triangle " + std::to_string(t / 4));
-    }
+ProlongationMatrix weights_of(const Refiner& refiner, const Level& coarse) {
+  try {
+    return refiner.weights(coarse);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(std::string("the refiner: ") + error.what());
   }
 }
 
-Refinement refined(const Level& coarse, const Refiner& refiner) {
-  try {
-    return refiner.refine(coarse);
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(std::string("the refiner: ") + error.what());
+/// Refuses what only a faulty refiner returns, before anything is computed from it.
+void require_prolongation(const Level& coarse, const ProlongationMatrix& weights) {
+  const auto fail = [&](const std::string& what) {
+    throw std::runtime_error("the refiner's result for level " + std::to_string(coarse.index) + ": " + what);
+  };
+  const Eigen::Index n = coarse.vertex_count(), edges = coarse.topology.edges.rows();
+  if (weights.rows() != n + edges || weights.cols() != n)
+    fail("weights of " + std::to_string(weights.rows()) + " × " + std::to_string(weights.cols()) + ", not " +
+         std::to_string(n + edges) + " × " + std::to_string(n) +
+         ": a row for each vertex, then one for each edge, and a column for each vertex");
+  for (Eigen::Index i = 0; i < n + edges; ++i) {
+    double sum = 0;
+    for (ProlongationMatrix::InnerIterator entry(weights, i); entry; ++entry) sum += entry.value();
+    if (!(std::abs(sum - 1) <= 1e-9))
+      fail("row " + std::to_string(i) + " of its weights sums to " + std::to_string(sum) + ", not to 1");
   }
 }
 
@@ -72,14 +58,13 @@ Hierarchy Hierarchy::of(TriangleMesh coarsest, const Refiner& refiner, int level
   hierarchy.levels.push_back(checked_level(0, std::move(coarsest)));
   for (int l = 1; l < level_count; ++l) {
     const Level& coarse = hierarchy.levels.back();
-    Refinement finer = refined(coarse, refiner);
-    require_subdivision(coarse, finer);
-    CornerUv uv = refined_uv(coarse.rest, coarse.topology, finer.triangles);
-    Level fine =
-        checked_level(l, {finer.weights * coarse.rest.vertices, std::move(finer.triangles), std::move(uv)});
-    hierarchy.midpoints.push_back(midpoint_refinement(coarse).weights);
+    ProlongationMatrix weights = weights_of(refiner, coarse);
+    require_prolongation(coarse, weights);
+    weights.makeCompressed();
+    Level fine = checked_level(l, refined_rest(coarse, weights));
+    hierarchy.midpoints.push_back(midpoint_weights(coarse));
     hierarchy.linear.push_back(rest_interpolation(coarse, fine.rest.vertices));
-    hierarchy.prolongations.push_back(std::move(finer.weights));
+    hierarchy.prolongations.push_back(std::move(weights));
     hierarchy.levels.push_back(std::move(fine));
   }
   return hierarchy;

@@ -3,10 +3,11 @@
 #include <vector>
 
 #include "core/numerics/mesh/split_triangles.h"
+#include "core/numerics/mesh/texture_coordinates.h"
 
 namespace drape {
 
-Refinement midpoint_refinement(const Level& coarse) {
+ProlongationMatrix midpoint_weights(const Level& coarse) {
   const int n = coarse.vertex_count();
   const auto edge_count = static_cast<int>(coarse.topology.edges.rows());
   std::vector<Eigen::Triplet<double>> weights;
@@ -14,11 +15,14 @@ Refinement midpoint_refinement(const Level& coarse) {
   for (int v = 0; v < n; ++v) weights.emplace_back(v, v, 1);
   for (int e = 0; e < edge_count; ++e)
     for (int end = 0; end < 2; ++end) weights.emplace_back(n + e, coarse.topology.edges(e, end), 0.5);
+  ProlongationMatrix matrix(n + edge_count, n);
+  matrix.setFromTriplets(weights.begin(), weights.end());
+  return matrix;
+}
 
-  Refinement refinement{split_triangles(coarse.rest.triangles, coarse.topology),
-                        ProlongationMatrix(n + edge_count, n)};
-  refinement.weights.setFromTriplets(weights.begin(), weights.end());
-  return refinement;
+TriangleMesh refined_rest(const Level& coarse, const ProlongationMatrix& weights) {
+  return {weights * coarse.rest.vertices, split_triangles(coarse.rest.triangles, coarse.topology),
+          split_uv(coarse.rest.uv)};
 }
 
 }  // namespace drape

@@ -40,17 +40,15 @@ Eigen::Vector3d plane_normal(const TriangleMesh& mesh) {
 
 }  // namespace
 
-CornerUv refined_uv(const TriangleMesh& coarse, const Topology& topology, const Triangles& finer) {
-  CornerUv uv(coarse.uv.rows() > 0 ? finer.rows() : 0, 6);
-  const auto n = static_cast<int>(coarse.vertices.rows());
-  for (Eigen::Index t = 0; t < uv.rows(); ++t) {
-    const auto at = [&](int k) { return coarse.uv.block<1, 2>(t / 4, 2 * (k % 3)); };
-    for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) {
-        if (finer(t, j) == coarse.triangles(t / 4, k)) uv.block<1, 2>(t, 2 * j) = at(k);
-        if (finer(t, j) == n + topology.triangle_edges(t / 4, k))
-          uv.block<1, 2>(t, 2 * j) = 0.5 * (at(k + 1) + at(k + 2));
-      }
+CornerUv split_uv(const CornerUv& coarse) {
+  CornerUv uv(4 * coarse.rows(), 6);
+  for (Eigen::Index t = 0; t < coarse.rows(); ++t) {
+    const auto at = [&](int k) -> Eigen::RowVector2d { return coarse.block<1, 2>(t, 2 * (k % 3)); };
+    const auto middle = [&](int k) -> Eigen::RowVector2d { return 0.5 * (at(k + 1) + at(k + 2)); };
+    uv.row(4 * t + 0) << at(0), middle(2), middle(1);
+    uv.row(4 * t + 1) << middle(2), at(1), middle(0);
+    uv.row(4 * t + 2) << middle(1), middle(0), at(2);
+    uv.row(4 * t + 3) << middle(0), middle(1), middle(2);
   }
   return uv;
 }

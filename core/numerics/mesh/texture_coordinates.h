@@ -7,10 +7,9 @@
 
 namespace drape {
 
-/// The texture coordinates of a 1→4 subdivision: linear within each coarse triangle, so a seam keeps both of
-/// its sides. Vertices of `finer`, whose triangle t is part of coarse triangle t / 4, are numbered as
-/// split_triangles numbers them. Without rows if `coarse` has none.
-CornerUv refined_uv(const TriangleMesh& coarse, const Topology& topology, const Triangles& finer);
+/// The texture coordinates of split_triangles: linear within each coarse triangle, so a seam keeps both of
+/// its sides. Without rows if there are none.
+CornerUv split_uv(const CornerUv& coarse);
 
 /// A mesh's vertices, split so that each has one pair of texture coordinates. The first of a vertex keeps its
 /// index, further ones follow the last vertex.

@@ -5,28 +5,36 @@
 
 namespace drape {
 
-std::vector<LevelResult> solve_progressively(
-    const Problem& problem, const std::vector<ProlongationMatrix>& weights,
-    const std::function<std::unique_ptr<Objective>(int level)>& objective, const NewtonParameters& newton,
-    const MethodState& from, Observer& observer) {
+std::unique_ptr<Objective> Progression::objective(const Problem& problem, int level) const {
+  return std::make_unique<PlainObjective>(problem.model(level));
+}
+
+std::vector<LevelResult> Progression::solve(const Problem& problem, Observer& observer) const {
+  return resume(problem, MethodState(), observer);
+}
+
+std::vector<LevelResult> Progression::resume(const Problem& problem, const MethodState& from,
+                                             Observer& observer) const {
   const Stopwatch clock(from.seconds);
   std::vector<LevelResult> results = from.finished;
   restore_load_stepping(problem, from);
-  const int first = results.empty() ? from.level : results.front().level;
-  for (int l = from.level; l <= problem.finest(); ++l) {
+  const int first = results.empty() ? std::max(from.level, first_level(problem)) : results.front().level;
+  for (int l = std::max(from.level, first); l <= problem.finest(); ++l) {
     if (!results.empty() && results.back().outcome == Outcome::cancelled) break;
     const NewtonState* state = from.of(l);
-    if (problem.load_stepping && !state) problem.load_stepping->begin(l, l == first);
+    const bool anew = l == first || !refines();
+    if (problem.load_stepping && !state) problem.load_stepping->begin(l, anew);
     Refined start;
-    if (l == first)
+    if (anew)
       start.x = problem.starts[l];
     else if (!state)
-      start = refine_safely(problem, l - 1, results.back().x, weights[l - 1], clock, observer);
+      start = refine_safely(problem, l - 1, results.back().x,
+                            problem.hierarchy.weights(interpolation())[l - 1], clock, observer);
     LevelResult result;
     result.level = l;
     if (!state) observer.level_started(l);
     std::map<std::string, double> spent;
-    if (l > first) spent["refinement"] = start.seconds;
+    if (!anew) spent["refinement"] = start.seconds;
     std::string remark;
     if (!start.fault.empty()) {
       remark = start.fault + "; the level starts from the scene's start instead";
@@ -42,10 +50,10 @@ std::vector<LevelResult> solve_progressively(
     } else {
       LevelRun run{clock, observer, l < problem.finest(), spent, state, problem.load_stepping.get(), remark};
       run.hierarchy = &problem.hierarchy;
-      if (!results.empty()) run.stiffness = results.back().contact_stiffness;
-      result = minimise(*objective(l), std::move(start.x), newton, run);
+      if (!anew) run.stiffness = results.back().contact_stiffness;
+      result = minimise(*objective(problem, l), std::move(start.x), newton, run);
     }
-    result.from_initial_state = l == first;
+    result.from_initial_state = anew;
     results.push_back(std::move(result));
     observer.level_finished(results.back());
   }

@@ -125,10 +125,10 @@ TEST_CASE("The order of vertices, corners and triangles does not matter", "[silh
 
 TEST_CASE("A mesh that is split at its edges' midpoints has the same silhouette", "[silhouette]") {
   const Level level = square(9);
-  const Refinement finer = midpoint_refinement(level);
-  const Level fine = Level::of(1, {finer.weights * level.rest.vertices, finer.triangles});
+  const ProlongationMatrix midpoints = midpoint_weights(level);
+  const Level fine = Level::of(1, refined_rest(level, midpoints));
   const Positions x = wavy(level, 0.3), other = wavy(level, 1.1);
-  const Positions y = finer.weights * x, z = finer.weights * other;
+  const Positions y = midpoints * x, z = midpoints * other;
   CHECK(overlap(fine, y, z) == Approx(overlap(level, x, other)).epsilon(1e-4));
 }
 

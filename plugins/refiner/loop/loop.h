@@ -8,7 +8,6 @@
 
 #include "core/kernel/interfaces/refiner.h"
 #include "core/kernel/plugin/parameters.h"
-#include "core/numerics/mesh/split_triangles.h"
 
 namespace drape {
 
@@ -34,7 +33,7 @@ class LoopRefiner : public Refiner {
 
   explicit LoopRefiner(const Parameters& parameters) : parameters_(parameters) {}
 
-  Refinement refine(const Level& coarse) const override {
+  ProlongationMatrix weights(const Level& coarse) const override {
     const Topology& topology = coarse.topology;
     const int n = coarse.vertex_count();
     const auto edge_count = static_cast<int>(topology.edges.rows());
@@ -52,10 +51,9 @@ class LoopRefiner : public Refiner {
     }
     for (int e = 0; e < edge_count; ++e) add_edge(e, coarse, weights);
 
-    Refinement refinement{split_triangles(coarse.rest.triangles, topology),
-                          ProlongationMatrix(n + edge_count, n)};
-    refinement.weights.setFromTriplets(weights.begin(), weights.end());
-    return refinement;
+    ProlongationMatrix matrix(n + edge_count, n);
+    matrix.setFromTriplets(weights.begin(), weights.end());
+    return matrix;
   }
 
   /// n flags, 1 for interpolated border vertices. A flat rest shape keeps its corners on every finer level:

@@ -7,7 +7,7 @@ namespace drape {
 /// Midpoint subdivision: splits every triangle into four and does not move the surface.
 class MidpointRefiner : public Refiner {
  public:
-  Refinement refine(const Level& coarse) const override { return midpoint_refinement(coarse); }
+  ProlongationMatrix weights(const Level& coarse) const override { return midpoint_weights(coarse); }
 };
 
 }  // namespace drape

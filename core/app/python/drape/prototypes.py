@@ -101,11 +101,11 @@ class Metric(_Prototype):
 
 
 class Refiner(_Prototype):
-    """A 1→4 subdivision that depends on the rest shape alone."""
+    """Where the vertices of a 1→4 subdivision lie, by the rest shape alone."""
 
-    def refine(self, level: _core.Level) -> tuple:
-        """(triangles, weights): 4m×3 indices, triangle t becoming 4t … 4t + 3, and a sparse (n + e)×n matrix
-        whose rows sum to 1: children of the vertices first, then one vertex for each of level.edges."""
+    def weights(self, level: _core.Level):
+        """A sparse (n + e)×n matrix whose rows sum to 1: of the vertices first, then of a new vertex for each of
+        level.edges."""
         raise NotImplementedError
 
 
