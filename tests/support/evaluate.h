@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/kernel/interfaces/energy.h"
+#include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/objective.h"
 #include "tests/support/dense_matrix.h"
 
@@ -13,18 +14,6 @@ inline drape::Positions gradient_of(const drape::BoundEnergy& energy, const drap
 inline double value_of(drape::Objective& objective, const drape::Positions& x) {
   drape::Positions g;
   return objective.gradient(x, g);
-}
-
-inline drape::BlockMatrix hessian_of(const drape::BoundEnergy& energy, const drape::Positions& x,
-                                     drape::Projection projection) {
-  const drape::Stencils stencils = energy.stencils();
-  drape::BlockMatrix matrix(drape::BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
-  matrix.set_zero();
-  if (stencils.rows() == 0) return matrix;
-  const drape::BlockSlots slots(*matrix.pattern, stencils);
-  drape::BlockSink sink = slots.sink(matrix);
-  energy.add_hessian(x, projection, sink);
-  return matrix;
 }
 
 /// ∂f/∂x by central differences of fourth order with step h [m]; f is a number or an Eigen vector or matrix,

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/kernel/files/number_text.h"
-#include "core/numerics/linear_algebra/block_matrix.h"
+#include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/patterns/generate.h"
 
 namespace drape {
@@ -17,15 +17,8 @@ namespace {
 constexpr double offsets[] = {-2, -1, 1, 2}, weights[] = {1, -8, 8, -1};
 
 Eigen::MatrixXd dense_hessian(const BoundEnergy& energy, const Positions& x, double& asymmetry) {
-  const auto size = static_cast<int>(x.size());
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
-  const Stencils stencils = energy.stencils();
-  if (stencils.rows() == 0) return dense;
-  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
-  matrix.set_zero();
-  const BlockSlots slots(*matrix.pattern, stencils);
-  BlockSink sink = slots.sink(matrix);
-  energy.add_hessian(x, Projection::none, sink);
+  const BlockMatrix matrix = hessian_of(energy, x, Projection::none);
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(x.size(), x.size());
   for (int i = 0; i < matrix.pattern->rows(); ++i)
     for (int b = matrix.pattern->row_start[i]; b < matrix.pattern->row_start[i + 1]; ++b) {
       const int j = matrix.pattern->columns[b];

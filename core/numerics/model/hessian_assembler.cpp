@@ -76,6 +76,21 @@ std::shared_ptr<const BlockPattern> with_blocks(const BlockPattern& base,
 
 }  // namespace
 
+BlockMatrix hessian_of(const std::vector<const BoundEnergy*>& energies, const Positions& x,
+                       Projection projection) {
+  std::vector<Stencils> stencils;
+  for (const BoundEnergy* energy : energies) stencils.push_back(energy->stencils());
+  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), stencils));
+  matrix.set_zero();
+  for (std::size_t k = 0; k < energies.size(); ++k) {
+    if (stencils[k].rows() == 0) continue;
+    const BlockSlots slots(*matrix.pattern, stencils[k]);
+    BlockSink sink = slots.sink(matrix);
+    energies[k]->add_hessian(x, projection, sink);
+  }
+  return matrix;
+}
+
 void HessianAssembler::reset(const std::shared_ptr<const BlockPattern>& base) {
   base_ = pattern_ = base;
   base_slot_.clear();

@@ -8,6 +8,13 @@
 
 namespace drape {
 
+/// The Hessian of the energies' sum at x (n×3) [N/m], projected per element, in a pattern of its own.
+BlockMatrix hessian_of(const std::vector<const BoundEnergy*>& energies, const Positions& x,
+                       Projection projection);
+inline BlockMatrix hessian_of(const BoundEnergy& energy, const Positions& x, Projection projection) {
+  return hessian_of(std::vector{&energy}, x, projection);
+}
+
 /// Adds the Hessians of limits, penalties and contacts to a smooth matrix whose pattern stays.
 ///
 /// A new pattern costs the solver a new symbolic analysis, so the pattern changes only when an element needs

@@ -1,5 +1,6 @@
 // Derivatives of the whole energy E_l, with limits and contacts.
 
+#include "core/numerics/model/hessian_assembler.h"
 #include "core/numerics/model/level_model.h"
 
 namespace drape {
@@ -22,17 +23,7 @@ BlockMatrix LevelModel::energy_hessian(const Positions& x, Projection projection
     collisions.push_back(contact->build_candidates(x, x)->build_collisions(x));
     energies.push_back(collisions.back().get());
   }
-  std::vector<Stencils> stencils;
-  for (const BoundEnergy* energy : energies) stencils.push_back(energy->stencils());
-  BlockMatrix matrix(BlockPattern::of(level_->vertex_count(), stencils));
-  matrix.set_zero();
-  for (std::size_t k = 0; k < energies.size(); ++k) {
-    if (stencils[k].rows() == 0) continue;
-    const BlockSlots slots(*matrix.pattern, stencils[k]);
-    BlockSink sink = slots.sink(matrix);
-    energies[k]->add_hessian(x, projection, sink);
-  }
-  return matrix;
+  return hessian_of(energies, x, projection);
 }
 
 }  // namespace drape

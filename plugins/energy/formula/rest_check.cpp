@@ -5,26 +5,13 @@
 
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/plugin/refused_parameters.h"
-#include "core/numerics/linear_algebra/block_matrix.h"
 #include "core/numerics/model/derivative_check.h"
+#include "core/numerics/model/hessian_assembler.h"
 
 namespace drape::formula {
 namespace {
 
 constexpr double cell = 0.01;  // [m]
-
-bool has_finite_hessian(const BoundEnergy& energy, const Positions& x) {
-  const Stencils stencils = energy.stencils();
-  if (stencils.rows() == 0) return true;
-  BlockMatrix matrix(BlockPattern::of(static_cast<int>(x.rows()), {stencils}));
-  matrix.set_zero();
-  const BlockSlots slots(*matrix.pattern, stencils);
-  BlockSink sink = slots.sink(matrix);
-  energy.add_hessian(x, Projection::none, sink);
-  for (const double entry : matrix.values)
-    if (!std::isfinite(entry)) return false;
-  return true;
-}
 
 }  // namespace
 
@@ -40,10 +27,12 @@ void require_computable(const Law& law, const std::string& key, const Energy& en
   } catch (const std::exception& error) {
     refuse(error.what());
   }
-  if (law.kind != ElementKind::vertex && !has_finite_hessian(*bound, level.rest.vertices))
-    refuse(
-        "the stiffness of the rest shape is not finite: a second derivative is infinite there, as that of "
-        "sqrt(x) at 0");
+  if (law.kind == ElementKind::vertex) return;
+  for (const double entry : hessian_of(*bound, level.rest.vertices, Projection::none).values)
+    if (!std::isfinite(entry))
+      refuse(
+          "the stiffness of the rest shape is not finite: a second derivative is infinite there, as that of "
+          "sqrt(x) at 0");
 }
 
 std::string derivatives_remark(const Energy& energy, const Material& material) {
