@@ -6,7 +6,6 @@
 
 extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {
   static constexpr DrapePluginDescriptor descriptor = {
-      DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER,      "GCC 4.8", DRAPE_STANDARD_LIBRARY,
-      "3.3.9",         EIGEN_MAX_ALIGN_BYTES, "double",  [](drape::Registry&) { std::abort(); }};
+      DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, "GCC 4.8, Eigen 3.3.9", [](drape::Registry&) { std::abort(); }};
   return &descriptor;
 }

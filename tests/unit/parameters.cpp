@@ -56,7 +56,7 @@ struct Everything {
     d.add_choice("mode", &E::mode, {{"clamp", Mode::clamp}, {"absolute", Mode::absolute}});
     d.add_section("ball", &E::ball);
     d.add_sections("balls", &E::balls);
-    d.add_node("raw", &E::raw);
+    d.add("raw", &E::raw);
   }
 };
 

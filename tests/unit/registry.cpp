@@ -250,8 +250,8 @@ TEST_CASE("the JSON schema of a node allows the registered plugins and their par
     ConfigNode refiner = ConfigNode::of("loop");
     std::vector<ConfigNode> refiners;
     static void declare(Declaration<Top>& d) {
-      d.add_node("refiner", &Top::refiner).plugin("refiner");
-      d.add_node("refiners", &Top::refiners).plugin("refiner");
+      d.add("refiner", &Top::refiner).plugin("refiner");
+      d.add("refiners", &Top::refiners).plugin("refiner");
     }
   };
   const Registry registry = filled();

@@ -242,28 +242,28 @@ void ExperimentParameters::declare(Declaration<ExperimentParameters>& d) {
       .description(
           "load stepping on a level that begins from `start`; later levels are solved under the "
           "final loads");
-  d.add_node("energies", &ExperimentParameters::energies)
+  d.add("energies", &ExperimentParameters::energies)
       .plugin("energy")
       .required()
       .description("energies; their sum is minimised");
-  d.add_node("refiner", &ExperimentParameters::refiner)
+  d.add("refiner", &ExperimentParameters::refiner)
       .plugin("refiner")
       .description("refinement scheme; loop by default");
-  d.add_node("contact", &ExperimentParameters::contact)
+  d.add("contact", &ExperimentParameters::contact)
       .plugin("contact")
       .or_list()
       .description("contact model or a list of them; without the key, contact is not modelled");
-  d.add_node("obstacles", &ExperimentParameters::obstacles)
+  d.add("obstacles", &ExperimentParameters::obstacles)
       .description(
           "what the cloth collides with; each goes to the contact model that takes its keys, which `drape "
           "describe` of the model lists");
   declare_friction(d);
   d.add_section("newton", &ExperimentParameters::newton)
       .description("Newton parameters of every method; a method's own take precedence");
-  d.add_node("methods", &ExperimentParameters::methods)
+  d.add("methods", &ExperimentParameters::methods)
       .required()
       .description("map from method names to solvers; `type` defaults to the name");
-  d.add_node("metrics", &ExperimentParameters::metrics)
+  d.add("metrics", &ExperimentParameters::metrics)
       .plugin("metric")
       .description("metrics to evaluate; all by default");
   d.add_section("reference", &ExperimentParameters::reference)

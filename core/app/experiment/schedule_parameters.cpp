@@ -16,7 +16,7 @@ void ScheduleKey::declare(Declaration<ScheduleKey>& d) {
       .at_most(1e9)
       .required()
       .description("pseudo-times, ascending; the scene begins at 0");
-  d.add_node("values", &ScheduleKey::written)
+  d.add("values", &ScheduleKey::written)
       .required()
       .description("one value per time, each a number or a list of numbers");
   d.add_choice("interpolation", &ScheduleKey::interpolation,

@@ -19,7 +19,7 @@ namespace {
 template <class Interface, class Implementation>
 void register_class(const std::string& name, const py::object& type) {
   auto entry = std::make_unique<RegistryEntry>();
-  entry->kind = Kind<Interface>::name;
+  entry->kind = Interface::kind;
   entry->name = name;
   const py::object summary = type.attr("__doc__");
   if (!summary.is_none())

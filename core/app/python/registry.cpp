@@ -12,7 +12,7 @@ namespace {
 Registry& mutable_registry() {
   static Registry* const all = [] {
     auto loaded = std::make_unique<Registry>();
-    load_plugins(*loaded, plugin_directories_beside_library());
+    load_plugins(*loaded, plugin_directories());
     return loaded.release();
   }();
   return *all;

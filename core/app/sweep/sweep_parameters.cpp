@@ -17,7 +17,7 @@ void VariationParameters::declare(Declaration<VariationParameters>& d) {
   d.add("name", &VariationParameters::name)
       .required()
       .description("name of the variation and of its runs' folder");
-  d.add_node("set", &VariationParameters::set)
+  d.add("set", &VariationParameters::set)
       .description("map from paths of keys in the experiment (methods.pcs.hessian, energies.0) to values");
   d.add("levels", &VariationParameters::levels)
       .at_least(1)
@@ -39,7 +39,7 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .description(
           "several experiments to vary alike, in place of `base`; * in a file name matches anything, in "
           "alphabetical order");
-  d.add_node("set", &SweepParameters::set)
+  d.add("set", &SweepParameters::set)
       .description("map from paths of keys in the experiment to values, for every variation");
   d.add("seeds", &SweepParameters::seeds)
       .at_least(0)
@@ -57,7 +57,7 @@ void SweepParameters::declare(Declaration<SweepParameters>& d) {
       .above(0)
       .at_most(1e9)
       .description("a run that takes longer is stopped and counts as failed; no limit by default");
-  d.add_node("ablation", &SweepParameters::ablation)
+  d.add("ablation", &SweepParameters::ablation)
       .description(
           "list of variations, or {grid: {path: [values], …}} for every combination; by default the "
           "unchanged experiments");

@@ -103,7 +103,7 @@ Variation named(const ConfigNode& node, ConfigErrors& errors) {
 struct GridParameters {
   ConfigNode grid;
   static void declare(Declaration<GridParameters>& d) {
-    d.add_node("grid", &GridParameters::grid).required();
+    d.add("grid", &GridParameters::grid).required();
   }
 };
 

@@ -130,6 +130,7 @@ std::vector<TriangleMesh> obstacles_of(const BoundContacts& contacts);
 /// A kind of contact, made by name from its parameters.
 class ContactModel {
  public:
+  static constexpr const char* kind = "contact";  ///< in the registry
   virtual ~ContactModel() = default;
   /// Null when there is nothing to collide with: no contact code runs then.
   virtual std::unique_ptr<BoundContact> bind(const Level& level, const Material& material) const = 0;

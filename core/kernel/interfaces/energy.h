@@ -99,6 +99,7 @@ class BoundEnergy {
 /// A kind of energy, made by name from its parameters. It makes one BoundEnergy for each level.
 class Energy {
  public:
+  static constexpr const char* kind = "energy";  ///< in the registry
   virtual ~Energy() = default;
   virtual EnergyRole role() const = 0;
   /// Factor on the energy if every triangle, at rest and deformed, is split into four at its edge midpoints:

@@ -48,6 +48,7 @@ struct MetricInput {
 /// A measure of a state or of a pair of states. Evaluation is const: the same states have the same values.
 class Metric {
  public:
+  static constexpr const char* kind = "metric";  ///< in the registry
   virtual ~Metric() = default;
   virtual MetricScope scope() const { return MetricScope::state; }
   /// How reports show the values and fields.

@@ -8,6 +8,7 @@ namespace drape {
 /// Says where the vertices of a 1→4 subdivision lie, by the level's rest shape and connectivity alone.
 class Refiner {
  public:
+  static constexpr const char* kind = "refiner";  ///< in the registry
   virtual ~Refiner() = default;
   /// P_{l→l+1}: a row for each vertex of the level, then one for each edge in the order of Topology::edges;
   /// a column for each vertex. Rows sum to 1.

@@ -110,6 +110,7 @@ class Observer {
 /// A method: a schedule of Newton solves over the levels of a problem.
 class Solver {
  public:
+  static constexpr const char* kind = "solver";  ///< in the registry
   virtual ~Solver() = default;
   /// Results of the levels reached, in order. Only misuse throws.
   virtual std::vector<LevelResult> solve(const Problem& problem, Observer& observer) const = 0;

@@ -10,13 +10,9 @@ class Registry;
 
 /// A plugin library's description of itself in plain C, read before any of its C++ is called.
 struct DrapePluginDescriptor {
-  std::uint32_t magic;           ///< DRAPE_ABI_MAGIC
-  std::uint32_t abi_number;      ///< DRAPE_ABI_NUMBER; the fields below are read only if it matches
-  const char* compiler;          ///< "GCC 12.2"
-  const char* standard_library;  ///< "libstdc++ 12, C++11 ABI 1"
-  const char* eigen_version;     ///< "3.4.0"
-  int eigen_max_align_bytes;     ///< follows from the machine's vector width (-march)
-  const char* scalar;            ///< "double"
+  std::uint32_t magic;       ///< DRAPE_ABI_MAGIC
+  std::uint32_t abi_number;  ///< DRAPE_ABI_NUMBER; the fields below are read only if it matches
+  const char* build;         ///< DRAPE_BUILD: what decides about the layout of classes
   void (*register_entries)(drape::Registry&);
 };
 
@@ -40,18 +36,20 @@ struct DrapePluginDescriptor {
 #define DRAPE_STANDARD_LIBRARY "libc++ " DRAPE_TEXT(_LIBCPP_VERSION)
 #else
 #define DRAPE_STANDARD_LIBRARY \
-  "libstdc++ " DRAPE_TEXT(_GLIBCXX_RELEASE) ", C++11 ABI " DRAPE_TEXT(_GLIBCXX_USE_CXX11_ABI)
+  "libstdc++ " DRAPE_TEXT(_GLIBCXX_RELEASE) " with C++11 ABI " DRAPE_TEXT(_GLIBCXX_USE_CXX11_ABI)
 #endif
 
-#define DRAPE_EIGEN_VERSION \
-  DRAPE_TEXT(EIGEN_WORLD_VERSION) "." DRAPE_TEXT(EIGEN_MAJOR_VERSION) "." DRAPE_TEXT(EIGEN_MINOR_VERSION)
+/// As "GCC 12.2, libstdc++ 12 with C++11 ABI 1, Eigen 3.4.0 aligned to 64 bytes". The alignment follows from
+/// the machine's vector width (-march).
+#define DRAPE_BUILD                                                                              \
+  DRAPE_COMPILER                                                                                 \
+  ", " DRAPE_STANDARD_LIBRARY                                                                    \
+  ", Eigen " DRAPE_TEXT(EIGEN_WORLD_VERSION) "." DRAPE_TEXT(EIGEN_MAJOR_VERSION) "." DRAPE_TEXT( \
+      EIGEN_MINOR_VERSION) " aligned to " DRAPE_TEXT(EIGEN_MAX_ALIGN_BYTES) " bytes"
 
 /// The descriptor of the library under compilation.
-#define DRAPE_ABI_DESCRIPTOR(register_entries)                                                      \
-  {                                                                                                 \
-    DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_COMPILER, DRAPE_STANDARD_LIBRARY, DRAPE_EIGEN_VERSION, \
-        EIGEN_MAX_ALIGN_BYTES, "double", register_entries                                           \
-  }
+#define DRAPE_ABI_DESCRIPTOR(register_entries) \
+  { DRAPE_ABI_MAGIC, DRAPE_ABI_NUMBER, DRAPE_BUILD, register_entries }
 
 namespace drape {
 

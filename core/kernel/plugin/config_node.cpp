@@ -128,6 +128,22 @@ std::string ConfigNode::one_line() const {
   return text;
 }
 
+std::string ConfigNode::shown() const {
+  switch (kind) {
+    case Kind::null:
+      return "empty";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
+    case Kind::scalar:
+      break;
+  }
+  const bool number = !quoted && parse_number(scalar);
+  const std::string text = excerpt(scalar);
+  return number ? text : (quoted ? "the text \"" : "\"") + text + "\"";
+}
+
 ConfigNode ConfigNode::of(double value) {
   char text[32];
   std::string digits(text, std::to_chars(text, text + sizeof text, value).ptr);

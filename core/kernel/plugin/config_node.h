@@ -41,6 +41,7 @@ struct ConfigNode {
   void name_keys(const std::string& own = "");  ///< sets each location's key; own: this node's
 
   std::string one_line() const;  ///< as YAML; ambiguous texts are quoted
+  std::string shown() const;     ///< for "must be …, not …": a scalar's text, or what else it is
 
   static ConfigNode of(double value);  ///< shortest text that reads back the same
   static ConfigNode of(int value);

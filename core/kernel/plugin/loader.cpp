@@ -1,14 +1,16 @@
 #include "core/kernel/plugin/loader.h"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/abi.h"
-#include "core/kernel/plugin/shared_library.h"
 
 namespace drape {
 namespace {
@@ -27,6 +29,28 @@ std::vector<fs::path> libraries_of(const fs::path& directory) {
   return libraries;
 }
 
+/// Why the file is no loadable library, with a remedy; "" if it may be one. dlopen maps a file without a look
+/// at its size, so one that is cut short would end the process with SIGBUS. Its section headers are the last
+/// bytes.
+std::string fault_of(const fs::path& library) {
+  std::error_code error;
+  const fs::file_status status = fs::status(library, error);
+  if (status.type() == fs::file_type::not_found) return "there is no such file; does the link lead nowhere?";
+  if (error) return error.message();
+  if (!fs::is_regular_file(status)) return "it is not a regular file; take it out of the folder";
+  std::ifstream file(library, std::ios::binary);
+  if (!file) return "it cannot be read; check its permissions";
+  ElfW(Ehdr) header{};
+  file.read(reinterpret_cast<char*>(&header), sizeof header);
+  const std::uintmax_t size = fs::file_size(library);
+  if (size >= sizeof header && std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
+    return "it is no shared library (ELF); take it out of the folder or build it again";
+  if (size < sizeof header || size < header.e_shoff + std::uintmax_t{header.e_shnum} * header.e_shentsize)
+    return "the file is cut short at " + std::to_string(size) +
+           " bytes, its headers tell of more; build or copy it again";
+  return "";
+}
+
 /// Calls a function of a plugin; errors that it throws name the library.
 template <class Call>
 auto call(const std::string& path, const char* what, const Call& function) {
@@ -43,28 +67,23 @@ auto call(const std::string& path, const char* what, const Call& function) {
 
 void load(Registry& registry, const fs::path& library) {
   const std::string path = library.string();
-  const std::string unfit = fault_of_library(library);
+  const std::string unfit = fault_of(library);
   if (!unfit.empty()) throw std::runtime_error(path + ": cannot be loaded: " + unfit);
   // A name without a slash would be looked for in the system's folders.
   void* handle = dlopen(fs::absolute(library).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) throw std::runtime_error(path + ": cannot be loaded: " + dlerror());
   const auto entry_point =
       reinterpret_cast<const DrapePluginDescriptor* (*)()>(dlsym(handle, "drape_plugin"));
-  if (!entry_point)
-    throw std::runtime_error(path +
-                             ": is not a drape plugin: it exports no function drape_plugin"
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error(path + ": is not a drape plugin: " + why +
                              " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
+  };
+  if (!entry_point) refuse("it exports no function drape_plugin");
   const DrapePluginDescriptor* descriptor = call(path, "function drape_plugin", entry_point);
-  if (!descriptor)
-    throw std::runtime_error(path +
-                             ": is not a drape plugin: its function drape_plugin returns null"
-                             " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
+  if (!descriptor) refuse("its function drape_plugin returns null");
   const std::string fault = mismatch(*descriptor);
   if (!fault.empty()) throw std::runtime_error(path + ": does not fit this drape, rebuild it: " + fault);
-  if (!descriptor->register_entries)
-    throw std::runtime_error(path +
-                             ": is not a drape plugin: its descriptor has no function that names its entries"
-                             " (see DRAPE_PLUGIN in core/kernel/plugin/plugin.h)");
+  if (!descriptor->register_entries) refuse("its descriptor has no function that names its entries");
   registry.current_library = path;
   const std::size_t before = registry.entries().size();
   call(path, "DRAPE_PLUGIN", [&] { descriptor->register_entries(registry); });
@@ -74,10 +93,11 @@ void load(Registry& registry, const fs::path& library) {
 
 }  // namespace
 
-namespace {
-
-/// `beside`, if it is a folder, then those of DRAPE_PLUGIN_PATH.
-std::vector<fs::path> search_path(const fs::path& beside) {
+std::vector<fs::path> plugin_directories() {
+  Dl_info own;
+  if (!dladdr(reinterpret_cast<const void*>(&load_plugins), &own) || !own.dli_fname)
+    throw std::runtime_error("the path of libdrape cannot be found; name its plugins in DRAPE_PLUGIN_PATH");
+  const fs::path beside = fs::canonical(own.dli_fname).parent_path() / "drape";
   std::vector<fs::path> directories;
   if (fs::is_directory(beside)) directories.push_back(beside);
   const char* variable = std::getenv("DRAPE_PLUGIN_PATH");
@@ -88,19 +108,6 @@ std::vector<fs::path> search_path(const fs::path& beside) {
     directories.push_back(directory);
   }
   return directories;
-}
-
-}  // namespace
-
-std::vector<fs::path> plugin_directories() {
-  return search_path(fs::read_symlink("/proc/self/exe").parent_path().parent_path() / "lib" / "drape");
-}
-
-std::vector<fs::path> plugin_directories_beside_library() {
-  Dl_info library;
-  if (!dladdr(reinterpret_cast<const void*>(&load_plugins), &library) || !library.dli_fname)
-    throw std::runtime_error("the path of libdrape cannot be found; name its plugins in DRAPE_PLUGIN_PATH");
-  return search_path(fs::canonical(library.dli_fname).parent_path() / "drape");
 }
 
 void load_plugins(Registry& registry, const std::vector<fs::path>& directories) {

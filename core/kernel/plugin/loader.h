@@ -7,13 +7,9 @@
 
 namespace drape {
 
-/// The plugin search path: lib/drape beside the folder of the running command if it exists, then every folder
-/// of the colon-separated DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
+/// The plugin search path: drape/ beside libdrape if it exists, then every folder of the colon-separated
+/// DRAPE_PLUGIN_PATH. Throws std::runtime_error if one of the latter is not a folder.
 std::vector<std::filesystem::path> plugin_directories();
-
-/// The search path of a program that is not drape's own, such as a Python interpreter: it begins with drape/
-/// beside libdrape.
-std::vector<std::filesystem::path> plugin_directories_beside_library();
 
 /// Loads every *.so of the folders, by name, and registers its entries. Throws std::runtime_error, one line
 /// with the library's path, for a library that cannot be loaded, is no plugin, is not compatible with this

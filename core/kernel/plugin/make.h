@@ -37,7 +37,7 @@ template <class Interface>
 std::shared_ptr<Interface> make_from(const Registry& registry, const ConfigNode& node, ConfigErrors& errors,
                                      ConfigNode* resolved = nullptr, const Interface* before = nullptr) {
   const PluginParameters parameters =
-      read_plugin_parameters(registry, Kind<Interface>::name, node, errors, resolved);
+      read_plugin_parameters(registry, Interface::kind, node, errors, resolved);
   return std::static_pointer_cast<Interface>(make_plugin(parameters, locate_in(node), errors, before));
 }
 

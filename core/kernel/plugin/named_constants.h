@@ -12,8 +12,8 @@ struct NamedConstant {
   std::string unit;  ///< as written; may be empty
 };
 
-/// Numbers that a config names, as in `{warp: {value: 2e3, unit: N/m}, nu: 0.2}`: a parameter that
-/// Declaration::add_constants declares. Each is a key of its plugin: `energies.orthotropic.warp`.
+/// Numbers that a config names, as in `{warp: {value: 2e3, unit: N/m}, nu: 0.2}`, of the parameter
+/// `constants_key`. Each is a key of its plugin: `energies.orthotropic.warp`.
 struct NamedConstants {
   std::vector<NamedConstant> all;
 };

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include "core/kernel/files/message_text.h"
@@ -25,23 +24,6 @@ std::optional<Number> parse_all(const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data() + skip, end, value);
   if (error != std::errc() || rest != end) return std::nullopt;
   return value;
-}
-
-/// The written value, for "must be …, not …".
-std::string shown(const ConfigNode& node) {
-  switch (node.kind) {
-    case NodeKind::null:
-      return "empty";
-    case NodeKind::list:
-      return "a list";
-    case NodeKind::map:
-      return "a map";
-    case NodeKind::scalar:
-      break;
-  }
-  const bool number = !node.quoted && parse_number(node.scalar);
-  const std::string text = excerpt(node.scalar);
-  return number ? text : (node.quoted ? "the text \"" : "\"") + text + "\"";
 }
 
 std::string with_unit(double value, const Parameter& p) {
@@ -85,7 +67,7 @@ void check_scalar(const std::string& type, const std::string& label, const Confi
   const std::string fault = scalar_fault(type, node, p);
   if (fault.empty()) return;
   const std::string nearest = node.kind == NodeKind::scalar ? nearest_word(node.scalar, p.choices) : "";
-  errors.push_back({node.where, label + " must be " + fault + ", not " + shown(node) +
+  errors.push_back({node.where, label + " must be " + fault + ", not " + node.shown() +
                                     (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?")});
 }
 
@@ -97,7 +79,7 @@ void check_list(const ConfigNode& node, const Parameter& p, ConfigErrors& errors
   if (type == "node") items = p.plugin_kind.empty() ? "values" : "plugins of kind " + p.plugin_kind;
   const std::string wanted = "a list of " + (p.size ? std::to_string(p.size) + " " : "") + items;
   if (node.kind != NodeKind::list) {
-    errors.push_back({node.where, label + " must be " + wanted + ", not " + shown(node)});
+    errors.push_back({node.where, label + " must be " + wanted + ", not " + node.shown()});
   } else if (p.size && int(node.items.size()) != p.size) {
     errors.push_back(
         {node.where, label + " must be " + wanted + ", not of " + std::to_string(node.items.size())});
@@ -117,7 +99,7 @@ bool is_identifier(const std::string& text) {
 void check_named_constants(const ConfigNode& node, const Parameter& p, ConfigErrors& errors) {
   if (node.kind != NodeKind::map && node.kind != NodeKind::null) {
     errors.push_back({node.where, "\"" + p.name + "\" must be a map of names and numbers, as in {a: 2, b: " +
-                                      "{value: 3, unit: N/m}}, not " + shown(node)});
+                                      "{value: 3, unit: N/m}}, not " + node.shown()});
     return;
   }
   std::set<std::string> names;
@@ -184,17 +166,6 @@ ConfigNode relative_path(const ConfigNode& node) {
   return path;
 }
 
-/// The same as an absolute path. Links are followed: ".." after one leads up from the folder that it names.
-ConfigNode absolute_path(ConfigNode path) {
-  for (ConfigNode& item : path.items) item = absolute_path(item);
-  if (path.scalar.empty()) return path;
-  const std::filesystem::path whole = std::filesystem::absolute(path.scalar);
-  std::error_code unknown;  // as where a folder may not be searched
-  const std::filesystem::path followed = std::filesystem::weakly_canonical(whole, unknown);
-  path.scalar = (unknown ? whole.lexically_normal() : followed).string();
-  return path;
-}
-
 }  // namespace
 
 void read_parameter(const Parameter& p, void* object, const ConfigNode& value, ConfigErrors& errors) {
@@ -244,80 +215,5 @@ ConfigNode to_node(const NamedConstants& values) {
 }
 
 }  // namespace parameter_detail
-
-namespace {
-
-/// "did you mean …?" or the known keys, for an unknown one.
-std::string hint_for(const std::string& key, const Schema& schema) {
-  std::vector<std::string> known;
-  for (const Parameter& p : schema.parameters)
-    if (!p.from_experiment) known.push_back(p.name);
-  const std::string nearest = nearest_word(key, known);
-  if (!nearest.empty()) return "; did you mean \"" + nearest + "\"?";
-  return known.empty() ? "; it takes no keys" : "; known keys are " + joined(known);
-}
-
-}  // namespace
-
-void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
-  const std::string in = name.empty() ? "" : " in " + name;
-  if (map.kind != NodeKind::map && map.kind != NodeKind::null) {
-    const std::string label = name.empty() ? "this" : "\"" + name + "\"";
-    errors.push_back({map.where, label + " must be a map of keys and values, not " + shown(map)});
-    return;
-  }
-  std::map<std::string, size_t> first_of;
-  for (size_t i = 0; i < map.entries.size(); ++i) {
-    const auto& [key, node] = map.entries[i];
-    const size_t first = first_of.emplace(key, i).first->second;
-    const auto named = [&key = map.entries[i].first](const Parameter& p) { return p.name == key; };
-    const auto known = std::find_if(parameters.begin(), parameters.end(), named);
-    if (first != i) {
-      errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
-                                                  "; it is first set at " + map.key_locations[first].text()});
-    } else if (known == parameters.end()) {
-      errors.push_back(
-          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this)});
-    } else {
-      read_parameter(*known, object, node, errors);
-    }
-  }
-  for (const Parameter& p : parameters)
-    if (p.required && !map.find(p.name))
-      errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
-  for (const Parameter& p : parameters) {
-    const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
-    if (const std::string fault = written ? unread_fault(p, object) : ""; !fault.empty())
-      errors.push_back({written->where, fault});
-  }
-}
-
-std::string Schema::unread_fault(const Parameter& p, const void* object) const {
-  const Parameter* selector = parameter_named(*this, p.selector);
-  if (!selector) return "";
-  const std::string chosen = selector->write(object).scalar;
-  const auto& reads = p.selector_values;
-  if (std::find(reads.begin(), reads.end(), chosen) != reads.end() ||
-      p.write(object).one_line() == p.write(fresh().get()).one_line())
-    return "";
-  std::string needed;
-  for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
-  return "\"" + p.name + "\"" + (name.empty() ? "" : " in " + name) + " needs \"" + needed + "\"; here \"" +
-         p.selector + "\" is " + (chosen.empty() ? "not given" : chosen);
-}
-
-const Parameter* parameter_named(const Schema& schema, const std::string& name) {
-  for (const Parameter& p : schema.parameters)
-    if (p.name == name) return &p;
-  return nullptr;
-}
-
-ConfigNode Schema::write(const void* object) const {
-  ConfigNode map;
-  map.kind = NodeKind::map;
-  for (const Parameter& p : parameters)
-    map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
-  return map;
-}
 
 }  // namespace drape

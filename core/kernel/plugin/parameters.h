@@ -85,83 +85,39 @@ const Parameter* parameter_named(const Schema& schema, const std::string& name);
 class ParameterHandle {
  public:
   explicit ParameterHandle(Parameter& parameter) : p_(parameter) {}
-  ParameterHandle& description(std::string text) {
-    p_.description = std::move(text);
-    return *this;
-  }
-  ParameterHandle& unit(std::string text) {
-    p_.unit = std::move(text);
-    return *this;
-  }
-  ParameterHandle& source(std::string text) {
-    p_.source = std::move(text);
-    return *this;
-  }
-  ParameterHandle& at_least(double v) {
-    p_.minimum = v;
-    return *this;
-  }
-  ParameterHandle& at_most(double v) {
-    p_.maximum = v;
-    return *this;
-  }
-  ParameterHandle& above(double v) {
-    p_.minimum = v;
-    p_.open_minimum = true;
-    return *this;
-  }
-  ParameterHandle& below(double v) {
-    p_.maximum = v;
-    p_.open_maximum = true;
-    return *this;
-  }
-  ParameterHandle& size(int n) {
-    p_.size = n;
-    return *this;
-  }
-  ParameterHandle& required() {
-    p_.required = true;
-    return *this;
-  }
+  ParameterHandle& description(std::string text) { return set(&Parameter::description, std::move(text)); }
+  ParameterHandle& unit(std::string text) { return set(&Parameter::unit, std::move(text)); }
+  ParameterHandle& source(std::string text) { return set(&Parameter::source, std::move(text)); }
+  ParameterHandle& at_least(double v) { return set(&Parameter::minimum, v); }
+  ParameterHandle& at_most(double v) { return set(&Parameter::maximum, v); }
+  ParameterHandle& above(double v) { return at_least(v).set(&Parameter::open_minimum, true); }
+  ParameterHandle& below(double v) { return at_most(v).set(&Parameter::open_maximum, true); }
+  ParameterHandle& size(int n) { return set(&Parameter::size, n); }
+  ParameterHandle& required() { return set(&Parameter::required, true); }
   ParameterHandle& choices(std::vector<std::string> words) {
-    p_.choices = std::move(words);
-    return *this;
+    return set(&Parameter::choices, std::move(words));
   }
-  ParameterHandle& plugin(std::string kind) {
-    p_.plugin_kind = std::move(kind);
-    return *this;
-  }
-  ParameterHandle& or_list() {
-    p_.or_list = true;
-    return *this;
-  }
-  ParameterHandle& shorthand(std::string key) {
-    p_.shorthand_key = std::move(key);
-    return *this;
-  }
-  ParameterHandle& path() {
-    p_.path = true;
-    return *this;
-  }
+  ParameterHandle& plugin(std::string kind) { return set(&Parameter::plugin_kind, std::move(kind)); }
+  ParameterHandle& or_list() { return set(&Parameter::or_list, true); }
+  ParameterHandle& shorthand(std::string key) { return set(&Parameter::shorthand_key, std::move(key)); }
+  ParameterHandle& path() { return set(&Parameter::path, true); }
   /// A contact model's parameter that is written at the top of the experiment, once for all models.
-  ParameterHandle& from_experiment() {
-    p_.from_experiment = true;
-    return *this;
-  }
+  ParameterHandle& from_experiment() { return set(&Parameter::from_experiment, true); }
   /// It is read only where the choice `key` beside it has one of these values. Written elsewhere, it is
   /// refused unless it is the default, which a saved config has.
   ParameterHandle& only_with(std::string key, std::vector<std::string> values) {
-    p_.selector = std::move(key);
-    p_.selector_values = std::move(values);
-    return *this;
+    return set(&Parameter::selector, std::move(key)).set(&Parameter::selector_values, std::move(values));
   }
   /// A key that tells an obstacle of this contact model from those of others.
-  ParameterHandle& identifies_item() {
-    p_.identifies_item = true;
+  ParameterHandle& identifies_item() { return set(&Parameter::identifies_item, true); }
+
+ private:
+  template <class Value>
+  ParameterHandle& set(Value Parameter::*member, Value value) {
+    p_.*member = std::move(value);
     return *this;
   }
 
- private:
   Parameter& p_;
 };
 
@@ -176,8 +132,8 @@ class ParameterHandle {
 ///
 /// Members may be double, int, bool, std::string, std::optional of those, std::vector of double, int or
 /// std::string, Eigen::Vector2d/3d, enums with words (`add_choice`), another declared struct
-/// (`add_section`), a vector of one (`add_sections`), numbers that the config names (`add_constants`), or a
-/// ConfigNode or a vector of them for a plugin that is made later (`add_node`).
+/// (`add_section`), a vector of one (`add_sections`), numbers that the config names (NamedConstants), or a
+/// ConfigNode or a vector of them for a plugin that is made later; name its kind with `.plugin("energy")`.
 template <class Struct>
 class Declaration;
 

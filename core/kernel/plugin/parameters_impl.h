@@ -90,52 +90,33 @@ ConfigNode to_node(const std::optional<T>& value) {
   return value ? to_node(*value) : ConfigNode();
 }
 
-// The config type of a member type.
+// The config type of a member, of which only the type is looked at.
+inline std::string type_of(const double*) { return "number"; }
+inline std::string type_of(const int*) { return "integer"; }
+inline std::string type_of(const bool*) { return "boolean"; }
+inline std::string type_of(const std::string*) { return "text"; }
+inline std::string type_of(const ConfigNode*) { return "node"; }
+inline std::string type_of(const NamedConstants*) { return "map of numbers"; }
 template <class T>
-struct Shape;
-template <class T>
-struct ScalarShape {
-  static constexpr int size = 0;
-  static constexpr bool nullable = false;
-};
-template <>
-struct Shape<double> : ScalarShape<double> {
-  static std::string type() { return "number"; }
-};
-template <>
-struct Shape<int> : ScalarShape<int> {
-  static std::string type() { return "integer"; }
-};
-template <>
-struct Shape<bool> : ScalarShape<bool> {
-  static std::string type() { return "boolean"; }
-};
-template <>
-struct Shape<std::string> : ScalarShape<std::string> {
-  static std::string type() { return "text"; }
-};
-template <>
-struct Shape<ConfigNode> : ScalarShape<ConfigNode> {
-  static std::string type() { return "node"; }
-};
-template <>
-struct Shape<NamedConstants> : ScalarShape<NamedConstants> {
-  static std::string type() { return "map of numbers"; }
-};
-template <class T>
-struct Shape<std::vector<T>> : ScalarShape<T> {
-  static std::string type() { return "list of " + Shape<T>::type() + "s"; }
-};
+std::string type_of(const std::vector<T>*) {
+  return "list of " + type_of(static_cast<const T*>(nullptr)) + "s";
+}
 template <int N>
-struct Shape<Eigen::Matrix<double, N, 1>> {
-  static constexpr int size = N;
-  static constexpr bool nullable = false;
-  static std::string type() { return "list of numbers"; }
-};
+std::string type_of(const Eigen::Matrix<double, N, 1>*) {
+  return "list of numbers";
+}
 template <class T>
-struct Shape<std::optional<T>> : Shape<T> {
-  static constexpr bool nullable = true;
-};
+std::string type_of(const std::optional<T>*) {
+  return type_of(static_cast<const T*>(nullptr));
+}
+
+/// Items of a list of fixed length; 0 for other members.
+template <class Member>
+constexpr int size_of = 0;
+template <int N>
+constexpr int size_of<Eigen::Matrix<double, N, 1>> = N;
+template <class T>
+constexpr int size_of<std::optional<T>> = size_of<T>;
 
 }  // namespace parameter_detail
 
@@ -147,13 +128,12 @@ class Declaration {
   /// `Owner` is Struct or a base of it.
   template <class Member, class Owner>
   ParameterHandle add(const std::string& name, Member Owner::*member) {
-    using Shape = parameter_detail::Shape<Member>;
-    Parameter& p = append(name, Shape::type(), member);
+    Parameter& p = append(name, parameter_detail::type_of(static_cast<const Member*>(nullptr)), member);
     p.number = [member](void* object, std::size_t k) {
       return parameter_detail::number(static_cast<Struct*>(object)->*member, k);
     };
-    p.size = Shape::size;
-    p.nullable = Shape::nullable;
+    p.size = parameter_detail::size_of<Member>;
+    p.nullable = requires(Member value) { value.reset(); };
     p.read = [member](void* object, const ConfigNode& node, ConfigErrors&) {
       parameter_detail::convert(node, static_cast<Struct*>(object)->*member);
     };
@@ -222,15 +202,6 @@ class Declaration {
     p.append = [member](void* object) { return &(static_cast<Struct*>(object)->*member).emplace_back(); };
     return ParameterHandle(p);
   }
-
-  /// A ConfigNode or a std::vector of them, stored as written; name its kind with `.plugin("energy")`.
-  template <class Node>
-  ParameterHandle add_node(const std::string& name, Node Struct::*member) {
-    return add(name, member);
-  }
-
-  /// Numbers that the config names; the parameter is `constants`.
-  ParameterHandle add_constants(NamedConstants Struct::*member) { return add(constants_key, member); }
 
   /// A parameter that is declared already, as by a function that several structs call. Valid until the next
   /// one is added, as every handle. Throws std::runtime_error if there is none of this name.

@@ -11,10 +11,13 @@
 ///     }
 ///
 /// It exports one C function, `drape_plugin`, whose descriptor is checked before any other call.
-#define DRAPE_PLUGIN(registry)                                                                        \
-  static void drape_register_entries(drape::Registry& registry);                                      \
-  extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() {     \
-    static constexpr DrapePluginDescriptor descriptor = DRAPE_ABI_DESCRIPTOR(drape_register_entries); \
-    return &descriptor;                                                                               \
-  }                                                                                                   \
-  static void drape_register_entries(drape::Registry& registry)
+#define DRAPE_PLUGIN(registry)                                                                    \
+  static void DRAPE_JOINED(drape_plugin, _entries)(drape::Registry & registry);                   \
+  extern "C" __attribute__((visibility("default"))) const DrapePluginDescriptor* drape_plugin() { \
+    static constexpr DrapePluginDescriptor descriptor =                                           \
+        DRAPE_ABI_DESCRIPTOR(DRAPE_JOINED(drape_plugin, _entries));                               \
+    return &descriptor;                                                                           \
+  }                                                                                               \
+  static void DRAPE_JOINED(drape_plugin, _entries)(drape::Registry & registry)
+#define DRAPE_JOINED_(a, b) a##b
+#define DRAPE_JOINED(a, b) DRAPE_JOINED_(a, b)

@@ -6,36 +6,6 @@
 
 namespace drape {
 
-class ContactModel;
-class Energy;
-class Metric;
-class Refiner;
-class Solver;
-
-/// The name of an interface of core/kernel/interfaces.
-template <class Interface>
-struct Kind;
-template <>
-struct Kind<ContactModel> {
-  static constexpr const char* name = "contact";
-};
-template <>
-struct Kind<Energy> {
-  static constexpr const char* name = "energy";
-};
-template <>
-struct Kind<Metric> {
-  static constexpr const char* name = "metric";
-};
-template <>
-struct Kind<Refiner> {
-  static constexpr const char* name = "refiner";
-};
-template <>
-struct Kind<Solver> {
-  static constexpr const char* name = "solver";
-};
-
 /// What a plugin's parameters are read into.
 template <class Implementation>
 struct ParametersOf {
@@ -56,7 +26,7 @@ template <class Interface, class Implementation>
 void Registry::add(const std::string& name, const std::string& summary) {
   using Parameters = typename ParametersOf<Implementation>::Type;
   auto entry = std::make_unique<RegistryEntry>();
-  entry->kind = Kind<Interface>::name;
+  entry->kind = Interface::kind;
   entry->name = name;
   entry->summary = summary;
   entry->library = current_library;

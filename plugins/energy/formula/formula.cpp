@@ -23,11 +23,11 @@ void Formula::Parameters::declare(Declaration<Parameters>& d) {
        "per", &Parameters::per,
        {{"triangle", ElementKind::triangle}, {"hinge", ElementKind::hinge}, {"vertex", ElementKind::vertex}})
       .description("element that the formula is about; decides which symbols it has");
-  d.add_constants(&Parameters::constants)
+  d.add(constants_key, &Parameters::constants)
       .at_least(-1e15)
       .at_most(1e15)
       .description("numbers with names: {NAME: 2} or {NAME: {value: 2, unit: N/m}}, in SI units");
-  d.add_node("where", &Parameters::where)
+  d.add("where", &Parameters::where)
       .description("sub-expressions with names: {NAME: \"…\"}; each may use those above it");
   d.add("density", &Parameters::density)
       .unit("J/m²")

@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "core/kernel/files/message_text.h"
+#include "core/kernel/files/string_utils.h"
+#include "core/kernel/plugin/parameters.h"
+
+namespace drape {
+namespace {
+
+using NodeKind = ConfigNode::Kind;
+
+/// A path, or each of a list, as an absolute one. Links are followed: ".." after one leads up from the folder
+/// that it names.
+ConfigNode absolute_path(ConfigNode path) {
+  for (ConfigNode& item : path.items) item = absolute_path(item);
+  if (path.scalar.empty()) return path;
+  const std::filesystem::path whole = std::filesystem::absolute(path.scalar);
+  std::error_code unknown;  // as where a folder may not be searched
+  const std::filesystem::path followed = std::filesystem::weakly_canonical(whole, unknown);
+  path.scalar = (unknown ? whole.lexically_normal() : followed).string();
+  return path;
+}
+
+/// "did you mean …?" or the known keys, for an unknown one.
+std::string hint_for(const std::string& key, const Schema& schema) {
+  std::vector<std::string> known;
+  for (const Parameter& p : schema.parameters)
+    if (!p.from_experiment) known.push_back(p.name);
+  const std::string nearest = nearest_word(key, known);
+  if (!nearest.empty()) return "; did you mean \"" + nearest + "\"?";
+  return known.empty() ? "; it takes no keys" : "; known keys are " + joined(known);
+}
+
+}  // namespace
+
+void Schema::read(void* object, const ConfigNode& map, ConfigErrors& errors) const {
+  const std::string in = name.empty() ? "" : " in " + name;
+  if (map.kind != NodeKind::map && map.kind != NodeKind::null) {
+    const std::string label = name.empty() ? "this" : "\"" + name + "\"";
+    errors.push_back({map.where, label + " must be a map of keys and values, not " + map.shown()});
+    return;
+  }
+  std::map<std::string, size_t> first_of;
+  for (size_t i = 0; i < map.entries.size(); ++i) {
+    const auto& [key, node] = map.entries[i];
+    const size_t first = first_of.emplace(key, i).first->second;
+    const auto named = [&key = map.entries[i].first](const Parameter& p) { return p.name == key; };
+    const auto known = std::find_if(parameters.begin(), parameters.end(), named);
+    if (first != i) {
+      errors.push_back({map.key_locations[i], "repeated key \"" + excerpt(key) + "\"" + in +
+                                                  "; it is first set at " + map.key_locations[first].text()});
+    } else if (known == parameters.end()) {
+      errors.push_back(
+          {map.key_locations[i], "unknown key \"" + excerpt(key) + "\"" + in + hint_for(key, *this)});
+    } else {
+      read_parameter(*known, object, node, errors);
+    }
+  }
+  for (const Parameter& p : parameters)
+    if (p.required && !map.find(p.name))
+      errors.push_back({map.where, "\"" + p.name + "\"" + in + " is required and missing"});
+  for (const Parameter& p : parameters) {
+    const ConfigNode* written = p.selector.empty() ? nullptr : map.find(p.name);
+    if (const std::string fault = written ? unread_fault(p, object) : ""; !fault.empty())
+      errors.push_back({written->where, fault});
+  }
+}
+
+std::string Schema::unread_fault(const Parameter& p, const void* object) const {
+  const Parameter* selector = parameter_named(*this, p.selector);
+  if (!selector) return "";
+  const std::string chosen = selector->write(object).scalar;
+  const auto& reads = p.selector_values;
+  if (std::find(reads.begin(), reads.end(), chosen) != reads.end() ||
+      p.write(object).one_line() == p.write(fresh().get()).one_line())
+    return "";
+  std::string needed;
+  for (const std::string& value : reads) needed += (needed.empty() ? "" : " or ") + p.selector + ": " + value;
+  return "\"" + p.name + "\"" + (name.empty() ? "" : " in " + name) + " needs \"" + needed + "\"; here \"" +
+         p.selector + "\" is " + (chosen.empty() ? "not given" : chosen);
+}
+
+const Parameter* parameter_named(const Schema& schema, const std::string& name) {
+  for (const Parameter& p : schema.parameters)
+    if (p.name == name) return &p;
+  return nullptr;
+}
+
+ConfigNode Schema::write(const void* object) const {
+  ConfigNode map;
+  map.kind = NodeKind::map;
+  for (const Parameter& p : parameters)
+    map.add(p.name, p.path ? absolute_path(p.write(object)) : p.write(object));
+  return map;
+}
+
+}  // namespace drape
