@@ -9,6 +9,7 @@
 # make scenes   the study of every scene of the supplement's Table 2 by PCS, many hours (`make data`); LEVELS=2 goes to at most
 #               so many, and writes no record
 # make python   build the Python module: PYTHONPATH=build/python python3 -c "import drape"; `make test` then tests it too
+# make wheel    pack the Python module with its libraries, command and plugins: build-wheel/drape-*.whl, for pip of /usr/bin/python3
 # make test     build and run every test
 # make fuzz     fuzz the readers of configs, --set, meshes and checkpoints for FUZZ_SECONDS each (20), or FUZZ_RUNS inputs each;
 #               FUZZ_TARGETS="mesh config" chooses some; what ends one is kept in build-fuzz/artifacts
@@ -31,11 +32,11 @@ JOBS ?= $(shell nproc)
 # Not `?=`: make itself has LINT = lint.
 LINT =
 # A folder is checked as one unit, which has its name.
-LINTED := $(if $(LINT),/(unity|lint)_$(notdir $(LINT:/=))(_cxx)?\.,(core|plugins)/)
+LINTED := $(if $(LINT),/unity_$(notdir $(LINT:/=))_cxx\.,(core|plugins)/)
 BUILD := $(if $(filter release ci,$(PRESET)),build,build-$(PRESET))
 SOURCES = $(shell find core plugins examples tests benchmarks -name '*.cpp' -o -name '*.h')
 
-.PHONY: all setup configure build build-tests benchmarks python demo table1 scenes test fuzz extremes data bench hard results figures \
+.PHONY: all setup configure build build-tests benchmarks python wheel demo table1 scenes test fuzz extremes data bench hard results figures \
         pictures api format fix-format lint clean
 all: build
 
@@ -65,7 +66,12 @@ benchmarks: setup
 python: configure
 	@third_party/setup use-python
 	@$(CONFIGURE) -D DRAPE_PYTHON=ON >/dev/null
-	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_python drape_python_files
+	@cmake --build $(BUILD) -j $(JOBS) --target drape_cli drape_plugins drape_python
+
+wheel:
+	@third_party/setup run use-python
+	@/usr/bin/python3 -m pip wheel -q --no-build-isolation --no-deps --no-index -w build-wheel .
+	@ls build-wheel/drape-*.whl
 
 demo: build
 	@configs/demo $(BUILD)/bin/drape

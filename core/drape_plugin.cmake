@@ -2,18 +2,14 @@
 #
 #   drape_add_plugin(<name> SOURCES <file>...)
 function(drape_add_plugin name)
-  cmake_parse_arguments(PARSE_ARGV 1 plugin "" "" "SOURCES")
-  if(NOT plugin_SOURCES OR plugin_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "drape_add_plugin(${name}): write drape_add_plugin(<name> SOURCES <file>...)")
-  endif()
+  cmake_parse_arguments(PARSE_ARGV 1 plugin "" "" SOURCES)
   add_library(${name} MODULE ${plugin_SOURCES})
-  target_link_libraries(${name} PRIVATE drape::drape)
   # A plugin exports its one C function, so that two plugins may use one name for different things.
   set_target_properties(${name} PROPERTIES PREFIX lib LINKER_LANGUAGE CXX
                         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  target_link_libraries(${name} PRIVATE drape::drape)
   # A missing symbol shows here, not when loading; a sanitizer's own are in the program alone.
-  string(TOUPPER "${CMAKE_BUILD_TYPE}" build_type)
-  if(NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}" MATCHES "-fsanitize")
+  if(NOT "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_DEBUG}" MATCHES "-fsanitize")
     target_link_options(${name} PRIVATE -Wl,--no-undefined)
   endif()
 endfunction()

@@ -3,10 +3,10 @@
 namespace folders {
 
 std::string source() { return DRAPE_SOURCE_DIR; }
-std::string commands() { return DRAPE_BUILD_BIN_DIR; }
-std::string plugins() { return DRAPE_BUILD_PLUGIN_DIR; }
-std::string test_plugins() { return DRAPE_TEST_PLUGIN_DIR; }
-std::string example_plugins() { return DRAPE_EXAMPLE_PLUGIN_DIR; }
-std::string tests() { return DRAPE_BUILD_TEST_DIR; }
+std::string commands() { return DRAPE_BUILD_DIR "/bin"; }
+std::string plugins() { return DRAPE_BUILD_DIR "/lib/drape"; }
+std::string test_plugins() { return DRAPE_BUILD_DIR "/tests/plugins"; }
+std::string example_plugins() { return DRAPE_BUILD_DIR "/tests/examples"; }
+std::string tests() { return DRAPE_BUILD_DIR "/tests"; }
 
 }  // namespace folders

@@ -52,19 +52,6 @@ std::vector<std::string> includes_of(const fs::path& file) {
   return included;
 }
 
-/// Whether core/CMakeLists.txt leaves the header out of the installation.
-bool is_internal(const fs::path& header) {
-  static const std::string build = [] {
-    std::string text;
-    for (const std::string& line : lines_of(fs::path(folders::source()) / "core/CMakeLists.txt"))
-      text += line + " ";
-    const std::size_t begin = text.find("set(internal ");
-    return text.substr(begin, text.find(')', begin) - begin) + " ";
-  }();
-  const fs::path name = header.lexically_relative("core").replace_extension();
-  return build.find(" " + name.generic_string() + " ") != std::string::npos;
-}
-
 /// Position of a file's folder in the order; its end for any other folder.
 std::size_t rank(const std::vector<std::string>& order, const fs::path& file) {
   return std::find(order.begin(), order.end(), file.parent_path().generic_string()) - order.begin();
@@ -116,7 +103,7 @@ TEST_CASE(
   std::smatch match;
   for (const char* part : {"core/kernel", "core/numerics"})
     for (const fs::path& file : sources_in(part)) {
-      if (file.extension() != ".h" || is_internal(file)) continue;
+      if (file.extension() != ".h" || file.filename() == "cholmod_context.h") continue;
       for (const std::string& line : lines_of(fs::path(folders::source()) / file))
         if (std::regex_match(line, match, outside)) {
           CAPTURE(file, line);
@@ -129,7 +116,7 @@ TEST_CASE("the kernel stays small, and no folder of the core has more files than
   int lines = 0;
   for (const fs::path& file : sources_in("core/kernel"))
     lines += static_cast<int>(lines_of(fs::path(folders::source()) / file).size());
-  CHECK(lines <= 4300);
+  CHECK(lines <= 4100);
   for (const std::string& folder : folders_of_core()) {
     if (folder.rfind("core/app/", 0) == 0) continue;
     CAPTURE(folder);

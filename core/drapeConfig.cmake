@@ -1,8 +1,5 @@
-@PACKAGE_INIT@
-
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4 NO_MODULE)
 find_dependency(Threads)
 include(${CMAKE_CURRENT_LIST_DIR}/drapeTargets.cmake)
 include(${CMAKE_CURRENT_LIST_DIR}/drape_plugin.cmake)
-check_required_components(drape)
