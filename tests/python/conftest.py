@@ -11,6 +11,8 @@ import pytest
 
 import drape
 
+# The sanitizer's runtime that this interpreter was given: commands have one of their own, other interpreters need it again.
+PRELOADED = {name: os.environ.pop(name) for name in ("LD_PRELOAD",) if name in os.environ}
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(pathlib.Path(__file__).parent), str(SOURCE / "tests/support")]
 

@@ -16,7 +16,7 @@ class Luck(Exception):
 
 def test_a_callback_stops_and_refines(experiment):
     stopped = experiment.run(on_iteration=lambda i: "stop", progress=False)
-    assert stopped.iterations.row_count == 1 and not stopped.complete
+    assert len(stopped.iterations) == 1 and not stopped.complete
     assert stopped["pcs"].levels[0].status == "cancelled"
     refined = experiment.run(on_iteration=lambda i: "refine" if i.level == 0 else None, progress=False)
     assert [level.status for level in refined["pcs"].levels] == ["refined_early_on_request", "converged"]

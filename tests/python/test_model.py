@@ -1,4 +1,4 @@
-"""The model under an experiment: derivatives, prolongations, metrics; another method in Python."""
+"""The model under an experiment: derivatives, prolongations, metrics."""
 
 import gc
 import json
@@ -8,7 +8,6 @@ import pytest
 import scipy.sparse
 
 import drape
-import prototypes
 
 CONTACT = {
     "name": "contact",
@@ -112,7 +111,7 @@ def test_metrics(scene, experiment):
     result = experiment.run(progress=False)
     level = result["pcs"].levels[0]
     values = scene.metric("stretch", 0, level.x)
-    assert values["largest_stretch"] == level.metrics["largest_stretch"]
+    assert values["largest_stretch"] == level.largest_stretch
     with pytest.raises(KeyError):
         scene.metric("nothing_such", 0, level.x)
     with pytest.raises(RuntimeError):
@@ -151,28 +150,6 @@ def test_wrong_shapes_and_types(scene):
         model.hessian(x, "all")
     with pytest.raises(ValueError, match="blend"):
         model.hessian(x, "clamp", 2)
-
-
-def newton(model, x, tolerance):
-    """Projected Newton with backtracking, on free vertices."""
-    for _ in range(500):
-        if model.force_residual(x) < tolerance:
-            return x
-        x, _ = prototypes.newton_step(model, x, 1e-9)
-    raise AssertionError("Newton does not converge")
-
-
-def test_another_newton_ends_at_the_same_energy(small):
-    small["newton"] = {"force_tolerance": 1e-6}
-    small["levels"] = 1
-    experiment = drape.Experiment(small)
-    scene = experiment.scene()
-    result = experiment.run(methods=["newton"], progress=False)["newton"].levels[0]
-    # From a state near the end: which folds a drape from afar takes is the method's own.
-    rng = numpy.random.default_rng(2)
-    x = scene[0].set_dirichlet(result.x + 1e-5 * rng.standard_normal(result.x.shape))
-    own = newton(scene[0], x, 1e-6)
-    assert scene[0].energy(own) == pytest.approx(result.energy, rel=1e-8)
 
 
 def test_a_level_of_ones_own():

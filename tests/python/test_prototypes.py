@@ -117,7 +117,7 @@ def test_metrics_refiners_and_solvers(small):
     small["methods"] = {"newton": {}, "python_newton": {"tolerance": 1e-2}}
     result = drape.Experiment(small).run(methods=["all"], progress=False)
     x = result["newton"].levels[1].x
-    assert result["newton"].levels[1].metrics["lowest_z"] == x[:, 2].min()
+    assert result["newton"].levels[1].lowest_z == x[:, 2].min()
     small["refiner"] = "midpoint"
     same = drape.Experiment(small).run(methods=["newton"], progress=False)
     assert same["newton"].levels[1].x.tobytes() == x.tobytes()

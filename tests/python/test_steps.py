@@ -1,6 +1,7 @@
 """A method step by step."""
 
 import gc
+import os
 import pathlib
 import sys
 import threading
@@ -10,19 +11,20 @@ import pytest
 from waiting import completed
 
 import drape
+from conftest import PRELOADED
 
 
 def test_iterations_have_the_bits_of_a_run(experiment):
     run = experiment.run(progress=False)
     solver = experiment.solver("pcs")
     residuals, states = [], []
-    for iteration in solver.iterate():
+    for iteration in solver:
         residuals.append(iteration.force_residual)
         states.append(iteration.x)
     assert numpy.allclose(residuals, run.iterations["force_residual"], rtol=1e-8)
     assert solver.levels[-1].x.tobytes() == run["pcs"].levels[-1].x.tobytes() == states[-1].tobytes()
     assert [level.status for level in solver.levels] == ["converged", "converged"]
-    assert list(solver.iterate()) == []
+    assert list(solver) == []
 
 
 def test_stop_and_refine(experiment):
@@ -97,7 +99,7 @@ small["energies"][0] = "springs"
 solver = drape.Experiment(small).solver("newton")
 next(solver)
 """
-    ended = completed([sys.executable, "-c", script])
+    ended = completed([sys.executable, "-c", script], env={**os.environ, **PRELOADED})
     assert (ended.returncode, ended.stderr) == (0, "")
 
 

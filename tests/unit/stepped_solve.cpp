@@ -3,8 +3,8 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
+#include "core/app/experiment/experiment.h"
 #include "core/app/files/yaml_file.h"
-#include "core/app/run/steered_solve.h"
 #include "tests/support/registry.h"
 
 using namespace drape;
@@ -19,11 +19,28 @@ ConfigNode small_experiment() {
   return source;
 }
 
-std::unique_ptr<SteeredSolve> begin(const std::string& method, MethodState from = {}) {
+/// A method of the small experiment, advanced step by step.
+struct Stepped {
+  explicit Stepped(const std::string& method, MethodState from = {})
+      : experiment(valid_experiment()), scene(build_scene(experiment, errors)) {
+    throw_errors(errors);
+    solve.emplace(experiment.solver_of(method), *scene, std::move(from));
+  }
+  static Experiment valid_experiment() {
+    ConfigErrors errors;
+    auto experiment = read_experiment(small_experiment(), test_registry(), errors);
+    throw_errors(errors);
+    return std::move(*experiment);
+  }
+
   ConfigErrors errors;
-  auto solve = SteeredSolve::begin(small_experiment(), method, test_registry(), errors, std::move(from));
-  throw_errors(errors);
-  return solve;
+  Experiment experiment;
+  std::unique_ptr<Scene> scene;
+  std::optional<SteppedSolve> solve;
+};
+
+std::unique_ptr<Stepped> begin(const std::string& method, MethodState from = {}) {
+  return std::make_unique<Stepped>(method, std::move(from));
 }
 
 struct Quiet : Observer {
@@ -36,7 +53,7 @@ struct Quiet : Observer {
 /// What Solver::solve gives.
 std::vector<LevelResult> solved(const std::string& method, Quiet& observer) {
   const auto fresh = begin(method);
-  return fresh->experiment()->solver_of(method).solve(*fresh->scene(), observer);
+  return fresh->experiment.solver_of(method).solve(*fresh->scene, observer);
 }
 
 void advance_to_end(SteppedSolve& solve) {
@@ -60,11 +77,11 @@ TEST_CASE("a stepped solve shows every iteration and ends with the bits of a pla
     Quiet plain;
     const std::vector<LevelResult> expected = solved(method, plain);
     const auto stepped = begin(method);
-    SteppedSolve& solve = stepped->solve();
+    SteppedSolve& solve = *stepped->solve;
     std::vector<double> residuals;
     while (solve.advance()) {
       residuals.push_back(solve.row().force_residual);
-      CHECK(solve.x().rows() == stepped->scene()->hierarchy.levels[solve.row().level].vertex_count());
+      CHECK(solve.x().rows() == stepped->scene->hierarchy.levels[solve.row().level].vertex_count());
     }
     CHECK(solve.ended());
     CHECK_FALSE(solve.advance());
@@ -82,69 +99,40 @@ TEST_CASE("a checkpoint of a stepped solve is resumed to the same bits") {
   const std::vector<LevelResult> expected = solved("pcs", plain);
   for (const int steps : {1, 3, static_cast<int>(plain.residuals.size()) - 1}) {
     const auto first = begin("pcs");
-    for (int k = 0; k < steps; ++k) REQUIRE(first->solve().advance());
-    const MethodState checkpoint = first->solve().checkpoint();
+    for (int k = 0; k < steps; ++k) REQUIRE(first->solve->advance());
+    const MethodState checkpoint = first->solve->checkpoint();
     const auto resumed = begin("pcs", checkpoint);
-    advance_to_end(resumed->solve());
-    REQUIRE(resumed->solve().finished().size() == expected.size());
-    CHECK(resumed->solve().finished().back().x == expected.back().x);
+    advance_to_end(*resumed->solve);
+    REQUIRE(resumed->solve->finished().size() == expected.size());
+    CHECK(resumed->solve->finished().back().x == expected.back().x);
   }
 }
 
 TEST_CASE("a stepped solve is stopped, refined or left at any iteration") {
   const auto stopped = begin("newton");
-  REQUIRE(stopped->solve().advance());
-  stopped->solve().stop();
-  CHECK_FALSE(stopped->solve().advance());
-  REQUIRE(stopped->solve().finished().size() == 1);
-  CHECK(stopped->solve().finished()[0].outcome == Outcome::cancelled);
+  REQUIRE(stopped->solve->advance());
+  stopped->solve->stop();
+  CHECK_FALSE(stopped->solve->advance());
+  REQUIRE(stopped->solve->finished().size() == 1);
+  CHECK(stopped->solve->finished()[0].outcome == Outcome::cancelled);
 
   const auto refined = begin("pcs");
-  REQUIRE(refined->solve().advance());
-  refined->solve().refine();
-  REQUIRE(refined->solve().advance());
-  CHECK(refined->solve().row().level == 1);
-  CHECK(refined->solve().finished()[0].outcome == Outcome::refined_early_on_request);
+  REQUIRE(refined->solve->advance());
+  refined->solve->refine();
+  REQUIRE(refined->solve->advance());
+  CHECK(refined->solve->row().level == 1);
+  CHECK(refined->solve->finished()[0].outcome == Outcome::refined_early_on_request);
   // Both destructors are called here, that of the second in the middle of its solve.
 }
 
 TEST_CASE("what a solver throws is thrown to the caller, and only what resumes takes a state") {
   const auto any = begin("pcs");
   const Failing failing;
-  SteppedSolve solve(failing, *any->scene());
+  SteppedSolve solve(failing, *any->scene);
   REQUIRE(solve.advance());
   CHECK_THROWS_WITH(solve.advance(), "out of luck");
   CHECK_FALSE(solve.advance());
   MethodState state;
   state.level = 1;
-  CHECK_THROWS_WITH(SteppedSolve(failing, *any->scene(), state),
-                    Catch::Contains("cannot go on from a state"));
-}
-
-TEST_CASE("a parameter that is changed during a solve acts from its state on") {
-  const auto solve = begin("newton");
-  ConfigErrors errors;
-  CHECK_THROWS_WITH(solve->set("material.density", "900", errors), Catch::Contains("nothing is iterated"));
-  for (int k = 0; k < 3; ++k) REQUIRE(solve->solve().advance());
-  const Positions before = solve->solve().x();
-  CHECK_FALSE(solve->set("material.density", "-1", errors));
-  REQUIRE(errors.size() == 1);
-  CHECK(solve->experiment()->parameters.material.density > 0);
-  errors.clear();
-  CHECK_FALSE(solve->set("cloth.columns", "7", errors));
-  CHECK_FALSE(errors.empty());
-  CHECK(solve->solve().x() == before);
-  errors.clear();
-
-  REQUIRE(solve->set("pins.0.translate", "[0, 0, 0.2]", errors));
-  CHECK(solve->scene()->starts[0] == before);
-  REQUIRE(solve->set("material.density", "900", errors));  // a second change, from the same state
-  CHECK(solve->scene()->starts[0] == before);
-  CHECK(solve->experiment()->parameters.material.density == 900);
-  advance_to_end(solve->solve());
-  const LevelResult& result = solve->solve().finished().front();
-  CHECK(has_converged(result.outcome));
-  const DirichletVertex& pin = solve->scene()->models[0]->dirichlet().front();
-  CHECK(pin.target.z() == Approx(0.2));
-  CHECK((result.x.row(pin.vertex).transpose() - pin.target).norm() < 1e-5);
+  CHECK_THROWS_WITH(SteppedSolve(failing, *any->scene, state), Catch::Contains("cannot go on from a state"));
 }

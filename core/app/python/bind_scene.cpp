@@ -1,46 +1,87 @@
-#include <pybind11/eigen.h>
-#include <pybind11/stl.h>
-
-#include "core/app/python/arrays.h"
 #include "core/app/python/module.h"
-#include "core/app/python/scene_handle.h"
+#include "core/app/python/python_call.h"
+#include "core/app/python/values.h"
 #include "core/app/report/report.h"
+#include "core/numerics/mesh/check.h"
 
 namespace drape::python {
 
 namespace {
 
-py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int level, const py::object& state,
-                         const py::object& coarse) {
-  const int l = s.checked(level), n = s.level(l).level->vertex_count();
+constexpr auto shared_view = py::return_value_policy::reference_internal;
+
+std::shared_ptr<Level> make_level(const py::object& rest, const py::object& triangles) {
+  TriangleMesh mesh{state_of(rest).any(), integer_rows(triangles, 3, "triangles")};
+  std::string faults;
+  for (const std::string& fault : check_mesh(mesh)) faults += (faults.empty() ? "" : "\n") + fault;
+  if (!faults.empty()) throw py::value_error(faults);
+  return std::make_shared<Level>(Level::of(0, std::move(mesh)));
+}
+
+void bind_level(py::module_& m) {
+  py::class_<Material>(m, "Material", "An isotropic cloth material. Moduli are Young's moduli of the bulk.")
+      .def(py::init<>())
+      .def_readwrite("density", &Material::density, "ρ [kg/m³]")
+      .def_readwrite("thickness", &Material::thickness, "d [m]")
+      .def_readwrite("membrane_modulus", &Material::membrane_modulus, "E_mem [Pa]")
+      .def_readwrite("bending_modulus", &Material::bending_modulus, "E_bend [Pa]")
+      .def_readwrite("poisson_ratio", &Material::poisson_ratio, "ν [1]")
+      .def_property_readonly("area_density", &Material::area_density, "Mass per area, ρ d [kg/m²].");
+
+  py::class_<Level, std::shared_ptr<Level>>(
+      m, "Level",
+      "One resolution of the cloth: its rest shape and topology. Arrays are read-only views, which keep the "
+      "level alive.")
+      .def(py::init(&make_level), py::arg("rest"), py::arg("triangles"),
+           "A level of n×3 rest positions [m] and m×3 vertex indices, counter-clockwise. Raises ValueError "
+           "with every fault of the mesh.")
+      .def_readonly("index", &Level::index, "0 is the coarsest.")
+      .def_property_readonly("vertex_count", &Level::vertex_count)
+      .def_property_readonly("triangle_count", &Level::triangle_count)
+      .def_property_readonly(
+          "rest", [](const Level& l) -> const Positions& { return l.rest.vertices; },
+          "n×3 rest positions [m].")
+      .def_property_readonly(
+          "triangles", [](const Level& l) -> const Triangles& { return l.rest.triangles; },
+          "m×3 vertex indices.")
+      .def_property_readonly(
+          "edges", [](const Level& l) -> const auto& { return l.topology.edges; },
+          "e×2 end vertices, the smaller index first.")
+      .def_property_readonly(
+          "triangle_edges", [](const Level& l) -> const Triangles& { return l.topology.triangle_edges; },
+          "m×3 edge indices; column k is the edge opposite vertex k.")
+      .def_property_readonly(
+          "edge_triangles", [](const Level& l) -> const auto& { return l.topology.edge_triangles; },
+          "e×2 triangles of each edge; -1 in column 1 on the border.")
+      .def_readonly("hinges", &Level::hinges,
+                    "h×4 stencils of the inner edges, their ends, then the vertices opposite.")
+      .def_readonly("vertex_area", &Level::vertex_area, "n areas, a third of the adjacent rest areas [m²].");
+}
+
+py::dict evaluate_metric(const SceneHandle& s, const std::string& name, int level, const State& state,
+                         const std::optional<State>& other) {
+  const int l = s.checked(level), n = s.level(l).vertex_count();
   const auto& all = s.experiment->metrics;
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& m) { return m.first == name; });
   if (found == all.end()) throw py::key_error("the experiment has no metric \"" + name + "\"");
-  const Positions x = positions_of(state, n, "x");
-  Positions other;
-  if (!coarse.is_none()) other = positions_of(coarse, n, "other");
-  MetricResult result;
-  {
-    const py::gil_scoped_release released;
-    result = found->second->evaluate(
-        {s.scene->hierarchy.levels[l], *s.scene->models[l], x, coarse.is_none() ? nullptr : &other});
-  }
+  const MetricInput input{s.level(l), *s.scene->models[l], state.of(n), other ? &other->of(n) : nullptr};
+  MetricResult result = without_gil([&] { return found->second->evaluate(input); });
   py::dict values;
   for (const MetricValue& value : result.values) values[py::str(value.name)] = value.value;
-  for (MetricField& field : result.fields) values[py::str(field.name)] = array_of(std::move(field.values));
+  for (MetricField& field : result.fields) values[py::str(field.name)] = std::move(field.values);
   return values;
 }
 
-std::string page(const SceneHandle& s, const py::object& state, int level) {
+std::string page(const SceneHandle& s, const State& x, int level) {
   const int l = s.checked(level);
-  const Positions x = positions_of(state, s.level(l).level->vertex_count(), "x");
-  return viewer_page(s.experiment->parameters.name, s.scene->hierarchy.levels[l], x,
+  return viewer_page(s.experiment->parameters.name, s.level(l), x.of(s.level(l).vertex_count()),
                      obstacles_of(s.scene->models[l]->contacts()));
 }
 
 }  // namespace
 
 void bind_scene(py::module_& m) {
+  bind_level(m);
   using Matrices = std::vector<ProlongationMatrix>;
   py::class_<SceneHandle>(m, "Scene",
                           "The levels, models and initial states of an experiment, at its start. scene[l] is "
@@ -49,25 +90,27 @@ void bind_scene(py::module_& m) {
       .def("__getitem__", &SceneHandle::model, py::arg("level"))
       .def_property_readonly("levels",
                              [](const SceneHandle& s) {
-                               std::vector<LevelHandle> all;
-                               for (int l = 0; l < s.scene->hierarchy.level_count(); ++l)
-                                 all.push_back(s.level(l));
+                               std::vector<std::shared_ptr<Level>> all;
+                               for (const Level& level : s.scene->hierarchy.levels)
+                                 all.push_back(level_of(s.scene, level));
                                return all;
                              })
       .def(
           "start",
-          [](const SceneHandle& s, int level) { return view(s.scene->starts[s.checked(level)], s.scene); },
-          py::arg("level"), "The initial state of a level, n×3 [m], read-only.")
+          [](const SceneHandle& s, int level) -> const Positions& {
+            return s.scene->starts[s.checked(level)];
+          },
+          shared_view, py::arg("level"), "The initial state of a level, n×3 [m], read-only.")
       .def_property_readonly(
           "prolongations",
           [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.prolongations; },
-          "[l]: n_{l+1}×n_l weights of the refiner, scipy.sparse.csr_matrix.")
+          "n_{l+1}×n_l weights of the refiner from level l to the next, scipy.sparse.csr_matrix.")
       .def_property_readonly(
           "midpoints", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.midpoints; },
-          "[l]: weights of the midpoint split, which does not move the surface.")
+          "Likewise the weights of the midpoint split, which does not move the surface.")
       .def_property_readonly(
           "linear", [](const SceneHandle& s) -> const Matrices& { return s.scene->hierarchy.linear; },
-          "[l]: linear interpolation over the coarse rest shape.")
+          "Likewise linear interpolation over the coarse rest shape.")
       .def_property_readonly("metrics",
                              [](const SceneHandle& s) {
                                std::vector<std::string> names;
@@ -77,10 +120,8 @@ void bind_scene(py::module_& m) {
       .def("metric", &evaluate_metric, py::arg("name"), py::arg("level"), py::arg("x"),
            py::arg("other") = py::none(),
            "Values and fields of one of the experiment's metrics by name. x is n×3 [m]; `other`, the "
-           "prolonged "
-           "coarse state, is of pair metrics.")
-      .def("page", &page, py::arg("x"), py::arg("level") = -1,
-           "An HTML page with the 3D viewer of the state x (n×3) [m] and the obstacles.");
+           "prolonged coarse state, is of pair metrics.")
+      .def("_page", &page, py::arg("x"), py::arg("level"));
 }
 
 }  // namespace drape::python

@@ -4,29 +4,83 @@
 
 #include <pybind11/stl.h>
 
-#include <set>
+#include <vector>
 
-#include "core/app/python/registry.h"
+#include "core/app/run/runner.h"
 #include "core/kernel/plugin/abi.h"
+#include "core/kernel/plugin/loader.h"
 #include "core/kernel/threads/parallel.h"
 #include "core/kernel/version.h"
 
+namespace drape::python {
+
 namespace {
+
+/// Never destroyed: experiments and plugins' objects may outlive the interpreter's last call.
+Registry& mutable_registry() {
+  static Registry* const all = [] {
+    auto loaded = std::make_unique<Registry>();
+    load_plugins(*loaded, plugin_directories());
+    return loaded.release();
+  }();
+  return *all;
+}
+
+std::vector<std::pair<std::string, std::string>> plugins(const std::string& kind) {
+  std::string kinds;
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const char* known : {"energy", "refiner", "contact", "solver", "metric"}) {
+    kinds += (kinds.empty() ? "" : ", ") + std::string(known);
+    if (kind != known) continue;
+    for (const RegistryEntry* entry : registry().of_kind(kind))
+      names.emplace_back(entry->name, entry->summary);
+    return names;
+  }
+  throw py::value_error("there is no kind \"" + kind + "\"; the kinds are " + kinds);
+}
 
 /// A module that was built against other headers than the library that it found, as a plugin would be.
 void require_fitting_library() {
   static constexpr DrapePluginDescriptor own = DRAPE_ABI_DESCRIPTOR(nullptr);
-  const std::string fault = drape::mismatch(own);
+  const std::string fault = mismatch(own);
   if (!fault.empty())
-    throw pybind11::import_error("this drape module does not fit the libdrape that it found: " + fault +
-                                 " (the plugin is the module); build and install both together");
+    throw py::import_error("this drape module does not fit the libdrape that it found: " + fault +
+                           "; build and install both together");
+}
+
+/// Errors of a config are raised by throw_errors.
+void bind_errors(py::module_& m) {
+  py::register_exception<RunAborted>(m, "RunAborted", PyExc_RuntimeError).attr("__doc__") =
+      "A run was aborted after it had begun, as on a full disk; its message says what to do.";
+  // Local: other modules that are built with pybind11 keep their own translation.
+  py::register_local_exception_translator([](std::exception_ptr error) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const std::logic_error& fault) {
+      PyErr_SetString(PyExc_ValueError, fault.what());
+    }
+  });
 }
 
 }  // namespace
 
+const Registry& registry() { return mutable_registry(); }
+
+void register_prototype(std::unique_ptr<RegistryEntry> entry) {
+  // Experiments that were made of an earlier prototype refer to its entry.
+  static auto* const replaced = new std::vector<std::unique_ptr<RegistryEntry>>;
+  Registry& all = mutable_registry();
+  const RegistryEntry* before = all.find(entry->kind, entry->name);
+  entry->library = "Python";
+  if (before && before->library == entry->library) replaced->push_back(all.remove(entry->kind, entry->name));
+  all.add_entry(std::move(entry));
+}
+
+}  // namespace drape::python
+
 PYBIND11_MODULE(_core, m) {
   using namespace drape;
-  require_fitting_library();
+  python::require_fitting_library();
   m.attr("__version__") = version();
   m.attr("__commit__") = commit();
   m.def(
@@ -36,28 +90,16 @@ PYBIND11_MODULE(_core, m) {
         set_thread_count(count);
       },
       pybind11::arg("count"), "Set the number of threads of the process; 0 means one for each core.");
-  m.def(
-      "plugins",
-      [](const std::string& kind) {
-        std::vector<std::pair<std::string, std::string>> names;
-        const std::set<std::string> kinds = {"energy", "refiner", "contact", "solver", "metric"};
-        if (!kinds.contains(kind))
-          throw pybind11::value_error("there is no kind \"" + kind +
-                                      "\"; the kinds are energy, refiner, contact, solver and metric");
-        for (const RegistryEntry* entry : python::registry().of_kind(kind))
-          names.emplace_back(entry->name, entry->summary);
-        return names;
-      },
-      pybind11::arg("kind"),
-      "Name and summary of every plugin of a kind: energy, refiner, contact, solver or metric. Prototypes "
-      "that are registered count.");
+  m.def("plugins", &python::plugins, pybind11::arg("kind"),
+        "Name and summary of every plugin of a kind: energy, refiner, contact, solver or metric. Prototypes "
+        "that are registered count.");
   python::bind_errors(m);
-  python::bind_levels(m);
-  python::bind_model(m);
   python::bind_scene(m);
-  python::bind_iterations(m);
-  python::bind_result(m);
-  python::bind_solve(m);
+  python::bind_model(m);
   python::bind_experiment(m);
+  python::bind_run(m);
+  python::bind_solve(m);
+  python::bind_bound_energy(m);
+  python::bind_prototype_problem(m);
   python::bind_prototypes(m);
 }

@@ -2,20 +2,91 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "core/app/experiment/experiment.h"
+
 namespace drape::python {
 
 namespace py = pybind11;
 
+/// The process's plugins, loaded at the first call, and the prototypes that Python has registered. Call with
+/// the GIL held. Throws std::runtime_error for a library that cannot be loaded.
+const Registry& registry();
+
+/// Registers a prototype's entry; it takes the place of an earlier prototype of the same kind and name.
+/// Throws std::runtime_error if a plugin's library has the name.
+void register_prototype(std::unique_ptr<RegistryEntry> entry);
+
+/// A level that Python may keep, as a part of `owner`. Not const, because pybind11 knows no pointers to
+/// const; Python can change none.
+inline std::shared_ptr<Level> level_of(const std::shared_ptr<const void>& owner, const Level& level) {
+  return {std::const_pointer_cast<void>(owner), const_cast<Level*>(&level)};
+}
+
+/// A model with what must outlive it: the scene, or for a prototype's solver the solve under way.
+struct ModelHandle {
+  std::shared_ptr<const LevelModel> shared;
+  std::shared_ptr<const void> owner;       ///< of the level; null if it is not known
+  std::shared_ptr<const bool> alive = {};  ///< whether the level still exists; null if `owner` sees to that
+
+  /// Throws RuntimeError once the solve that gave the model has ended.
+  const LevelModel& model() const {
+    if (alive && !*alive)
+      throw std::runtime_error("this model belongs to a solve that has ended; copy what you need before");
+    return *shared;
+  }
+  std::shared_ptr<Level> level() const {
+    const Level& own = model().level();
+    return owner ? level_of(owner, own) : std::make_shared<Level>(own);
+  }
+  int vertex_count() const { return model().level().vertex_count(); }
+};
+
+/// A scene with the experiment that it refers to.
+struct SceneHandle {
+  std::shared_ptr<const Experiment> experiment;
+  std::shared_ptr<const Scene> scene;
+
+  /// Throws IndexError for a level that does not exist.
+  int checked(int level) const {
+    if (level < 0) level += static_cast<int>(scene->models.size());
+    if (level < 0 || level >= static_cast<int>(scene->models.size()))
+      throw py::index_error("the scene has the levels 0 … " + std::to_string(scene->models.size() - 1));
+    return level;
+  }
+  const Level& level(int l) const { return scene->hierarchy.levels[checked(l)]; }
+  ModelHandle model(int l) const { return {scene->models[checked(l)], scene}; }
+};
+
+/// An experiment as written; it is read anew whenever it is used.
+struct ExperimentHandle {
+  ConfigNode source;
+
+  /// Throws drape.ConfigError.
+  std::shared_ptr<const Experiment> read() const;
+  SceneHandle scene(bool allow_memory) const;
+};
+
+/// Issues a UserWarning for everything about the scene that no fabric has.
+void warn_of_implausible(const SceneHandle& scene);
+
+/// An iteration and its state.
+struct Iteration : IterationRow {
+  Positions x;
+};
+
 // What each file adds to the module; Python's own part of the package is in drape/.
 
-void bind_errors(py::module_& m);      ///< C++ exceptions as Python's
-void bind_levels(py::module_& m);      ///< Material, Level
-void bind_model(py::module_& m);       ///< Model: energies and their derivatives
-void bind_scene(py::module_& m);       ///< Scene: levels, prolongations, models, metrics
-void bind_iterations(py::module_& m);  ///< Iteration, LevelResult
-void bind_result(py::module_& m);      ///< Result: what a run has written
-void bind_solve(py::module_& m);       ///< Solve: a method step by step
-void bind_experiment(py::module_& m);  ///< Experiment
-void bind_prototypes(py::module_& m);  ///< registering Python classes as plugins
+void bind_scene(py::module_& m);         ///< Material, Level, Scene
+void bind_model(py::module_& m);         ///< Model: energies and their derivatives
+void bind_experiment(py::module_& m);    ///< Experiment
+void bind_run(py::module_& m);           ///< Iteration, LevelResult, Experiment.run, what a run has written
+void bind_solve(py::module_& m);         ///< Solve: a method step by step
+void bind_prototypes(py::module_& m);    ///< registering Python classes as plugins
+void bind_bound_energy(py::module_& m);  ///< BoundEnergy
+void bind_prototype_problem(py::module_& m);  ///< Problem: what a solver in Python works on
 
 }  // namespace drape::python

@@ -1,14 +1,13 @@
-#include "core/app/python/prototype_energy.h"
-
-#include <pybind11/stl.h>
-
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 
-#include "core/app/python/arrays.h"
-#include "core/app/python/level_handle.h"
+#include "core/app/python/prototype.h"
+#include "core/app/python/values.h"
+#include "core/kernel/plugin/make.h"
 #include "core/kernel/threads/parallel.h"
+#include "core/numerics/model/derivative_check.h"
+#include "core/numerics/model/hessian_assembler.h"
 
 namespace drape::python {
 
@@ -26,11 +25,8 @@ EnergyRole role_of(const std::string& word) {
 
 /// m×k vertices, all of the level.
 Stencils stencils_of(const py::object& elements, int vertex_count) {
-  const auto array = integer_array(elements, "elements");
-  if (array.ndim() != 2 || array.shape(0) == 0 || array.shape(1) == 0)
-    throw py::value_error("elements must have the shape (m, k), m and k at least 1, not " +
-                          shape_text(array));
-  Stencils stencils = Eigen::Map<const Stencils>(array.data(), array.shape(0), array.shape(1));
+  Stencils stencils = integer_rows(elements, -1, "elements");
+  if (stencils.size() == 0) throw py::value_error("elements must have at least one row and one column");
   if (stencils.minCoeff() < 0 || stencils.maxCoeff() >= vertex_count)
     throw py::value_error("elements must be vertices of the level, 0 … " + std::to_string(vertex_count - 1));
   return stencils;
@@ -136,21 +132,85 @@ class BoundPythonEnergy final : public BoundEnergy {
   Stencils stencils_;
 };
 
-}  // namespace
+/// An energy whose elements a Python object evaluates, all at once: see drape.Energy. Summation, projection
+/// and scatter are here, in the order of the elements.
+class PythonEnergy final : public Energy {
+ public:
+  explicit PythonEnergy(const py::object& prototype)
+      : prototype_(share(prototype)),
+        role_(role_of(prototype.attr("role").cast<std::string>())),
+        midpoint_factor_(prototype.attr("midpoint_factor").cast<std::optional<double>>()) {}
 
-PythonEnergy::PythonEnergy(py::object prototype)
-    : role_(role_of(prototype.attr("role").cast<std::string>())),
-      midpoint_factor_(prototype.attr("midpoint_factor").cast<std::optional<double>>()) {
-  prototype_ = share(std::move(prototype));
+  EnergyRole role() const override { return role_; }
+  std::optional<double> midpoint_factor() const override { return midpoint_factor_; }
+  std::unique_ptr<BoundEnergy> bind(const Level& level, const Material& material) const override {
+    return with_python([&]() -> std::unique_ptr<BoundEnergy> {
+      const auto kept = std::make_shared<Level>(level);  // Python may store it
+      Stencils stencils = stencils_of(prototype_->attr("elements")(kept), level.vertex_count());
+      SharedObject rest = share(prototype_->attr("rest")(kept, material));
+      return std::make_unique<BoundPythonEnergy>(prototype_, std::move(rest), std::move(stencils));
+    });
+  }
+
+ private:
+  SharedObject prototype_;
+  EnergyRole role_;
+  std::optional<double> midpoint_factor_;
+};
+
+/// An energy bound to a level, which it keeps.
+struct BoundEnergyHandle {
+  std::shared_ptr<const BoundEnergy> energy;
+  std::shared_ptr<const Level> level;
+  int vertices = level->vertex_count();
+
+  double value(const State& x) const { return energy->value(x.of(vertices)); }
+  Positions gradient(const State& x) const {
+    Positions g = Positions::Zero(vertices, 3);
+    energy->add_gradient(x.of(vertices), g);
+    return g;
+  }
+  BlockMatrix hessian(const State& x) const { return hessian_of(*energy, x.of(vertices), Projection::none); }
+};
+
+BoundEnergyHandle bind_energy(const py::object& source, const std::shared_ptr<Level>& level,
+                              const Material& material) {
+  std::shared_ptr<Energy> energy;
+  if (py::isinstance<py::str>(source) || py::isinstance<py::dict>(source)) {
+    ConfigErrors errors;
+    energy = make_from<Energy>(registry(), node_of(source), errors);
+    throw_errors(errors);
+  } else {
+    energy = prototype_energy(source);
+  }
+  return {energy->bind(*level, material), level};
 }
 
-std::unique_ptr<BoundEnergy> PythonEnergy::bind(const Level& level, const Material& material) const {
-  return with_python([&]() -> std::unique_ptr<BoundEnergy> {
-    const LevelHandle kept = LevelHandle::copy_of(level);  // Python may store it
-    Stencils stencils = stencils_of(prototype_->attr("elements")(kept), level.vertex_count());
-    SharedObject rest = share(prototype_->attr("rest")(kept, material));
-    return std::make_unique<BoundPythonEnergy>(prototype_, std::move(rest), std::move(stencils));
-  });
+}  // namespace
+
+std::shared_ptr<Energy> prototype_energy(const py::object& prototype) {
+  return std::make_shared<PythonEnergy>(prototype);
+}
+
+void bind_bound_energy(py::module_& m) {
+  py::class_<BoundEnergyHandle>(m, "BoundEnergy", "An energy on one level. x is n×3 [m].")
+      .def("value", &BoundEnergyHandle::value, py::arg("x"), "[J]")
+      .def("gradient", &BoundEnergyHandle::gradient, py::arg("x"), "n×3 [N]")
+      .def("hessian", &BoundEnergyHandle::hessian, py::arg("x"),
+           "3n×3n scipy.sparse.bsr_matrix [N/m], without projection.");
+  m.def(
+      "_check_energy",
+      [](const BoundEnergyHandle& h, const std::optional<State>& x, double step) {
+        const DerivativeCheck found =
+            check_derivatives(*h.energy, x ? x->of(h.vertices) : checked_state(*h.level), step);
+        return std::pair(found.worst(), found.text());
+      },
+      py::arg("bound"), py::arg("x"), py::arg("step"));
+  m.def("_checked_level", [] { return std::make_shared<Level>(checked_level()); });
+  m.def(
+      "bind_energy", &bind_energy, py::arg("energy"), py::arg("level"), py::arg("material") = Material(),
+      "An energy on a level: of a plugin's name, of {\"type\": name, parameter: value}, or of a drape.Energy "
+      "object. Raises ConfigError.");
 }
 
 }  // namespace drape::python

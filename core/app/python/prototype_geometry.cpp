@@ -1,10 +1,5 @@
-#include "core/app/python/prototype_geometry.h"
-
-#include <pybind11/eigen.h>
-#include <pybind11/stl.h>
-
-#include "core/app/python/arrays.h"
-#include "core/app/python/level_handle.h"
+#include "core/app/python/prototype.h"
+#include "core/app/python/values.h"
 
 namespace drape::python {
 
@@ -27,38 +22,66 @@ MetricColumn column_of(const std::string& name, const py::object& declared) {
   return column;
 }
 
+/// A metric that a Python object measures: see drape.Metric.
+class PythonMetric final : public Metric {
+ public:
+  explicit PythonMetric(const py::object& prototype) : prototype_(share(prototype)) {
+    const auto scope = prototype.attr("scope").cast<std::string>();
+    if (scope != "state" && scope != "pair")
+      throw py::value_error("scope must be state or pair, not \"" + scope + "\"");
+    scope_ = scope == "pair" ? MetricScope::pair : MetricScope::state;
+    for (const auto& [name, column] : prototype.attr("columns").cast<py::dict>())
+      declaration_.columns.push_back(
+          column_of(name.cast<std::string>(), py::reinterpret_borrow<py::object>(column)));
+  }
+
+  MetricScope scope() const override { return scope_; }
+  MetricDeclaration declaration() const override { return declaration_; }
+
+ private:
+  MetricResult measure(const MetricInput& input) const override {
+    return with_python([&] {
+      std::optional<Positions> other;
+      if (input.other) other = *input.other;
+      const py::object answer =
+          prototype_->attr("measure")(std::make_shared<Level>(input.level), Positions(input.x), other);
+      MetricResult result;
+      for (const auto& [name, value] : answer.cast<std::map<std::string, double>>())
+        result.values.push_back({name, value});
+      return result;
+    });
+  }
+
+  SharedObject prototype_;
+  MetricScope scope_ = MetricScope::state;
+  MetricDeclaration declaration_;
+};
+
+/// A refiner whose weights a Python object gives: see drape.Refiner.
+class PythonRefiner final : public Refiner {
+ public:
+  explicit PythonRefiner(const py::object& prototype) : prototype_(share(prototype)) {}
+
+  ProlongationMatrix weights(const Level& coarse) const override {
+    return with_python([&] {
+      const py::object answer = prototype_->attr("weights")(std::make_shared<Level>(coarse));
+      const py::object to_csr = py::module_::import("scipy.sparse").attr("csr_matrix");
+      return to_csr(answer).cast<ProlongationMatrix>();
+    });
+  }
+
+ private:
+  SharedObject prototype_;
+};
+
 }  // namespace
 
-PythonMetric::PythonMetric(py::object prototype) {
-  const auto scope = prototype.attr("scope").cast<std::string>();
-  if (scope != "state" && scope != "pair")
-    throw py::value_error("scope must be state or pair, not \"" + scope + "\"");
-  scope_ = scope == "pair" ? MetricScope::pair : MetricScope::state;
-  for (const auto& [name, column] : prototype.attr("columns").cast<py::dict>())
-    declaration_.columns.push_back(
-        column_of(name.cast<std::string>(), py::reinterpret_borrow<py::object>(column)));
-  prototype_ = share(std::move(prototype));
+std::shared_ptr<Metric> prototype_metric(const py::object& prototype) {
+  return std::make_shared<PythonMetric>(prototype);
 }
 
-MetricResult PythonMetric::measure(const MetricInput& input) const {
-  return with_python([&] {
-    py::object other = py::none();
-    if (input.other) other = array_of(Positions(*input.other));
-    const py::object answer =
-        prototype_->attr("measure")(LevelHandle::copy_of(input.level), array_of(Positions(input.x)), other);
-    MetricResult result;
-    for (const auto& [name, value] : answer.cast<std::map<std::string, double>>())
-      result.values.push_back({name, value});
-    return result;
-  });
-}
-
-ProlongationMatrix PythonRefiner::weights(const Level& coarse) const {
-  return with_python([&] {
-    const py::object answer = prototype_->attr("weights")(LevelHandle::copy_of(coarse));
-    const py::object to_csr = py::module_::import("scipy.sparse").attr("csr_matrix");
-    return to_csr(answer).cast<ProlongationMatrix>();
-  });
+std::shared_ptr<Refiner> prototype_refiner(const py::object& prototype) {
+  return std::make_shared<PythonRefiner>(prototype);
 }
 
 }  // namespace drape::python

@@ -48,4 +48,12 @@ auto with_python(const Body& body) {
   }
 }
 
+/// The result of `body`, which runs without the GIL: it takes long, or calls prototypes, which take it
+/// themselves.
+template <class Body>
+auto without_gil(const Body& body) {
+  const py::gil_scoped_release released;
+  return body();
+}
+
 }  // namespace drape::python

@@ -7,15 +7,28 @@
 All numbers are SI. docs/guide/python.md is the guide.
 """
 
+import importlib
+
+try:
+    for needed in ("numpy", "scipy", "pandas", "drape._core"):
+        importlib.import_module(needed)
+except ImportError as error:
+    import pathlib
+    import sys
+
+    built = [file.name for file in pathlib.Path(__file__).parent.glob("_core.*.so")]
+    raise ImportError(
+        f"{error}: drape was imported by {sys.executable}, Python {sys.version.split()[0]}. `make python` builds it for "
+        f"/usr/bin/python3, with numpy, scipy and pandas; take that one, or install the wheel of `make wheel` "
+        f"(modules here: {', '.join(built) or 'none'})") from error
+
 from ._core import (
     BoundEnergy,
     Checkpoint,
     Iteration,
     Level,
-    LevelRecord,
     LevelResult,
     Material,
-    MethodRecord,
     Model,
     Problem,
     RunAborted,
@@ -27,21 +40,13 @@ from ._core import (
     plugins,
     set_threads,
 )
-from .check import check_energy
-from .errors import ConfigError, ConfigFault
-from .experiment import Experiment
-from .page import Page
-from .prototypes import Column, Energy, Metric, Parameter, Refiner, Solver, register
-from .result import Result, Table, read_run, read_sweep
+from .experiment import ConfigError, ConfigFault, Experiment
+from .prototypes import Column, Energy, Metric, Parameter, Refiner, Solver, check_energy, register
+from .result import LevelRecord, MethodRecord, Page, Result, read_run, read_sweep, show
 
 __all__ = [
     "BoundEnergy", "Checkpoint", "Column", "ConfigError", "ConfigFault", "Energy", "Experiment", "Iteration",
     "Level", "LevelRecord", "LevelResult", "Material", "MethodRecord", "Metric", "Model", "Page", "Parameter",
-    "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "Table", "__commit__",
-    "__version__", "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "set_threads", "show",
+    "Problem", "Refiner", "Result", "RunAborted", "Scene", "Solve", "Solver", "__commit__", "__version__",
+    "bind_energy", "check_energy", "plugins", "read_run", "read_sweep", "register", "set_threads", "show",
 ]
-
-
-def show(scene: Scene, x, level: int = -1) -> Page:
-    """The 3D viewer of a state x (n×3) [m] of a scene's level: a notebook shows it, `.open()` a browser."""
-    return Page(scene.page(x, level))

@@ -1,12 +1,44 @@
-"""Experiments."""
+"""Experiments, and what is wrong with them."""
 
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
+import weakref
+from dataclasses import dataclass
 from typing import Callable, Optional, Sequence, Union
 
 from . import _core
 from .result import Result
+
+
+@dataclass(frozen=True)
+class ConfigFault:
+    """One fault: a message with a remedy, and where it is; line and column count from 1, 0 is unknown.
+
+    `key` is its path in the experiment, as `Experiment.set` takes it ("obstacles.0.radius"); "" is unknown.
+    """
+
+    message: str
+    file: str
+    line: int
+    column: int
+    key: str = ""
+
+    def __str__(self) -> str:
+        place = [self.file] if self.file else []
+        place += [str(n) for n in (self.line, self.column) if n > 0]
+        where = ":".join(place) or self.key
+        return f"{where}: {self.message}" if where else self.message
+
+
+class ConfigError(ValueError):
+    """Every fault of an experiment, in the order of the file: `error.faults`."""
+
+    def __init__(self, faults: Sequence[ConfigFault]):
+        self.faults = list(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
 
 
 class Experiment(_core.ExperimentBase):
@@ -41,18 +73,19 @@ class Experiment(_core.ExperimentBase):
         Raises ConfigError for a faulty experiment, RuntimeError for an unknown method or a folder that is not
         usable, RunAborted for a run that could not be finished, as on a full disk.
         """
-        if isinstance(methods, str):
-            methods = [methods]
         if out is not None and not os.fspath(out):
             raise ValueError("out is empty; name a folder, or leave it out for a temporary one")
-        record = self._run(
-            methods=None if methods is None else list(methods),
-            out=out,
-            on_iteration=on_iteration,
-            on_level=on_level,
-            progress=progress,
-            report=report,
-            overwrite=overwrite,
-            allow_memory=allow_memory,
-        )
-        return Result(record)
+        temporary = tempfile.mkdtemp(prefix="drape_run_") if out is None else None
+        folder = os.path.join(temporary or "", "run" if out is None else os.fspath(out))
+        try:
+            self._run(methods=[methods] if isinstance(methods, str) else list(methods or []), out=folder,
+                      on_iteration=on_iteration, on_level=on_level, progress=progress,
+                      report=report and not temporary, overwrite=overwrite, allow_memory=allow_memory)
+            result = Result(folder)
+        except BaseException:
+            if temporary:
+                shutil.rmtree(temporary, ignore_errors=True)
+            raise
+        if temporary:
+            weakref.finalize(result, shutil.rmtree, temporary, ignore_errors=True)
+        return result

@@ -6,17 +6,15 @@ The plots are Result's, in matplotlib's current style: a matplotlibrc in the wor
 from __future__ import annotations
 
 import argparse
-import csv
-import json
 import os
 import pathlib
 import subprocess
 import sys
 
-import numpy
+import pandas
 
-from . import _core
-from .result import read_run
+from .plots import measures_of
+from .result import read_run, read_sweep
 
 # Columns of the LaTeX table beside what tells its rows apart, in order, as far as the runs have them.
 COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "preview_rms": "preview error", "error_rms": "error",
@@ -24,14 +22,8 @@ COLUMNS = {"preview_seconds": "preview [s]", "seconds": "end [s]", "preview_rms"
 ESCAPES = str.maketrans({c: "\\" + c for c in "&%$#_{}"} | {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}"})
 
 
-def _spread(values) -> tuple | None:
-    """Median and extremes of the known values."""
-    known = [value for value in values if value is not None]
-    return (float(numpy.median(known)), min(known), max(known)) if known else None
-
-
-def _converged(row) -> bool:
-    return row["status"].startswith("converged")
+def _converged(rows: pandas.DataFrame) -> pandas.DataFrame:
+    return rows[rows["status"].str.startswith("converged")]
 
 
 def _digits(value: float) -> str:
@@ -42,48 +34,39 @@ def _digits(value: float) -> str:
     return rf"${digits}\cdot10^{{{int(power)}}}$"
 
 
-def _latex_cell(values) -> str:
-    spread = _spread(values)
-    if spread is None:
+def _latex_cell(values: pandas.Series) -> str:
+    if values.notna().sum() == 0:
         return "--"
-    median, low, high = map(_digits, spread)
+    median, low, high = (_digits(value) for value in (values.median(), values.min(), values.max()))
     return median if low == high else f"{median} ({low} -- {high})"
 
 
-def _varied(rows) -> list[str]:
+def _varied(rows: pandas.DataFrame) -> list[str]:
     """The keys that a sweep varies: the table has them between the run's name and its seed."""
-    names = list(rows[0])
-    keys = [name for name in names[names.index("run") + 1:names.index("seed")] if len({row[name] for row in rows}) > 1]
-    return keys or (["run"] if len({row["run"] for row in rows}) > 1 else [])
+    names = list(rows)
+    keys = [name for name in names[names.index("run") + 1:names.index("seed")] if rows[name].nunique(dropna=False) > 1]
+    return keys or (["run"] if rows["run"].nunique() > 1 else [])
 
 
-def _groups(rows, keys) -> dict:
-    groups: dict = {}
-    for row in rows:
-        groups.setdefault(tuple(row[key] for key in keys), []).append(row)
-    return groups
+def _groups(rows: pandas.DataFrame, keys: list[str]):
+    """Pairs of the keys' values and the rows with them, in the order of their first rows."""
+    for values, group in rows.groupby(keys, sort=False, dropna=False):
+        yield values if isinstance(values, tuple) else (values,), group
 
 
-def latex_table(rows) -> str:
+def latex_table(rows: pandas.DataFrame) -> str:
     """Medians over the starts that converged, with ranges, for the package booktabs."""
     keys = [*_varied(rows), "method"]
-    columns = {name: title for name, title in COLUMNS.items() if any(row.get(name) is not None for row in rows)}
+    columns = {name: title for name, title in COLUMNS.items() if name in rows and rows[name].notna().any()}
     head = [key.rsplit(".", 1)[-1] for key in keys] + ["converged", *columns.values()]
     lines = [rf"\begin{{tabular}}{{{'l' * len(keys)}{'r' * (len(columns) + 1)}}}", r"\toprule",
              " & ".join(name.translate(ESCAPES) for name in head) + r" \\", r"\midrule"]
-    for values, group in _groups(rows, keys).items():
-        good = [row for row in group if _converged(row)]
-        cells = [str("--" if value is None else value).translate(ESCAPES) for value in values]
-        cells += [f"{len(good)} of {len(group)}"] + [_latex_cell(row.get(name) for row in good) for name in columns]
+    for values, group in _groups(rows, keys):
+        good = _converged(group)
+        cells = [("--" if pandas.isna(value) else str(value)).translate(ESCAPES) for value in values]
+        cells += [f"{len(good)} of {len(group)}"] + [_latex_cell(good[name]) for name in columns]
         lines.append(" & ".join(cells) + r" \\")
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
-
-
-def _write_csv(file: pathlib.Path, rows) -> None:
-    with file.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def _save(axes, file: pathlib.Path) -> list[pathlib.Path]:
@@ -97,9 +80,9 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path, drape: str) -> list[pa
     result = read_run(folder)
     files = _save(result.plot_convergence(), out / "convergence")
     for target in ("own", "reference"):
-        if any(name.startswith(target + "_") and not numpy.all(numpy.isnan(result.errors[name])) for name in result.errors):
+        if measures_of(result.errors, target):
             files += _save(result.plot_errors(target=target), out / f"distance_{target}")
-    if result.errors.row_count:
+    if len(result.errors):
         (out / "errors.csv").write_bytes((folder / "errors.csv").read_bytes())
         files.append(out / "errors.csv")
     for method in result.methods:
@@ -114,24 +97,22 @@ def _run_figures(folder: pathlib.Path, out: pathlib.Path, drape: str) -> list[pa
     return files
 
 
-def _sweep_figures(rows, out: pathlib.Path) -> list[pathlib.Path]:
+def _sweep_figures(rows: pandas.DataFrame, out: pathlib.Path) -> list[pathlib.Path]:
     """Each quantity against each varied key: medians with ranges, a line for each method and value of the other keys."""
     import matplotlib.pyplot
 
     files, keys = [], _varied(rows)
+    good = _converged(rows)
     for name, title in COLUMNS.items():
-        for key in keys if any(row.get(name) is not None for row in rows) else ():
+        for key in keys if name in rows and rows[name].notna().any() else ():
             axes = matplotlib.pyplot.subplots()[1]
-            values = sorted({row[key] for row in rows}, key=lambda v: (isinstance(v, str), v if v is not None else ""))
-            numeric = all(isinstance(value, (int, float)) for value in values)
-            for label, group in _groups(rows, [*(k for k in keys if k != key), "method"]).items():
-                spreads = [_spread(row.get(name) for row in group if row[key] == value and _converged(row)) for value in values]
-                points = [(value if numeric else str(value), *spread) for value, spread in zip(values, spreads) if spread]
-                if points:
-                    x, median, low, high = zip(*points)
-                    ranges = numpy.abs(numpy.array([low, high]) - median)
-                    axes.errorbar(x, median, yerr=ranges, marker="o", markersize=4, capsize=3, label=", ".join(map(str, label)))
-            if numeric and min(values) > 0 and max(values) > 20 * min(values):
+            numeric = pandas.api.types.is_numeric_dtype(rows[key])
+            for label, group in _groups(good, [*(k for k in keys if k != key), "method"]):
+                spread = group.groupby(key)[name].agg(["median", "min", "max"]).dropna()
+                x = spread.index if numeric else spread.index.astype(str)
+                ranges = [spread["median"] - spread["min"], spread["max"] - spread["median"]]
+                axes.errorbar(x, spread["median"], yerr=ranges, marker="o", markersize=4, capsize=3, label=", ".join(map(str, label)))
+            if numeric and rows[key].min() > 0 and rows[key].max() > 20 * rows[key].min():
                 axes.set_xscale("log")
             axes.set(xlabel=key, ylabel=title)
             axes.legend(fontsize="small")
@@ -148,11 +129,12 @@ def figures(results, out, drape: str = "drape") -> list[pathlib.Path]:
     matplotlib.use("Agg")
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "drape"})  # texts stay texts; equal runs give equal files
     folder, out = pathlib.Path(results), pathlib.Path(out)
-    rows = [row for row in json.loads(_core._table(folder)) if row.get("method")]
-    if not rows:
+    rows = read_sweep(folder)
+    rows = rows[rows["method"].notna()] if len(rows) else rows
+    if rows.empty:
         raise RuntimeError(f"{folder}: no run has written results yet")
     out.mkdir(parents=True, exist_ok=True)
-    _write_csv(out / "table.csv", rows)
+    rows.to_csv(out / "table.csv", index=False)
     (out / "table.tex").write_text(latex_table(rows), encoding="utf-8")
     files = [out / "table.csv", out / "table.tex"]
     return files + (_run_figures(folder, out, drape) if (folder / "results.json").exists() else _sweep_figures(rows, out))

@@ -124,9 +124,23 @@ def register(name: str, prototype: type) -> type:
     Raises TypeError for a class that is not derived from Energy, Metric, Refiner or Solver, RuntimeError if a
     plugin's library has the name. Call it while no experiment is being read in another thread.
     """
-    for kind, add in ((Energy, _core._register_energy), (Metric, _core._register_metric),
-                      (Refiner, _core._register_refiner), (Solver, _core._register_solver)):
+    for kind in (Energy, Metric, Refiner, Solver):
         if isinstance(prototype, type) and issubclass(prototype, kind):
-            add(name, prototype)
+            _core._register(kind.__name__.lower(), name, prototype)
             return prototype
     raise TypeError(f"{prototype!r} is not a class derived from Energy, Metric, Refiner or Solver")
+
+
+def check_energy(energy, level: Optional[_core.Level] = None, material: Optional[_core.Material] = None, x=None,
+                 step: float = 1e-5, tolerance: float = 1e-5) -> bool:
+    """Compare an energy's derivatives with finite differences; print the largest errors, and where they are.
+
+    energy: a drape.Energy object, a plugin's name, or a dict with its parameters.
+    level: a small one; by default that of `drape check-energy`, four square cells of 1 cm.
+    x: n×3 [m]; by default the rest shape stretched, sheared and bent.
+    step: of the differences [m]. Returns whether every relative error is within the tolerance.
+    """
+    bound = _core.bind_energy(energy, level or _core._checked_level(), material or _core.Material())
+    worst, text = _core._check_energy(bound, x, step)
+    print(text, end="")
+    return worst <= tolerance

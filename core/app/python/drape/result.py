@@ -1,143 +1,158 @@
-"""What a run has written."""
+"""What a run has written, and pages that show it."""
 
 from __future__ import annotations
 
-import csv
 import html
+import io
 import json
+import os
 import pathlib
-from typing import Any, Iterable, Mapping, Sequence
+import tempfile
+import webbrowser
+from typing import TYPE_CHECKING, Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy
+import pandas
 
 from . import _core
-from .page import Page
 
 
-def _column(values: list):
-    """Whole numbers, or numbers with nan where one is absent, as an array; a list of words otherwise."""
-    if any(isinstance(value, str) for value in values):
-        return ["" if value is None else str(value) for value in values]
-    if all(isinstance(value, (bool, int)) for value in values):
-        return numpy.array(values)
-    return numpy.array([numpy.nan if value is None else value for value in values], dtype=float)
+class Page:
+    """An HTML page that needs no other file and no network."""
 
+    def __init__(self, text: str):
+        self.text = text
 
-class Table(Mapping):
-    """Columns of equal length by name; numbers are numpy arrays with nan where absent, words are lists."""
-
-    def __init__(self, rows: Iterable[Mapping[str, Any]]):
-        rows = list(rows)
-        names = dict.fromkeys(name for row in rows for name in row)
-        self._columns = {name: _column([row.get(name) for row in rows]) for name in names}
-
-    def __getitem__(self, name: str):
-        return self._columns[name]
-
-    def __iter__(self):
-        return iter(self._columns)
-
-    def __len__(self) -> int:
-        """The number of columns."""
-        return len(self._columns)
-
-    @property
-    def row_count(self) -> int:
-        return max((len(values) for values in self._columns.values()), default=0)
-
-    def to_pandas(self):
-        """The table as a pandas.DataFrame. Raises ImportError without pandas."""
-        import pandas
-
-        return pandas.DataFrame(self._columns)
+    def open(self) -> pathlib.Path:
+        """Open the page in a browser; returns the file, which stays."""
+        with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="drape_", delete=False,
+                                         encoding="utf-8") as file:
+            file.write(self.text)
+        webbrowser.open(pathlib.Path(file.name).as_uri())
+        return pathlib.Path(file.name)
 
     def _repr_html_(self) -> str:
-        def cell(value) -> str:
-            return html.escape(value if isinstance(value, str) else f"{value:.4g}")
-
-        most = 60
-        head = "".join(f"<th>{html.escape(name)}</th>" for name in self)
-        rows = zip(*(list(values)[:most] for values in self._columns.values()))
-        body = "".join("<tr>" + "".join(f"<td>{cell(v)}</td>" for v in row) + "</tr>" for row in rows)
-        rest = self.row_count - most
-        more = f"<p>and {rest} more rows</p>" if rest > 0 else ""
-        return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+        # A frame keeps the page's scripts and styles apart from the notebook's.
+        return (f'<iframe srcdoc="{html.escape(self.text)}" width="100%" height="620" '
+                'style="border: 0" sandbox="allow-scripts"></iframe>')
 
 
-def _read_csv(file: pathlib.Path) -> Table:
-    def value(name: str, cell: str):
-        if name == "method":
-            return cell
-        try:
-            return int(cell)
-        except ValueError:
-            return float(cell) if cell else None
+def show(scene: _core.Scene, x, level: int = -1) -> Page:
+    """The 3D viewer of a state x (n×3) [m] of a scene's level: a notebook shows it, `.open()` a browser."""
+    return Page(scene._page(x, level))
 
+
+class _Record:
+    """Its attributes are the values of results.json, by their names there; None where one is absent."""
+
+    def __init__(self, run: Result, values: Mapping[str, Any]):
+        self._run = run
+        vars(self).update(values)
+
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """A value of results.json."""
+
+
+class LevelRecord(_Record):
+    """The last state of one level of one method: `status`, `seconds`, `energy`, `largest_stretch` and all else that
+    results.json has of it, by name; None where a number is absent."""
+
+    @property
+    def x(self) -> numpy.ndarray:
+        """n×3 positions [m], read-only."""
+        return self._run._mesh(self.mesh)[0]
+
+    @property
+    def triangles(self) -> numpy.ndarray:
+        """m×3 vertex indices, read-only."""
+        return self._run._mesh(self.mesh)[1]
+
+
+class MethodRecord(_Record):
+    """One method of a run: `status`, `solver`, `seconds`, `peak_memory_bytes`, and `levels`, coarse to fine."""
+
+    def __init__(self, run: Result, name: str, values: Mapping[str, Any]):
+        super().__init__(run, values)
+        self.name = name
+        self.levels = [LevelRecord(run, {k: v for k, v in level.items() if k != "triangles"}) for level in values["levels"]]
+
+
+def _tidy(frame: pandas.DataFrame) -> pandas.DataFrame:
+    """Columns without any number are columns of numbers all the same."""
+    return frame.astype({name: float for name in frame if frame[name].isna().all()})
+
+
+def _rows(methods: Mapping[str, Any], entries: str) -> pandas.DataFrame:
+    """One row for each entry of each method; numbers within an object by their path, as energy_parts.gravity."""
+    rows = [{"method": name, **{k: v for k, v in entry.items() if k != "snapshots"}}
+            for name, method in methods.items() for entry in method[entries]]
+    return _tidy(pandas.json_normalize(rows))
+
+
+def _read_csv(file: pathlib.Path) -> pandas.DataFrame:
     if not file.exists():
-        return Table([])
-    with file.open(newline="", encoding="utf-8") as lines:
-        names, *rows = csv.reader(lines)
-    whole = (row for row in rows if len(row) == len(names))  # a killed run may leave a part of a line
-    return Table({name: value(name, cell) for name, cell in zip(names, row)} for row in whole)
-
-
-def _flat(entry: Mapping[str, Any]) -> dict:
-    """The numbers and words of an entry of results.json; numbers within an object by their path."""
-    row = {}
-    for name, value in entry.items():
-        if isinstance(value, dict):
-            if not any(isinstance(part, (str, list, dict)) for part in value.values()):
-                row.update({f"{name}.{part}": number for part, number in value.items()})
-        elif not isinstance(value, list):
-            row[name] = value
-    return row
+        return pandas.DataFrame()
+    text = file.read_text(encoding="utf-8")
+    whole = text[:text.rfind("\n") + 1]  # a killed run may leave a part of a line
+    return _tidy(pandas.read_csv(io.StringIO(whole), dtype={"method": str}, float_precision="round_trip",
+                                 keep_default_na=False, na_values={name: ["", "nan"] for name in whole.split("\n", 1)[0].split(",")}))
 
 
 class Result:
     """A run's results: result["pcs"].levels[-1].x is the finest state of a method.
 
-    A notebook shows the report's 3D viewer of all methods side by side.
+    A notebook shows the report's 3D viewer of all methods side by side. Tables are pandas.DataFrames.
     """
 
-    def __init__(self, record: _core.RunRecord):
-        self._record = record
-        folder = pathlib.Path(record.folder)
-        methods = json.loads((folder / "results.json").read_text(encoding="utf-8"))["methods"]
-
-        def rows(entries: str) -> Table:
-            return Table({"method": name, **_flat(entry)} for name in record.methods for entry in methods[name][entries])
-
-        self.levels = rows("levels")
-        """results.json's levels, one row for each of each method: status, cost, energies, state metrics."""
-        self.iterations = _read_csv(folder / "iterations.csv")
+    def __init__(self, folder: Union[str, os.PathLike]):
+        self.folder = os.fspath(folder)
+        """The results folder; a temporary one goes away with this object."""
+        path = pathlib.Path(folder)
+        try:
+            record = json.loads((path / "results.json").read_text(encoding="utf-8"))
+            self._methods: Dict[str, Any] = record["methods"]
+            self.experiment: str = record["experiment"]
+            self.complete: bool = record["complete"]
+            """Whether every method ended by itself."""
+            self.levels = _rows(self._methods, "levels")
+            """results.json's levels, one row for each of each method: status, cost, energies, state metrics."""
+            self.consistency = _rows(self._methods, "consistency")
+            """One row for each pair of levels: pair metrics of the prolonged coarse state against the fine one."""
+        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+            raise RuntimeError(f"{path / 'results.json'} is not a run's record ({error}); name the results folder of a run") \
+                from error
+        self.iterations = _read_csv(path / "iterations.csv")
         """iterations.csv, one row for each Newton iteration: energy [J], force residual, step size [s], …"""
-        self.consistency = rows("consistency")
-        """One row for each pair of levels: pair metrics of the prolonged coarse state against the fine one."""
-        self.errors = _read_csv(folder / "errors.csv")
+        self.errors = _read_csv(path / "errors.csv")
         """errors.csv, one row for each snapshot: its cost, and its errors against the method's own end and the
         reference."""
+        self._meshes: Dict[str, Tuple[numpy.ndarray, numpy.ndarray]] = {}
 
-    def __getitem__(self, method: str) -> _core.MethodRecord:
-        return self._record[method]
-
-    @property
-    def methods(self) -> Sequence[str]:
-        return self._record.methods
-
-    @property
-    def folder(self) -> str:
-        """The results folder; a temporary one goes away with this object."""
-        return self._record.folder
+    def __getitem__(self, method: str) -> MethodRecord:
+        if method not in self._methods:
+            raise KeyError(f"the run has no method \"{method}\"")
+        return MethodRecord(self, method, self._methods[method])
 
     @property
-    def complete(self) -> bool:
-        """Whether every method ended by itself."""
-        return self._record.complete
+    def methods(self) -> List[str]:
+        return list(self._methods)
+
+    def _mesh(self, name: Optional[str]) -> Tuple[numpy.ndarray, numpy.ndarray]:
+        if not name:
+            raise RuntimeError("the run has stored no state of this level")
+        if name not in self._meshes:
+            arrays = _core._read_mesh(os.path.join(self.folder, name))
+            for array in arrays:
+                array.setflags(write=False)
+            self._meshes[name] = arrays
+        return self._meshes[name]
 
     @property
     def page(self) -> Page:
         """The report's 3D viewer of every state."""
-        return Page(self._record.page())
+        return Page(_core._run_page(self.folder))
 
     def show(self) -> None:
         """Open the 3D viewer in a browser."""
@@ -163,18 +178,18 @@ class Result:
         return self.page._repr_html_()
 
     def __repr__(self) -> str:
-        return f"<drape.Result of {self._record.experiment}: {', '.join(self.methods)}>"
+        return f"<drape.Result of {self.experiment}: {', '.join(self.methods)}>"
 
 
-def read_sweep(folder) -> Table:
+def read_sweep(folder) -> pandas.DataFrame:
     """A sweep as one table, that of `drape table`: a row for each method of each run, with a column for every
-    varied key and one for the seed; `.to_pandas()` makes a DataFrame.
+    varied key and one for the seed.
 
     Raises RuntimeError for a folder without a sweep.
     """
-    return Table(json.loads(_core._table(folder)))
+    return _tidy(pandas.DataFrame(json.loads(_core._table(folder))))
 
 
 def read_run(folder) -> Result:
     """The results of a run, finished or interrupted. Raises RuntimeError for a folder without one."""
-    return Result(_core.RunRecord(folder))
+    return Result(folder)

@@ -1,0 +1,185 @@
+#include <pybind11/stl/filesystem.h>
+
+#include <exception>
+#include <utility>
+
+#include "core/app/experiment/method_choice.h"
+#include "core/app/python/module.h"
+#include "core/app/python/python_call.h"
+#include "core/app/python/values.h"
+#include "core/app/report/report.h"
+#include "core/app/report/run_table.h"
+#include "core/app/run/runner.h"
+#include "core/app/view/colours.h"
+#include "core/kernel/files/number_text.h"
+#include "core/numerics/mesh_files/io.h"
+
+namespace drape::python {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Passes a run's events on to Python's functions, and Python's wishes to the run: an exception of a function
+/// or a prototype, Ctrl-C and a returned "stop" stop it, a returned "refine" ends the level. Used without the
+/// GIL.
+class Callbacks : public Observer {
+ public:
+  /// Functions of an Iteration and of a LevelResult; None for none.
+  Callbacks(const py::object& on_iteration, const py::object& on_level)
+      : on_iteration_(function("on_iteration", on_iteration)), on_level_(function("on_level", on_level)) {}
+
+  void level_started(int) override { refine_ = false; }
+  void iteration(const IterationRow& row, const Positions& x) override {
+    if (on_iteration_) call(on_iteration_, Iteration{row, x});
+  }
+  void level_finished(const LevelResult& result) override { call(on_level_, result); }
+  bool refine_requested() override { return std::exchange(refine_, false); }
+
+  bool stop_requested() override {
+    if (has_failed()) stop_ = true;
+    if (stop_) return true;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) return false;
+    error_ = std::make_exception_ptr(py::error_already_set());  // takes KeyboardInterrupt or what else is set
+    stop_ = true;
+    return true;
+  }
+
+  /// Raises what a function or a signal's handler raised, if any. Call with the GIL held, at the end.
+  void raise_error() {
+    if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
+  }
+
+ private:
+  static SharedObject function(const char* name, const py::object& given) {
+    if (given.is_none()) return nullptr;
+    if (!PyCallable_Check(given.ptr()))
+      throw py::type_error(std::string(name) + " must be a function or None, not " +
+                           std::string(py::repr(given)));
+    return share(given);
+  }
+
+  /// After an exception the run stops.
+  template <class Argument>
+  void call(const SharedObject& function, const Argument& argument) {
+    if (!function || stop_) return;
+    const PythonCall nesting;  // what the function itself calls may fail, and be handled there
+    try {
+      const py::object answer = (*function)(argument);
+      const std::string word = py::isinstance<py::str>(answer) ? answer.cast<std::string>() : "";
+      if (word == "stop")
+        stop_ = true;
+      else if (word == "refine")
+        refine_ = true;
+      else if (!answer.is_none())
+        throw py::value_error("a callback must return None, \"stop\" or \"refine\", not " +
+                              std::string(py::repr(answer)));
+    } catch (const std::exception&) {  // raised at the end of the run, whose results are saved until then
+      error_ = std::current_exception();
+      stop_ = true;
+    }
+  }
+
+  SharedObject on_iteration_, on_level_;  // null for none
+  bool stop_ = false, refine_ = false;
+  std::exception_ptr error_;
+};
+
+void run(const ExperimentHandle& handle, const std::vector<std::string>& methods, const fs::path& out,
+         const py::object& on_iteration, const py::object& on_level, bool progress, bool report,
+         bool overwrite, bool allow_memory) {
+  Callbacks callbacks(on_iteration, on_level);
+  const SceneHandle scene = handle.scene(allow_memory);
+  warn_of_implausible(scene);
+  RunOptions options;
+  options.out = out;
+  options.methods = chosen_methods(*scene.experiment, methods);
+  options.overwrite = overwrite;
+  options.verbosity = progress ? Verbosity::progress : Verbosity::quiet;
+  options.report = report;
+  options.stop = [&] { return callbacks.stop_requested(); };  // of solves that are not observed too
+  options.observer = &callbacks;
+  forget_failure();
+  std::exception_ptr error;
+  without_gil([&] {
+    try {
+      run_experiment(*scene.experiment, *scene.scene, options);
+    } catch (...) {
+      error = std::current_exception();
+    }
+  });
+  // First the causes of what follows from them.
+  callbacks.raise_error();
+  raise_failure();
+  if (error) std::rethrow_exception(error);
+}
+
+void bind_results(py::module_& m) {
+  m.def(
+      "_table",
+      [](const fs::path& folder) { return table_text(table_of(read_runs({folder})), {}, TableFormat::json); },
+      py::arg("folder"), "The rows of `drape table FOLDER --format json`.");
+  m.def(
+      "_run_page", [](const fs::path& folder) { return viewer_page(read_run(folder)); }, py::arg("folder"));
+  m.def(
+      "_read_mesh",
+      [](const fs::path& file) {
+        TriangleMesh mesh = read_mesh(file);
+        return std::pair(std::move(mesh.vertices), std::move(mesh.triangles));
+      },
+      py::arg("file"));
+  m.def("_solver_style", &solver_style, py::arg("solver"),
+        "Index of the colour and the mark that the solver has in every plot.");
+}
+
+}  // namespace
+
+void bind_run(py::module_& m) {
+  py::class_<Iteration>(m, "Iteration", "One Newton iteration and the state after it.")
+      .def_readonly("level", &Iteration::level)
+      .def_readonly("step", &Iteration::step)
+      .def_readonly("iteration", &Iteration::iteration, "Within its step.")
+      .def_readonly("time", &Iteration::time, "Pseudo-time; None without a schedule.")
+      .def_readonly("seconds", &Iteration::seconds, "Since the method's start [s].")
+      .def_readonly("flops", &Iteration::flops, "Of the level's factorisations.")
+      .def_readonly("energy", &Iteration::energy, "Plain energy of the level [J].")
+      .def_readonly("proxy_energy", &Iteration::proxy_energy,
+                    "Energy that the method minimises in its place [J], or None.")
+      .def_readonly("decrement", &Iteration::decrement, "‖p‖ / (h √n) [m/s].")
+      .def_readonly("force_residual", &Iteration::force_residual, "[1]")
+      .def_readonly("step_length", &Iteration::step_length, "α of the line search.")
+      .def_readonly("step_size", &Iteration::step_size, "h [s].")
+      .def_readonly("contacts", &Iteration::contacts, "Contacts closer than d̂; None without a contact model.")
+      .def_readonly("smallest_gap", &Iteration::smallest_gap, "Of them [m].")
+      .def_readonly("x", &Iteration::x, "n×3 positions [m], read-only.")
+      .def("__repr__", [](const Iteration& i) {
+        return "<drape.Iteration level " + std::to_string(i.level) + ", step " + std::to_string(i.step) +
+               ", force_residual " + fixed_text(i.force_residual, 6) + ">";
+      });
+
+  py::class_<LevelResult>(m, "LevelResult", "How a level of a solve ended.")
+      .def_readonly("level", &LevelResult::level)
+      .def_property_readonly(
+          "status", [](const LevelResult& r) { return to_string(r.outcome); },
+          "converged, max_steps_reached, stalled, cancelled, infeasible, …")
+      .def_readonly("message", &LevelResult::message)
+      .def_readonly("steps", &LevelResult::steps)
+      .def_readonly("iterations", &LevelResult::iterations)
+      .def_readonly("factorisations", &LevelResult::factorisations)
+      .def_readonly("seconds", &LevelResult::seconds)
+      .def_readonly("seconds_by_phase", &LevelResult::seconds_by_phase)
+      .def_readonly("force_residual", &LevelResult::force_residual, "Of the objective [1].")
+      .def_readonly("smallest_gap", &LevelResult::smallest_gap, "[m]; None without a contact model.")
+      .def_readonly("contact_stiffness", &LevelResult::contact_stiffness,
+                    "Barrier stiffness of each contact model at the end [Pa].")
+      .def_readonly("x", &LevelResult::x, "n×3 positions [m], read-only.");
+
+  bind_results(m);
+  py::class_<ExperimentHandle> experiment(py::object(m.attr("ExperimentBase")));
+  experiment.def("_run", &run, py::arg("methods"), py::arg("out"), py::arg("on_iteration"),
+                 py::arg("on_level"), py::arg("progress"), py::arg("report"), py::arg("overwrite"),
+                 py::arg("allow_memory"));
+}
+
+}  // namespace drape::python

@@ -1,0 +1,111 @@
+#include "core/app/python/prototype.h"
+
+#include <variant>
+
+#include "core/app/python/values.h"
+
+namespace drape::python {
+
+namespace {
+
+/// The parameter struct of a prototype: a value for each parameter of the schema.
+using Value = std::variant<bool, int, double, std::string>;
+using Values = std::vector<Value>;
+
+Value default_of(const std::string& name, const py::object& initial) {
+  py::detail::make_caster<Value> caster;
+  if (!caster.load(initial, false))
+    throw py::type_error("the parameter " + name + " must default to a bool, int, float or str, not " +
+                         std::string(py::repr(initial)));
+  return py::detail::cast_op<Value>(caster);
+}
+
+/// The parameter `name` of a class, a drape.Parameter or a plain default, whose value is the k-th.
+Parameter parameter_of(const std::string& name, const py::object& declared, std::size_t k, Value& initial) {
+  const bool plain = !py::hasattr(declared, "default");
+  initial = default_of(name, plain ? declared : py::object(declared.attr("default")));
+  Parameter p;
+  p.name = name;
+  p.type = std::visit([](const auto& value) { return parameter_detail::type_of(&value); }, initial);
+  if (!plain) {
+    p.description = declared.attr("description").cast<std::string>();
+    p.unit = declared.attr("unit").cast<std::string>();
+    p.source = declared.attr("source").cast<std::string>();
+    p.minimum = declared.attr("minimum").cast<std::optional<double>>().value_or(p.minimum);
+    p.maximum = declared.attr("maximum").cast<std::optional<double>>().value_or(p.maximum);
+  }
+  p.read = [k](void* values, const ConfigNode& node, ConfigErrors&) {
+    std::visit([&](auto& own) { parameter_detail::convert(node, own); }, static_cast<Values*>(values)->at(k));
+  };
+  p.write = [k](const void* values) {
+    return std::visit([](const auto& own) { return parameter_detail::to_node(own); },
+                      static_cast<const Values*>(values)->at(k));
+  };
+  p.number = [k](void* values, std::size_t item) {
+    return std::visit([&](auto& own) { return parameter_detail::number(own, item); },
+                      static_cast<Values*>(values)->at(k));
+  };
+  return p;
+}
+
+/// The parameters that a class declares in its dict `parameters`.
+Schema schema_of_class(const py::object& type, const std::string& name) {
+  Schema schema;
+  schema.name = name;
+  Values defaults;
+  for (const auto& [key, declared] : type.attr("parameters").cast<py::dict>()) {
+    Value value;
+    schema.parameters.push_back(parameter_of(
+        key.cast<std::string>(), py::reinterpret_borrow<py::object>(declared), defaults.size(), value));
+    defaults.push_back(std::move(value));
+  }
+  schema.fresh = [defaults] { return std::make_shared<Values>(defaults); };
+  schema.copy = [](const void* values) {
+    return std::make_shared<Values>(*static_cast<const Values*>(values));
+  };
+  return schema;
+}
+
+/// The object of the class with these parameters.
+py::object instance_of(const py::object& type, const Schema& schema, const Values& values) {
+  py::dict keywords;
+  for (std::size_t k = 0; k < values.size(); ++k) keywords[py::str(schema.parameters[k].name)] = values[k];
+  return type(**keywords);
+}
+
+/// Registers a class, of which `make` makes implementations of the interface.
+template <class Interface>
+void register_class(const std::string& name, const py::object& type,
+                    std::shared_ptr<Interface> (*make)(const py::object&)) {
+  auto entry = std::make_unique<RegistryEntry>();
+  entry->kind = Interface::kind;
+  entry->name = name;
+  const py::object summary = type.attr("__doc__");
+  if (!summary.is_none())
+    entry->summary = py::str(py::module_::import("inspect").attr("cleandoc")(summary)).cast<std::string>();
+  entry->summary = entry->summary.substr(0, entry->summary.find('\n'));
+  entry->schema = schema_of_class(type, name);
+  entry->make_parameters = entry->schema.fresh;
+  entry->make = [type = share(type), schema = entry->schema, make](const void* values, const void*) {
+    return with_python([&]() -> std::shared_ptr<void> {
+      return make(instance_of(*type, schema, *static_cast<const Values*>(values)));
+    });
+  };
+  register_prototype(std::move(entry));
+}
+
+void register_of_kind(const std::string& kind, const std::string& name, const py::object& type) {
+  if (kind == Energy::kind) return register_class(name, type, &prototype_energy);
+  if (kind == Metric::kind) return register_class(name, type, &prototype_metric);
+  if (kind == Refiner::kind) return register_class(name, type, &prototype_refiner);
+  if (kind == Solver::kind) return register_class(name, type, &prototype_solver);
+  throw py::value_error("there are no prototypes of kind " + kind);
+}
+
+}  // namespace
+
+void bind_prototypes(py::module_& m) {
+  m.def("_register", &register_of_kind, py::arg("kind"), py::arg("name"), py::arg("type"));
+}
+
+}  // namespace drape::python

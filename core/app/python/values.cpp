@@ -1,0 +1,172 @@
+#include "core/app/python/values.h"
+
+#include <limits>
+
+#include "core/app/experiment/describe.h"
+#include "core/app/experiment/experiment_path.h"
+#include "core/app/files/json_file.h"
+
+namespace drape::python {
+
+namespace {
+
+/// An array of anything that numpy takes. Throws TypeError unless its kind is among `kinds` (numpy's
+/// letters).
+py::array array_of_kind(const py::handle& values, const std::string& kinds, const std::string& name,
+                        const std::string& wanted) {
+  const py::array array = py::array::ensure(values);
+  if (!array) PyErr_Clear();
+  if (!array || kinds.find(array.dtype().kind()) == kinds.npos)
+    throw py::type_error(
+        name + " must be an array of " + wanted + ", not " +
+        (array ? "of " + std::string(py::str(array.dtype())) : std::string(py::str(py::type::of(values)))));
+  return array;
+}
+
+/// Deepest nesting, as of YAML files; a list that contains itself ends here.
+constexpr int max_depth = 100;
+
+/// A str's text, which a config.yaml can hold.
+std::string text_of(const py::handle& value) {
+  std::string text;
+  try {
+    text = value.cast<std::string>();
+  } catch (const py::cast_error&) {
+    throw py::value_error(std::string(py::repr(value)) + " is no text that UTF-8 can hold");
+  }
+  if (text.find('\0') != std::string::npos)
+    throw py::value_error(std::string(py::repr(value)) + " has a NUL character; take it out");
+  return text;
+}
+
+ConfigNode nested_node(const py::handle& value, int depth) {
+  if (depth > max_depth) throw py::value_error("the experiment is nested too deeply");
+  if (value.is_none()) return {};
+  if (py::isinstance<py::bool_>(value)) return ConfigNode::of(value.cast<bool>());
+  if (py::isinstance<py::int_>(value)) {
+    ConfigNode node = ConfigNode::of(std::string(py::str(value)));
+    node.quoted = false;
+    return node;
+  }
+  if (py::isinstance<py::float_>(value)) return ConfigNode::of(value.cast<double>());
+  if (py::isinstance<py::str>(value)) return ConfigNode::of(text_of(value));
+  ConfigNode node;
+  if (py::isinstance<py::dict>(value)) {
+    node.kind = ConfigNode::Kind::map;
+    for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
+      if (!py::isinstance<py::str>(key))
+        throw py::type_error("a key of an experiment must be a str, not " + std::string(py::repr(key)));
+      node.add(text_of(key), nested_node(entry, depth + 1));
+    }
+    return node;
+  }
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    node.kind = ConfigNode::Kind::list;
+    for (const py::handle item : value) node.items.push_back(nested_node(item, depth + 1));
+    return node;
+  }
+  if (py::hasattr(value, "tolist")) return nested_node(value.attr("tolist")(), depth + 1);  // numpy's
+  if (py::hasattr(value, "__fspath__")) return ConfigNode::of(text_of(value.attr("__fspath__")()));
+  throw py::type_error("an experiment cannot hold " + std::string(py::repr(value)));
+}
+
+}  // namespace
+
+std::string shape_text(const py::array& array) { return std::string(py::str(array.attr("shape"))); }
+
+py::array_t<double> real_array(const py::handle& values, const std::string& name) {
+  return py::array_t<double>::ensure(array_of_kind(values, "fiu", name, "real numbers"));
+}
+
+Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows(const py::handle& values,
+                                                                                 Eigen::Index columns,
+                                                                                 const std::string& name) {
+  const auto array = py::array_t<std::int64_t>::ensure(array_of_kind(values, "iu", name, "integers"));
+  if (array.ndim() != 2 || (columns >= 0 && array.shape(1) != columns))
+    throw py::value_error(name + " must have the shape (m, " +
+                          (columns >= 0 ? std::to_string(columns) : "k") + "), not " + shape_text(array));
+  const auto wide =
+      array.cast<Eigen::Matrix<std::int64_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>();
+  using Limits = std::numeric_limits<int>;
+  if (wide.size() > 0 && (wide.maxCoeff() > Limits::max() || wide.minCoeff() < Limits::min()))
+    throw py::value_error(name + " has an integer that does not fit 32 bits");
+  return wide.cast<int>();
+}
+
+const Positions& State::of(Eigen::Index vertices) const {
+  if (x_.rows() != vertices)
+    throw py::value_error("positions must have the shape (" + std::to_string(vertices) +
+                          ", 3), one row a vertex, not (" + std::to_string(x_.rows()) + ", 3)");
+  return x_;
+}
+
+State state_of(const py::handle& values) {
+  const auto array = real_array(values, "positions");
+  if (array.ndim() != 2 || array.shape(1) != 3)
+    throw py::value_error("positions must have the shape (n, 3), one row a vertex, not " + shape_text(array));
+  return State(array.cast<Positions>());
+}
+
+py::object bsr_matrix(const BlockMatrix& matrix) {
+  const BlockPattern& pattern = *matrix.pattern;
+  const int n = pattern.rows();
+  py::array_t<int> starts(n + 1);
+  int* const start = starts.mutable_data();
+  std::fill(start, start + n + 1, 0);
+  const auto for_each_block = [&](const auto& body) {
+    for (int i = 0; i < n; ++i)
+      for (int b = pattern.row_start[i]; b < pattern.row_start[i + 1]; ++b) body(i, pattern.columns[b], b);
+  };
+  for_each_block([&](int i, int j, int) {
+    ++start[i + 1];
+    if (j > i) ++start[j + 1];
+  });
+  for (int i = 0; i < n; ++i) start[i + 1] += start[i];
+  py::array_t<int> columns(start[n]);
+  py::array_t<double> blocks({static_cast<py::ssize_t>(start[n]), py::ssize_t{3}, py::ssize_t{3}});
+  std::vector<int> next(start, start + n);
+  using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  const auto put = [&](int row, int column, const Block& values) {
+    const int at = next[row]++;
+    columns.mutable_data()[at] = column;
+    Eigen::Map<Block>(blocks.mutable_data() + 9 * static_cast<std::ptrdiff_t>(at)) = values;
+  };
+  // Columns ascend: all those left of the diagonal first.
+  for_each_block([&](int i, int j, int b) {
+    if (j > i) put(j, i, Eigen::Map<const Block>(matrix.block(b)).transpose());
+  });
+  for_each_block([&](int i, int j, int b) { put(i, j, Eigen::Map<const Block>(matrix.block(b))); });
+  const py::object make = py::module_::import("scipy.sparse").attr("bsr_matrix");
+  return make(py::make_tuple(blocks, columns, starts), py::arg("shape") = py::make_tuple(3 * n, 3 * n));
+}
+
+ConfigNode node_of(const py::handle& value) { return nested_node(value, 0); }
+
+py::dict value_of(const ConfigNode& node) {
+  return py::module_::import("json").attr("loads")(json_text(json_value(node)));
+}
+
+ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value) {
+  ConfigErrors errors;
+  const std::string option = "--set " + key;
+  if (py::isinstance<py::str>(value))
+    set_parameter(experiment, key, value.cast<std::string>(), option, errors);
+  else
+    set_parameter(experiment, key, node_of(value), Location{option, 0, 0}, errors);
+  throw_errors(errors);
+  return experiment;
+}
+
+void throw_errors(const ConfigErrors& errors) {
+  if (errors.empty()) return;
+  const py::module_ types = py::module_::import("drape.experiment");
+  py::list faults;
+  for (const ConfigError& error : errors)
+    faults.append(types.attr("ConfigFault")(error.message, error.where.file, error.where.line,
+                                            error.where.column, error.where.key));
+  const py::object type = types.attr("ConfigError");
+  PyErr_SetObject(type.ptr(), type(faults).ptr());
+  throw py::error_already_set();
+}
+
+}  // namespace drape::python

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <string>
+
+#include "core/kernel/interfaces/triangle_mesh.h"
+#include "core/kernel/plugin/config_node.h"
+#include "core/numerics/linear_algebra/block_matrix.h"
+
+namespace drape::python {
+
+namespace py = pybind11;
+
+/// "(441, 3)"
+std::string shape_text(const py::array& array);
+
+/// An array of doubles, in any order in memory. Throws TypeError for what is not made of real numbers.
+py::array_t<double> real_array(const py::handle& values, const std::string& name);
+/// Rows of integers, all within int. Throws TypeError, or ValueError for another shape: `columns` -1 allows
+/// any number.
+Eigen::Matrix<int, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> integer_rows(const py::handle& values,
+                                                                                 Eigen::Index columns,
+                                                                                 const std::string& name);
+
+/// Positions that Python gives: n×3 real numbers of any type. A wrong type raises TypeError, a wrong shape
+/// ValueError.
+class State {
+ public:
+  State() = default;
+  explicit State(Positions x) : x_(std::move(x)) {}
+  /// Throws ValueError, with both shapes, unless there are so many.
+  const Positions& of(Eigen::Index vertices) const;
+  const Positions& any() const { return x_; }
+
+ private:
+  Positions x_;
+};
+State state_of(const py::handle& values);
+
+/// A symmetric matrix of 3×3 blocks as a scipy.sparse.bsr_matrix with both triangles.
+py::object bsr_matrix(const BlockMatrix& matrix);
+
+/// A Python value as a node of a config: None, bool, int, float, str, a path, dicts, lists, tuples and numpy
+/// arrays of them. Throws TypeError for anything else.
+ConfigNode node_of(const py::handle& value);
+
+/// The node as Python's dict, list, str, int, float, bool or None.
+py::dict value_of(const ConfigNode& node);
+
+/// The experiment with another value at the key; a str is read as YAML. Throws drape.ConfigError for a path
+/// that is none.
+ConfigNode with_value(ConfigNode experiment, const std::string& key, const py::object& value);
+
+/// Throws a Python exception drape.ConfigError unless the list is empty.
+void throw_errors(const ConfigErrors& errors);
+
+}  // namespace drape::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<drape::python::State> {
+  PYBIND11_TYPE_CASTER(drape::python::State, const_name("numpy.typing.ArrayLike"));
+  bool load(handle source, bool) {
+    value = drape::python::state_of(source);
+    return true;
+  }
+};
+
+template <>
+struct type_caster<drape::BlockMatrix> {
+  static constexpr auto name = const_name("scipy.sparse.bsr_matrix");
+  static handle cast(const drape::BlockMatrix& matrix, return_value_policy, handle) {
+    return drape::python::bsr_matrix(matrix).release();
+  }
+};
+
+}  // namespace pybind11::detail
