@@ -11,7 +11,6 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/interfaces/metric_declaration.h"
 
 namespace drape {
 
@@ -34,7 +33,7 @@ constexpr std::pair<const char*, const char*> own_folders[] = {
 constexpr const char* unfinished = ".part";  // ends the name of a file that is being written
 constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
-constexpr std::size_t longest_ending = std::string_view("_l10_l11_.png.part").size() + longest_picture_name;
+constexpr std::size_t longest_ending = std::string_view("_l10_on_l11.png.part").size();
 
 /// Whether results.json is a run's, and not of another program.
 bool has_results_of_a_run(const RunFolder& folder) {
