@@ -39,26 +39,6 @@ export function scalars(buffer) {
   return {low: ends[0], high: ends[1], steps: new Uint8Array(buffer, 8)};
 }
 
-/// Unit normals, weighted by area.
-export function normals(x, index) {
-  const n = new Float32Array(x.length);
-  for (let t = 0; t < index.length; t += 3) {
-    const a = 3 * index[t], b = 3 * index[t + 1], c = 3 * index[t + 2];
-    const ux = x[b] - x[a], uy = x[b + 1] - x[a + 1], uz = x[b + 2] - x[a + 2];
-    const vx = x[c] - x[a], vy = x[c + 1] - x[a + 1], vz = x[c + 2] - x[a + 2];
-    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    n[a] += nx; n[a + 1] += ny; n[a + 2] += nz;
-    n[b] += nx; n[b + 1] += ny; n[b + 2] += nz;
-    n[c] += nx; n[c + 1] += ny; n[c + 2] += nz;
-  }
-  for (let i = 0; i < n.length; i += 3) {
-    const length = Math.hypot(n[i], n[i + 1], n[i + 2]) || 1;
-    n[i] /= length; n[i + 1] /= length; n[i + 2] /= length;
-  }
-  return n;
-}
-
-
 /// Colour maps: sRGB at equal distances; RdBu and viridis.
 const rgb = text => text.split(' ').map(c => [1, 3, 5].map(k => parseInt(c.slice(k, k + 2), 16)));
 const viridis = '#440154 #472d7b #3b528b #2c728e #21918c #28ae80 #5ec962 #addc30 #fde725';

@@ -1,5 +1,4 @@
 /// The drawing: one WebGL context, views side by side, with one camera.
-import {normals} from './blocks.js';
 
 /* global THREE */
 export class Scene {
@@ -86,7 +85,7 @@ export class Scene {
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(index);
     geometry.setAttribute('position', new THREE.BufferAttribute(x, 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(normals(x, index.array), 3));
+    geometry.computeVertexNormals();
     return geometry;
   }
 

@@ -70,10 +70,8 @@ TEST_CASE("an observer sees every iteration and level of a run") {
   Watch watch;
   const RunData run = run_with(watch);
   CHECK(run.complete);
-  std::size_t rows = 0;
-  for (const IterationSeries& series : run.iterations) rows += series.rows.size();
-  CHECK(rows > 4);
-  CHECK(static_cast<std::size_t>(watch.iterations) == rows);
+  CHECK(run.iterations.size() > 4);
+  CHECK(static_cast<std::size_t>(watch.iterations) == run.iterations.size());
   CHECK(watch.levels == 2);
 }
 

@@ -67,16 +67,13 @@ void check_form(const Metric& metric, const MetricResult& result, int vertices) 
     CHECK(std::any_of(result.values.begin(), result.values.end(),
                       [&](const MetricValue& v) { return &column_of(declared.columns, v.name) == &c; }));
   }
-  for (const MetricPicture& p : declared.pictures) {
-    INFO(p.name);
+  for (const MetricColours& p : declared.colours) {
+    INFO(p.field);
     for (const std::string& field : {p.field, p.other_field})
       CHECK((field.empty() || std::any_of(result.fields.begin(), result.fields.end(),
                                           [&](const MetricField& f) { return f.name == field; })));
     CHECK_FALSE(p.field.empty());
-    CHECK(p.other_field.empty() == (p.kind == PictureKind::difference));
-    CHECK(p.name.size() <= longest_picture_name);
-    for (const std::string& text : {p.unit, p.label, p.title, p.text}) CHECK_FALSE(text.empty());
-    if (!p.column.empty()) CHECK(column_of(declared.columns, p.column).name == p.column);
+    for (const std::string& text : {p.unit, p.label}) CHECK_FALSE(text.empty());
   }
   for (const MetricValue& v : result.values) {
     INFO(v.name);

@@ -12,28 +12,16 @@ inline std::vector<drape::DeclaredMetric> sample_metrics() {
                         .label = "d_H^fit",
                         .unit = "1",
                         .shown = Shown::summary,
-                        .best = "changes its mean curvature least",
                         .error = "d_H_fit",
                         .error_use = ErrorUse::summary},
                        {.name = "d_H_ddg", .label = "d_H^ddg", .unit = "1"},
                        {.name = "d_K_fit", .label = "d_K^fit", .unit = "1/m²"},
                        {.name = "d_K_ddg", .label = "d_K^ddg", .unit = "1/m²"}};
-  curvature.pictures = {{.kind = PictureKind::difference,
-                         .name = "H_difference",
-                         .field = "H_difference",
-                         .unit = "1/m",
-                         .label = "difference in mean curvature",
-                         .title = "Where the curvature changes",
-                         .text = "Difference in mean curvature.",
-                         .column = "d_H_fit"},
-                        {.kind = PictureKind::threshold,
-                         .name = "folds",
-                         .field = "principal_curvature",
-                         .other_field = "principal_curvature_other",
-                         .unit = "1/m",
-                         .label = "folds",
-                         .title = "Folds across levels",
-                         .text = "The principal curvature."}};
+  curvature.colours = {{.field = "H_difference", .unit = "1/m", .label = "difference in mean curvature"},
+                       {.field = "principal_curvature",
+                        .other_field = "principal_curvature_other",
+                        .unit = "1/m",
+                        .label = "folds"}};
   curvature.text = "d_H is of mean curvature.";
   distance.columns = {{.name = "distance_rms",
                        .label = "distance, RMS",
@@ -55,8 +43,7 @@ inline std::vector<drape::DeclaredMetric> sample_metrics() {
                       .label = "largest stretch",
                       .unit = "1",
                       .better = Better::neither,
-                      .shown = Shown::summary,
-                      .decimals = 4}};
+                      .shown = Shown::summary}};
   return {{"curvature", MetricScope::pair, curvature},
           {"distance", MetricScope::pair, distance},
           {"energy", MetricScope::pair, energy},

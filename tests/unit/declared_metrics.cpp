@@ -44,16 +44,15 @@ TEST_CASE("what metrics declare goes through results.json unchanged") {
     REQUIRE(after[m].declaration.columns.size() == before[m].declaration.columns.size());
     for (std::size_t k = 0; k < before[m].declaration.columns.size(); ++k) {
       const MetricColumn &a = before[m].declaration.columns[k], &b = after[m].declaration.columns[k];
-      CHECK((b.name == a.name && b.label == a.label && b.unit == a.unit && b.best == a.best));
-      CHECK((b.better == a.better && b.shown == a.shown && b.decimals == a.decimals));
+      CHECK((b.name == a.name && b.label == a.label && b.unit == a.unit));
+      CHECK((b.better == a.better && b.shown == a.shown));
       CHECK((b.error == a.error && b.error_use == a.error_use));
     }
-    REQUIRE(after[m].declaration.pictures.size() == before[m].declaration.pictures.size());
-    for (std::size_t k = 0; k < before[m].declaration.pictures.size(); ++k) {
-      const MetricPicture &a = before[m].declaration.pictures[k], &b = after[m].declaration.pictures[k];
-      CHECK((b.kind == a.kind && b.name == a.name && b.field == a.field && b.other_field == a.other_field));
-      CHECK((b.unit == a.unit && b.label == a.label && b.title == a.title && b.text == a.text));
-      CHECK(b.column == a.column);
+    REQUIRE(after[m].declaration.colours.size() == before[m].declaration.colours.size());
+    for (std::size_t k = 0; k < before[m].declaration.colours.size(); ++k) {
+      const MetricColours &a = before[m].declaration.colours[k], &b = after[m].declaration.colours[k];
+      CHECK((b.field == a.field && b.other_field == a.other_field));
+      CHECK((b.unit == a.unit && b.label == a.label));
     }
   }
 }
@@ -83,25 +82,20 @@ TEST_CASE("values that have no place of their own in results.json are refused be
   CHECK(refused({metric("a", state, {"tilt", "tilt"})}) ==
         "metric a: the value \"tilt\" is declared twice\n");
   CHECK(refused({metric("a", state, {""})}) == "metric a: a value needs a name\n");
-  DeclaredMetric drawn = metric("a", pair, {});
-  drawn.declaration.pictures.push_back({.name = std::string(longest_picture_name + 1, 'p')});
-  CHECK_THAT(refused({drawn}), Contains("is longer than 24 bytes"));
 }
 
 TEST_CASE("declarations that someone edited are read as far as they can be") {
   for (const char* text :
-       {"null", "3", "[]", R"({"a": 1})", R"({"a": {"columns": 1, "pictures": [1, {"field": 2}]}})",
+       {"null", "3", "[]", R"({"a": 1})", R"({"a": {"columns": 1, "colours": [1, {"field": 2}]}})",
         R"({"a": {"columns": [1, {}, {"name": 2}]}})"}) {
     INFO(text);
     for (const DeclaredMetric& metric : declared_metrics(Json::parse(text))) {
       CHECK(metric.declaration.columns.empty());
-      CHECK(metric.declaration.pictures.empty());
+      CHECK(metric.declaration.colours.empty());
     }
   }
-  const auto odd = declared_metrics(
-      Json::parse(R"({"a": {"columns": [{"name": "b", "decimals": 1e300, "better": "x"}]}})"));
+  const auto odd = declared_metrics(Json::parse(R"({"a": {"columns": [{"name": "b", "better": "x"}]}})"));
   REQUIRE(odd.at(0).declaration.columns.size() == 1);
-  CHECK(odd[0].declaration.columns[0].decimals == 17);
   CHECK(odd[0].declaration.columns[0].better == Better::neither);
 }
 
@@ -149,7 +143,7 @@ TEST_CASE(
     "a table of errors that is cut short at its end is read as far as it goes, one damaged before is "
     "refused") {
   const std::string header = "method,level,seconds\n", row = "pcs,0,1\n";
-  CHECK(run_of({{"methods", Json::object()}}, header + row + row + "pcs,").errors[0].rows.size() == 2);
+  CHECK(run_of({{"methods", Json::object()}}, header + row + row + "pcs,").errors.size() == 2);
   CHECK_THROWS_WITH(run_of({{"methods", Json::object()}}, header + row + "pcs,\n" + row),
                     Contains("errors.csv:3: fewer cells than the header has; run the experiment again"));
 }

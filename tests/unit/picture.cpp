@@ -68,9 +68,8 @@ int brightness(const Image& image, int column, int row) {
 
 /// Where a point is seen [pixels].
 Eigen::Vector2i pixel_of(const Eigen::Vector3d& point, const Camera& camera, const Image& image) {
-  const Eigen::Vector4d p = camera.projection * camera.view * point.homogeneous();
-  return {static_cast<int>((p[0] / p[3] + 1) / 2 * image.width),
-          static_cast<int>((1 - p[1] / p[3]) / 2 * image.height)};
+  const Eigen::Vector3d p = camera.seen(point);
+  return {static_cast<int>((p[0] + 1) / 2 * image.width), static_cast<int>((1 - p[1]) / 2 * image.height)};
 }
 
 }  // namespace
@@ -84,17 +83,17 @@ TEST_CASE("the camera sees all of every state and wastes no picture") {
   for (const Positions* x : {&sheet.vertices, static_cast<const Positions*>(&other)}) {
     for (int i = 0; i < x->rows(); ++i) {
       if (!x->row(i).allFinite()) continue;
-      const Eigen::Vector4d p = camera.projection * camera.view * x->row(i).transpose().homogeneous();
-      CHECK(p[3] > 0);
-      CHECK((p / p[3]).head<3>().cwiseAbs().maxCoeff() < 1);
-      reach = std::max(reach, (p / p[3]).head<2>().cwiseAbs().maxCoeff());
+      const Eigen::Vector3d p = camera.seen(x->row(i));
+      CHECK(p[2] > 0);
+      CHECK(p.head<2>().cwiseAbs().maxCoeff() < 1);
+      reach = std::max(reach, p.head<2>().cwiseAbs().maxCoeff());
     }
   }
   CHECK(reach > 0.9);
   const Camera above = Camera::around({&sheet.vertices}, {0, 0, 2}, 1);
-  const Eigen::Vector4d far_side = above.projection * above.view * Eigen::Vector4d(0.5, 1, 0, 1);
-  CHECK(far_side[0] / far_side[3] == Approx(0).margin(1e-12));  // y is up
-  CHECK(far_side[1] / far_side[3] == Approx(1 / 1.06));
+  const Eigen::Vector3d far_side = above.seen({0.5, 1, 0});
+  CHECK(far_side[0] == Approx(0).margin(1e-12));  // y is up
+  CHECK(far_side[1] == Approx(1 / 1.06));
 }
 
 TEST_CASE("a drawing shows both sides of the cloth") {

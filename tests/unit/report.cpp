@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/app/report/pictures.h"
+#include "core/app/report/run_table.h"
 #include "core/app/report/text_table.h"
 #include "core/app/view/colours.h"
 #include "core/kernel/files/file.h"
@@ -203,19 +204,19 @@ TEST_CASE("the pictures of a report are drawn, stored and inlined") {
   const PictureSet set = draw_pictures(read_run(run.folder), {}, small_pictures);
   CHECK(set.notes.empty());
   REQUIRE(set.pictures.size() == 2 * (2 + 1));
-  CHECK(set.find("pcs_l0.png")->image.width == 300);
-  CHECK(set.find("pcs_l0.png")->image.height == 233);
+  CHECK(set.find("pcs_l0.png")->width == 300);
+  CHECK(set.find("pcs_l0.png")->height == 233);
   for (const auto& [name, picture] : set.pictures) {
     INFO(name);
     CHECK(read_file(run.folder / "pictures" / name).substr(1, 3) == "PNG");
-    CHECK(contrast(picture.image) > 5);
+    CHECK(contrast(picture) > 5);
   }
   REQUIRE(pictures.size() == 2);  // of each method, its end with the outline of its preview
   CHECK(pictures[0]["method"] == "pcs");
   CHECK(pictures[0]["png"] == base64(read_file(run.folder / "pictures/pcs_l0_on_l1.png")));
   CHECK(pictures[0]["coarse"] == 0);
   CHECK(pictures[0]["fine"] == 1);
-  const auto pixels = [&set](const char* name) { return set.find(name)->image.pixels; };
+  const auto pixels = [&set](const char* name) { return set.find(name)->pixels; };
   CHECK(pixels("pcs_l1.png") != pixels("newton_l1.png"));
   CHECK(pixels("pcs_l1.png") != pixels("pcs_l0_on_l1.png"));
 }
@@ -266,15 +267,11 @@ TEST_CASE("a report of a partial run has what there is") {
     CHECK(pictures.find("pcs_l1.png") == nullptr);
     CHECK(pictures.find("pcs_l0_on_l1.png") == nullptr);
     REQUIRE(pictures.find("pcs_l0.png"));
-    CHECK(contrast(pictures.find("pcs_l0.png")->image) > 5);
+    CHECK(contrast(*pictures.find("pcs_l0.png")) > 5);
   }
   SECTION("a last line of steps cut off") {
     write_file(run.folder / "iterations.csv", read_file(run.folder / "iterations.csv") + "pcs,1,9");
     CHECK(run.data()["iterations"]["rows"].size() == 12);
-    const RunData data = read_run(run.folder);
-    REQUIRE(data.iterations.size() == 4);
-    CHECK(data.iterations[1].method == "pcs");
-    CHECK(data.iterations[1].rows.size() == 3);
   }
 }
 
@@ -348,13 +345,9 @@ TEST_CASE("errors are read, and are in the page") {
   run.results["reference"] = {{"method", "newton"}, {"force_tolerance", 1e-5}};
   for (Json& level : run.results["methods"]["newton"]["levels"]) level["from_initial_state"] = true;
   const Json page = run.data();
-  const RunData data = read_run(run.folder);
-  REQUIRE(data.errors.size() == 3);
-  CHECK(data.errors[0].method == "pcs");
-  CHECK(data.errors[0].rows[0].cost[2].value() == 1e6);
-  CHECK_FALSE(data.errors[0].rows[0].error[1].of("silhouette_mismatch"));  // the file has no such column
-  CHECK(data.errors[0].rows[0].error[1].of("energy_gap").value() == -0.01);
-  CHECK(!data.errors[2].rows[0].error[1].of("rms"));
+  const Json pcs = row_of(read_run(run.folder), read_run(run.folder).methods[0]);
+  CHECK(pcs["preview_rms"] == 0.25);
+  CHECK(pcs["error_rms"] == nullptr);
   CHECK(page["measures"][0] ==
         Json{{"name", "rms"}, {"label", "distance, RMS [diagonal]"}, {"use", "ranking"}});
   CHECK(page["errors"]["names"][7] == "own_rms");

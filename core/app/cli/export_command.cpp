@@ -7,7 +7,7 @@
 #include "core/app/cli/config_arguments.h"
 #include "core/app/cli/help.h"
 #include "core/app/experiment/exit_codes.h"
-#include "core/app/report/picture_scene.h"
+#include "core/app/report/pictures.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/kernel/plugin/parameters.h"

@@ -262,9 +262,9 @@ int main_checked(int argc, char** argv) {
   }
   if (*compare_command) {
     const RunCollection before = read_runs({compared[0]}), after = read_runs({compared[1]});
-    const Comparison comparison(before, after, parse_bounds(bounds, before, after));
-    std::cout << printable_lines(comparison.text());
-    return comparison.broken() ? exit_bound_broken : exit_done;
+    const Comparison comparison = compare(before, after, bounds);
+    std::cout << printable_lines(comparison.text);
+    return comparison.broken ? exit_bound_broken : exit_done;
   }
   if (*table_command) {
     const RunTable table = table_of(read_runs({report_folders.begin(), report_folders.end()}));

@@ -167,8 +167,8 @@ int RunCommand::resume(const Registry& registry) const {
   const auto experiment = read_experiment(folder / "config.yaml", {}, registry, errors);
   if (experiment) refuse_too_large(*experiment, arguments_.large_memory(), errors);
   const auto scene = errors.empty() ? build_scene(*experiment, errors, IntersectingStart::allowed) : nullptr;
-  if (scene && checkpoint.start)
-    warm_start_scene(*experiment, *scene, checkpoint.first_level, *checkpoint.start, errors);
+  if (scene && checkpoint.start.rows() > 0)
+    warm_start_scene(*experiment, *scene, checkpoint.first_level, checkpoint.start, errors);
   if (!errors.empty()) return report_errors(errors);
   RunOptions options = options_;
   options.out = folder;

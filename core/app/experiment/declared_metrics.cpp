@@ -26,8 +26,6 @@ const Words<Shown> shown_words = {
     {"tables", Shown::tables}, {"stored", Shown::stored}, {"summary", Shown::summary}};
 const Words<ErrorUse> error_uses = {
     {"plots", ErrorUse::plots}, {"summary", ErrorUse::summary}, {"ranking", ErrorUse::ranking}};
-const Words<PictureKind> picture_kinds = {{"difference", PictureKind::difference},
-                                          {"threshold", PictureKind::threshold}};
 
 template <class Enum>
 const char* word_of(const Words<Enum>& words, Enum value) {
@@ -53,8 +51,6 @@ Json column_json(const MetricColumn& c) {
                {"unit", c.unit},
                {"better", word_of(directions, c.better)},
                {"shown", word_of(shown_words, c.shown)}};
-  if (c.decimals >= 0) json["decimals"] = c.decimals;
-  if (!c.best.empty()) json["best"] = c.best;
   if (c.error.empty()) return json;
   json["error"] = c.error;
   json["error_use"] = word_of(error_uses, c.error_use);
@@ -68,38 +64,9 @@ MetricColumn column_of(const Json& json) {
   c.unit = text_member(json, "unit");
   c.better = value_of(directions, json, "better");
   c.shown = value_of(shown_words, json, "shown");
-  if (const Json& decimals = member_of(json, "decimals"); decimals.is_number())
-    c.decimals = static_cast<int>(std::clamp(decimals.get<double>(), -1.0, 17.0));
-  c.best = text_member(json, "best");
   c.error = text_member(json, "error");
   c.error_use = value_of(error_uses, json, "error_use");
   return c;
-}
-
-struct PictureMember {
-  const char* key;
-  std::string MetricPicture::*text;
-};
-constexpr PictureMember picture_members[] = {{"name", &MetricPicture::name},
-                                             {"field", &MetricPicture::field},
-                                             {"other_field", &MetricPicture::other_field},
-                                             {"unit", &MetricPicture::unit},
-                                             {"label", &MetricPicture::label},
-                                             {"title", &MetricPicture::title},
-                                             {"text", &MetricPicture::text},
-                                             {"column", &MetricPicture::column}};
-
-Json picture_json(const MetricPicture& p) {
-  Json json = {{"kind", word_of(picture_kinds, p.kind)}};
-  for (const auto& [key, member] : picture_members) json[key] = p.*member;
-  return json;
-}
-
-MetricPicture picture_of(const Json& json) {
-  MetricPicture p;
-  p.kind = value_of(picture_kinds, json, "kind");
-  for (const auto& [key, member] : picture_members) p.*member = text_member(json, key);
-  return p;
 }
 
 template <class Named>
@@ -168,10 +135,6 @@ void check_declarations(const std::vector<DeclaredMetric>& metrics, const Locati
         refuse(value + (owner->second == metric.name ? " is declared twice"
                                                      : " is declared by metric " + owner->second + " too"));
     }
-    for (const MetricPicture& picture : metric.declaration.pictures)
-      if (picture.name.size() > longest_picture_name)
-        refuse("the name of picture \"" + picture.name + "\" is longer than " +
-               std::to_string(longest_picture_name) + " bytes");
   }
 }
 
@@ -181,7 +144,9 @@ Json json_of(const std::vector<DeclaredMetric>& metrics) {
     Json& entry = all[name];
     entry = {{"scope", word_of(scopes, scope)}, {"text", declaration.text}, {"columns", Json::array()}};
     for (const MetricColumn& column : declaration.columns) entry["columns"].push_back(column_json(column));
-    for (const MetricPicture& p : declaration.pictures) entry["pictures"].push_back(picture_json(p));
+    for (const MetricColours& c : declaration.colours)
+      entry["colours"].push_back(
+          {{"field", c.field}, {"other_field", c.other_field}, {"unit", c.unit}, {"label", c.label}});
   }
   return all;
 }
@@ -194,8 +159,10 @@ std::vector<DeclaredMetric> declared_metrics(const Json& json) {
     metric.declaration.text = text_member(entry, "text");
     for (const Json& column : list(entry, "columns"))
       if (!text_member(column, "name").empty()) metric.declaration.columns.push_back(column_of(column));
-    for (const Json& picture : list(entry, "pictures"))
-      if (!text_member(picture, "field").empty()) metric.declaration.pictures.push_back(picture_of(picture));
+    for (const Json& c : list(entry, "colours"))
+      if (!text_member(c, "field").empty())
+        metric.declaration.colours.push_back({text_member(c, "field"), text_member(c, "other_field"),
+                                              text_member(c, "unit"), text_member(c, "label")});
     metrics.push_back(std::move(metric));
   }
   return metrics;
@@ -215,10 +182,7 @@ void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& 
   add_new(all, more);
   for (const DeclaredMetric& metric : more)
     for (DeclaredMetric& own : all)
-      if (own.name == metric.name) {
-        add_new(own.declaration.columns, metric.declaration.columns);
-        add_new(own.declaration.pictures, metric.declaration.pictures);
-      }
+      if (own.name == metric.name) add_new(own.declaration.columns, metric.declaration.columns);
 }
 
 bool beats(Better better, double a, double b) {

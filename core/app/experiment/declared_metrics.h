@@ -23,7 +23,7 @@ std::vector<DeclaredMetric> declared_metrics(
     const std::vector<std::pair<std::string, std::shared_ptr<Metric>>>& metrics);
 
 /// Appends an error for every value of a metric whose name is empty, declared by two metrics or taken by
-/// results.json itself, and for every picture whose name is too long.
+/// results.json itself.
 void check_declarations(const std::vector<DeclaredMetric>& metrics, const Location& where,
                         ConfigErrors& errors);
 
@@ -37,7 +37,7 @@ std::vector<DeclaredMetric> declared_metrics(const nlohmann::ordered_json& json)
 std::vector<MetricColumn> columns_of(const std::vector<DeclaredMetric>& metrics, MetricScope scope,
                                      Shown least);
 
-/// Adds the metrics, columns and pictures that are not in `all` yet, as of another run.
+/// Adds the metrics and columns that are not in `all` yet, as of another run.
 void merge(std::vector<DeclaredMetric>& all, const std::vector<DeclaredMetric>& more);
 
 /// Whether a is better than b. Where lower is better, the value nearer to zero is, because a difference of

@@ -26,7 +26,5 @@ std::vector<ErrorMeasure> error_measures(const std::vector<DeclaredMetric>& metr
 
 /// The states that errors are measured against: the method's own finest one, and the run's reference.
 inline constexpr std::array error_targets = {"own", "reference"};
-/// The measures of a state's cost.
-inline constexpr std::array error_costs = {"seconds", "iterations", "flops"};
 
 }  // namespace drape

@@ -13,6 +13,7 @@ namespace drape {
 /// a missing file is an empty table. Throws std::runtime_error for an incomplete line before the last.
 class Csv {
  public:
+  Csv() = default;
   explicit Csv(const std::filesystem::path& path);
 
   std::size_t size() const { return rows_.size(); }

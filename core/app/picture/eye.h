@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
-#include <Eigen/LU>
 
-#include "core/app/picture/ray_scene.h"
 #include "core/app/picture/render.h"
+#include "core/app/picture/surface_point.h"
 
 namespace drape {
 
@@ -13,33 +11,26 @@ namespace drape {
 class Eye {
  public:
   Eye(const Camera& camera, const Eigen::Vector3d& centre, int width, int height)
-      : width_(width), height_(height) {
-    Eigen::Matrix4d clip = camera.projection * camera.view;
-    clip.col(3) += clip.leftCols<3>() * centre;
-    to_world_ = clip.inverse();
-    depth_ = clip.row(3).cast<float>();
-    pixel_size_ = static_cast<float>(2 / (camera.projection(1, 1) * height));
-  }
+      : camera_(camera), centre_(centre), width_(width), height_(height) {}
 
   /// Through a place in the picture [pixels, from the upper left].
   Ray through(float column, float row) const {
-    const double u = 2 * column / width_ - 1, v = 1 - 2 * row / height_;
-    const Eigen::Vector4d near = to_world_ * Eigen::Vector4d(u, v, -1, 1);
-    const Eigen::Vector4d far = to_world_ * Eigen::Vector4d(u, v, 1, 1);
-    const Eigen::Vector3d origin = near.head<3>() / near[3];
-    return {origin.cast<float>(), (far.head<3>() / far[3] - origin).normalized().cast<float>()};
+    const Eigen::Vector3d ahead((2 * column / width_ - 1) * camera_.tangent[0],
+                                (1 - 2 * row / height_) * camera_.tangent[1], -1);
+    const auto world = camera_.frame.transpose();
+    return {(world * camera_.eye - centre_).cast<float>(), (world * ahead).normalized().cast<float>()};
   }
 
   /// The size of a pixel that faces the eye at a point [m].
   float pixel_size(const Eigen::Vector3f& x) const {
-    return pixel_size_ * (depth_.head<3>().dot(x) + depth_[3]);
+    const double depth = camera_.seen(x.cast<double>() + centre_)[2];
+    return static_cast<float>(2 * camera_.tangent[1] / height_ * depth);
   }
 
  private:
+  const Camera& camera_;
+  const Eigen::Vector3d centre_;
   int width_, height_;
-  Eigen::Matrix4d to_world_;  // from clip coordinates
-  Eigen::RowVector4f depth_;
-  float pixel_size_;
 };
 
 }  // namespace drape

@@ -12,9 +12,6 @@ struct Image {
   std::vector<unsigned char> pixels;  ///< 3·width·height
 };
 
-/// The image shrunk by a whole factor, each pixel the mean of a factor×factor block.
-Image shrink(const Image& image, int factor);
-
 /// The bytes of a PNG file. Throws std::runtime_error if libpng refuses the image.
 std::string encode_png(const Image& image);
 

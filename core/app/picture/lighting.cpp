@@ -39,7 +39,7 @@ Rgb Lighting::backdrop() {
 }
 
 Lighting::Lighting(const RayScene& scene, const Camera& camera) : scene_(scene) {
-  const Eigen::Matrix3f to_world = camera.view.topLeftCorner<3, 3>().transpose().cast<float>();
+  const Eigen::Matrix3f to_world = camera.frame.transpose().cast<float>();
   key_ = (to_world * Eigen::Vector3f(-0.75f, 0.25f, 0.25f) + Eigen::Vector3f(0, 0, 0.62f)).normalized();
   tangents(key_, key_u_, key_v_);
   fill_ = (to_world * Eigen::Vector3f(0.8f, 0.1f, 0.45f)).normalized();

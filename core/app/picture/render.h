@@ -11,10 +11,17 @@
 
 namespace drape {
 
-/// The camera of a picture, as OpenGL matrices.
+/// The camera of a picture.
 struct Camera {
-  Eigen::Matrix4d view;        ///< world to eye
-  Eigen::Matrix4d projection;  ///< eye to clip
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: right, up and towards the camera
+  Eigen::Vector3d eye = Eigen::Vector3d::UnitZ();       ///< in that frame [m]
+  Eigen::Vector2d tangent = {1, 1};                     ///< of half the angle of view, across and up
+
+  /// Where a point is seen: right and up, −1 … 1 within the picture, and how far ahead [m].
+  Eigen::Vector3d seen(const Eigen::Vector3d& point) const {
+    const Eigen::Vector3d p = frame * point - eye;
+    return {p[0] / (-p[2] * tangent[0]), p[1] / (-p[2] * tangent[1]), -p[2]};
+  }
 
   /// Perspective from `direction` (towards the camera), z up, or y up along z, as close as possible with all
   /// points in view.

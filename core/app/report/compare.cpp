@@ -3,169 +3,121 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "core/app/report/model_keys.h"
-#include "core/app/report/run_rows.h"
+#include "core/app/report/run_table.h"
 #include "core/app/report/text_table.h"
 #include "core/kernel/files/message_text.h"
 #include "core/kernel/files/string_utils.h"
+#include "core/kernel/interfaces/solver.h"
 #include "core/kernel/plugin/parameters.h"
 
 namespace drape {
 
 namespace {
 
+using Names = std::vector<std::string>;
+
 constexpr double time_noise = 0.10;      // smaller relative differences of times count as equal
 constexpr double least_seconds = 0.05;   // smaller differences of times count as equal [s]
 constexpr double relative_noise = 0.01;  // the same for all other quantities
 
-/// What is compared of every level.
-constexpr const char* level_keys[] = {"seconds",         "iterations",    "flops",
-                                      "energy_released", "intersections", "smallest_gap"};
-
-/// The quantities that one or both sides have, beside level_keys.
-struct ComparedQuantities {
-  std::vector<RowQuantity> rows;
-  std::vector<MetricColumn> states, pairs;
-
-  ComparedQuantities(const RunCollection& before, const RunCollection& after) {
-    std::vector<DeclaredMetric> metrics = before.metrics();
-    merge(metrics, after.metrics());
-    states = columns_of(metrics, MetricScope::state, Shown::summary);
-    pairs = columns_of(metrics, MetricScope::pair, Shown::tables);
-    rows = row_quantities(before.error_measures());
-    for (RowQuantity& f : row_quantities(after.error_measures()))
-      if (std::none_of(rows.begin(), rows.end(), [&](const RowQuantity& own) { return own.name == f.name; }))
-        rows.push_back(std::move(f));
-  }
-
-  std::vector<std::string> names() const {
-    std::vector<std::string> names;
-    const auto add = [&](const std::string& name) {
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    };
-    for (const char* key : level_keys) add(key);
-    for (const auto* columns : {&states, &pairs})
-      for (const MetricColumn& column : *columns) add(column.name);
-    for (const RowQuantity& f : rows) add(f.name);
-    return names;
-  }
-
-  Better better(const std::string& name) const {
-    for (const auto* columns : {&states, &pairs})
-      for (const MetricColumn& column : *columns)
-        if (column.name == name) return column.better;
-    return name == "smallest_gap" || name == "energy_released" ? Better::higher : Better::lower;
-  }
-};
+/// What is compared of every level, beside the metrics.
+const Names level_keys = {"seconds",         "iterations",    "flops",
+                          "energy_released", "intersections", "smallest_gap"};
 
 bool is_time(const std::string& key) { return key == "seconds" || key == "preview_seconds"; }
 bool is_work(const std::string& key) { return key == "iterations" || key == "flops"; }
 
 /// One quantity of one run.
 struct Entry {
-  std::string where, key;
+  std::string where;  ///< "pcs, level 2", with variation and seed if there are several
+  std::string key;
   double value;
+  Better better;
   const RunData* run;
 };
 
-/// Values by level and key, in file order, and whether each method converged.
-struct Sheet {
+/// All quantities in file order, and whether each method converged.
+struct Side {
   std::vector<Entry> entries;
   std::vector<std::pair<std::string, bool>> converged;
-  const RunData* run = nullptr;  ///< whose values are added
 
-  void add(const std::string& where, const std::string& key, const OptionalNumber& value) {
-    if (value) entries.push_back({where, key, *value, run});
-  }
-  const Entry* find(const std::string& where, const std::string& key) const {
+  const Entry* find(const Entry& other) const {
     for (const Entry& entry : entries)
-      if (entry.where == where && entry.key == key) return &entry;
+      if (entry.where == other.where && entry.key == other.key) return &entry;
     return nullptr;
+  }
+  std::optional<bool> has_converged(const std::string& method) const {
+    for (const auto& [name, is] : converged)
+      if (name == method) return is;
+    return {};
   }
 };
 
-void add_method(Sheet& sheet, const ComparedQuantities& quantities, const std::string& prefix,
-                const RunData& run, const MethodRecord& method) {
-  const std::string name = prefix + method.name;
-  sheet.converged.emplace_back(name, has_converged(method.status));
-  for (const RowQuantity& f : quantities.rows) sheet.add(name, f.name, f.of(run, method));
-  if (method.levels.size() > 1)
-    for (const LevelRecord& level : method.levels) {
-      const std::string where = name + ", level " + std::to_string(level.level);
-      for (const char* key : level_keys) sheet.add(where, key, level.*level_quantity(key).member);
-      for (const MetricColumn& column : quantities.states)
-        sheet.add(where, column.name, level.metrics.of(column.name));
-    }
-  else if (!method.levels.empty())
-    for (const char* key : {"intersections", "smallest_gap"})
-      sheet.add(name, key, method.levels.front().*level_quantity(key).member);
-  for (const ConsistencyRecord& pair : method.consistency)
-    for (const MetricColumn& column : quantities.pairs)
-      sheet.add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine),
-                column.name, pair.metrics.of(column.name));
-}
-
-Sheet sheet_of(const RunCollection& collection, const ComparedQuantities& quantities, bool named) {
-  Sheet sheet;
-  for (const RunRecord& run : collection.runs) {
-    std::string prefix;
-    if (named)
-      prefix = run.variation + (run.seed ? ", seed " + std::to_string(std::llround(*run.seed)) : "") + ": ";
-    if (!run.data) continue;
-    sheet.run = &*run.data;
-    for (const MethodRecord& method : run.data->methods)
-      add_method(sheet, quantities, prefix, *run.data, method);
+void add_method(Side& side, const std::string& name, const RunData& run, const MethodRecord& method) {
+  const auto add = [&](const std::string& where, const std::string& key, const OptionalNumber& value,
+                       std::optional<Better> better = {}) {
+    const bool higher = key == "smallest_gap" || key == "energy_released";
+    if (value)
+      side.entries.push_back(
+          {where, key, *value, better.value_or(higher ? Better::higher : Better::lower), &run});
+  };
+  side.converged.emplace_back(name, has_converged(method.status));
+  const TableRow row = row_of(run, method);
+  for (const std::string& key : summary_quantities(run.error_measures))
+    if (row[key].is_number()) add(name, key, row[key].get<double>());
+  const bool several = method.levels.size() > 1;
+  for (const LevelRecord& level : method.levels) {
+    const std::string where = several ? name + ", level " + std::to_string(level.level) : name;
+    for (const std::string& key : several ? level_keys : Names{"intersections", "smallest_gap"})
+      add(where, key, level.of(key));
+    for (const MetricColumn& column : run.columns(MetricScope::state, Shown::summary))
+      if (several) add(where, column.name, level.metrics.of(column.name), column.better);
   }
-  return sheet;
+  for (const ConsistencyRecord& pair : method.consistency)
+    for (const MetricColumn& column : run.columns(MetricScope::pair, Shown::tables))
+      add(name + ", levels " + std::to_string(pair.coarse) + " → " + std::to_string(pair.fine), column.name,
+          pair.metrics.of(column.name), column.better);
 }
 
-std::string verdict(const Change& c) {
-  const double difference = c.after - c.before;
-  const double noise = is_time(c.key) ? time_noise : relative_noise;
-  if (std::abs(difference) <= noise * std::min(std::abs(c.before), std::abs(c.after))) return "";
-  if (difference == 0 || (is_time(c.key) && std::abs(difference) < least_seconds)) return "";
-  if (c.better == Better::neither) return "other";
-  const bool good = (difference < 0) != (c.better == Better::higher);
-  if (is_time(c.key)) return good ? "faster" : "slower";
-  if (is_work(c.key)) return good ? "less work" : "more work";
+Side side_of(const RunCollection& collection, bool named) {
+  Side side;
+  for (const RunRecord& run : collection.runs) {
+    if (!run.data) continue;
+    const std::string seed = run.seed ? ", seed " + std::to_string(std::llround(*run.seed)) : "";
+    for (const MethodRecord& method : run.data->methods)
+      add_method(side, (named ? run.variation + seed + ": " : "") + method.name, *run.data, method);
+  }
+  return side;
+}
+
+/// "faster", "slower", "less work", "more work", "better", "worse", "other", or "" for the same.
+std::string verdict(const Entry& was, double after) {
+  const std::string& key = was.key;
+  const double difference = after - was.value, noise = is_time(key) ? time_noise : relative_noise;
+  if (std::abs(difference) <= noise * std::min(std::abs(was.value), std::abs(after))) return "";
+  if (difference == 0 || (is_time(key) && std::abs(difference) < least_seconds)) return "";
+  if (was.better == Better::neither) return "other";
+  const bool good = (difference < 0) != (was.better == Better::higher);
+  if (is_time(key)) return good ? "faster" : "slower";
+  if (is_work(key)) return good ? "less work" : "more work";
   return good ? "better" : "worse";
 }
 
 /// What a cloth releases may be negative and counts zero: a ratio is relative to the absolute value.
-bool holds(const Change& c, double ratio) {
-  if (is_time(c.key) && c.after - c.before < least_seconds) return true;
-  if (c.better == Better::higher && c.before >= 0) return c.after * ratio >= c.before;
-  if (c.better == Better::higher) return c.after >= c.before * ratio;
-  return c.after <= c.before + (ratio - 1) * std::abs(c.before);
+bool holds(const Entry& was, double after, double ratio) {
+  if (is_time(was.key) && after - was.value < least_seconds) return true;
+  if (was.better == Better::higher && was.value >= 0) return after * ratio >= was.value;
+  if (was.better == Better::higher) return after >= was.value * ratio;
+  return after <= was.value + (ratio - 1) * std::abs(was.value);
 }
 
-/// In which keys of their model two runs differ, read once for each two.
-class ModelDifferences {
- public:
-  const std::vector<std::string>& of(const RunData& a, const RunData& b) {
-    const auto [found, is_new] = known_.try_emplace({&a, &b});
-    if (is_new) found->second = differing_model_keys(a.configuration, b.configuration);
-    return found->second;
-  }
-
- private:
-  std::map<std::pair<const RunData*, const RunData*>, std::vector<std::string>> known_;
-};
-
-std::string change_of(const Change& c) {
-  if (c.before > 0 && c.after > 0) return "×" + number_text(c.after / c.before);
-  return (c.after > c.before ? "+" : "") + number_text(c.after - c.before);
-}
-
-}  // namespace
-
-std::vector<Bound> parse_bounds(const std::vector<std::string>& texts, const RunCollection& before,
-                                const RunCollection& after) {
-  std::vector<Bound> bounds;
-  const std::vector<std::string> known = ComparedQuantities(before, after).names();
-  for (const std::string& text : texts) {
+std::map<std::string, double> parsed(const Names& bounds, const Names& known) {
+  std::map<std::string, double> ratios;
+  for (const std::string& text : bounds) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0)
       throw std::runtime_error("--bound " + text + ": write it as KEY=RATIO, as in --bound seconds=1.1");
@@ -180,106 +132,100 @@ std::vector<Bound> parse_bounds(const std::vector<std::string>& texts, const Run
     if (!ratio || !std::isfinite(*ratio) || *ratio <= 0)
       throw std::runtime_error("--bound " + text + ": the ratio must be a number above 0, as in --bound " +
                                key + "=1.1");
-    bounds.push_back({key, *ratio});
+    ratios[key] = *ratio;
   }
-  return bounds;
+  return ratios;
 }
 
-Comparison::Comparison(const RunCollection& before, const RunCollection& after,
-                       const std::vector<Bound>& bounds)
-    : bounds_(bounds.size()) {
+void add_new(Names& names, const std::string& name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+/// At most so many names, then how many more there are.
+Names first_of(Names names, std::size_t most) {
+  if (names.size() <= most) return names;
+  const std::string rest = "and " + std::to_string(names.size() - most) + " more";
+  names.resize(most);
+  names.push_back(rest);
+  return names;
+}
+
+}  // namespace
+
+Comparison compare(const RunCollection& before, const RunCollection& after, const Names& bounds) {
   const bool named = before.runs.size() > 1 || after.runs.size() > 1;
-  const ComparedQuantities quantities(before, after);
-  const Sheet a = sheet_of(before, quantities, named), b = sheet_of(after, quantities, named);
-  ModelDifferences differences;
-  for (const Entry& was : a.entries)
-    if (const Entry* now = b.find(was.where, was.key)) {
-      Change& change = changes_.emplace_back(
-          Change{was.where, was.key, was.value, now->value, quantities.better(was.key)});
-      if (was.key != "energy_released") {
-        change.verdict = verdict(change);
-        continue;
-      }
-      const std::vector<std::string>& keys = differences.of(*was.run, *now->run);
-      change.verdict = keys.empty() ? verdict(change) : "other";
-      for (const std::string& key : keys)
-        if (std::find(differing_.begin(), differing_.end(), key) == differing_.end())
-          differing_.push_back(key);
+  const Side a = side_of(before, named), b = side_of(after, named);
+  Names known = level_keys, differing, broken;
+  for (const Side* side : {&a, &b})
+    for (const Entry& entry : side->entries) add_new(known, entry.key);
+  const std::map<std::string, double> ratios = parsed(bounds, known);
+
+  std::map<std::pair<const RunData*, const RunData*>, Names> differences;  // keys of the models
+  std::map<std::string, int> counts, met;
+  std::vector<Names> rows = {{"where", "quantity", "before", "after", "change", "verdict"}};
+  for (const Entry& was : a.entries) {
+    const Entry* now = b.find(was);
+    if (!now) continue;
+    std::string word = verdict(was, now->value);
+    if (was.key == "energy_released") {  // has no better and worse where the models differ
+      const auto [found, is_new] = differences.try_emplace({was.run, now->run});
+      if (is_new) found->second = differing_model_keys(was.run->config, now->run->config);
+      for (const std::string& key : found->second) add_new(differing, key), word = "other";
     }
-  if (changes_.empty())
+    ++counts[word];
+    const auto bound = ratios.find(was.key);
+    const bool breaks = bound != ratios.end() && !holds(was, now->value, bound->second);
+    met[was.key] += bound != ratios.end();
+    const std::string from = number_text(was.value), to = number_text(now->value);
+    if (breaks)
+      broken.push_back(was.where + ": " + was.key + " went from " + from + " to " + to +
+                       ", more than the bound of " + ConfigNode::of(bound->second).scalar +
+                       (was.better == Better::higher ? " lets it fall" : " allows"));
+    const std::string change = was.value > 0 && now->value > 0 ? "×" + number_text(now->value / was.value)
+                                                               : (now->value > was.value ? "+" : "") +
+                                                                     number_text(now->value - was.value);
+    if (!word.empty() || breaks)
+      rows.push_back({was.where, was.key, from, to, change, word + (breaks ? " (bound broken)" : "")});
+  }
+  if (counts.empty())
     throw std::runtime_error("nothing of " + before.name + " is in " + after.name + " too: no method" +
                              (named ? ", variation and seed" : "") + " in common");
-  const auto method_lists = [](const Sheet& from, const Sheet& in, std::vector<std::string>& list) {
-    for (const auto& [name, converged] : from.converged)
-      if (std::none_of(in.converged.begin(), in.converged.end(),
-                       [&n = name](const auto& other) { return other.first == n; }))
-        list.push_back(name);
+  for (const auto& [key, ratio] : ratios)
+    if (met[key] == 0)
+      throw std::runtime_error("--bound " + key + ": no match has this quantity on both sides");
+
+  std::string lists;
+  const auto list = [&](const char* where, const Side& side, const Side& other) {
+    Names names;
+    for (const auto& [name, converged] : side.converged)
+      if (!other.has_converged(name)) names.push_back(name);
+    for (const std::string& name : first_of(names, 40))
+      lists += std::string("only in the ") + where + ": " + name + "\n";
   };
-  method_lists(a, b, lost_);
-  method_lists(b, a, gained_);
-
-  for (const Bound& bound : bounds) {
-    int met = 0;
-    for (Change& change : changes_) {
-      if (change.key != bound.key) continue;
-      ++met;
-      if (holds(change, bound.ratio)) continue;
-      change.broken = true;
-      broken_.push_back(change.where + ": " + bound.key + " went from " + number_text(change.before) +
-                        " to " + number_text(change.after) + ", more than the bound of " +
-                        ConfigNode::of(bound.ratio).scalar +
-                        (change.better == Better::higher ? " lets it fall" : " allows"));
-    }
-    if (met == 0)
-      throw std::runtime_error("--bound " + bound.key + ": no match has this quantity on both sides");
+  list("first", a, b);
+  list("second", b, a);
+  for (const auto& [name, was] : a.converged) {
+    if (ratios.empty()) break;
+    const std::optional<bool> is = b.has_converged(name);
+    if (!is) broken.push_back(name + ": is in the first alone; no bound holds");
+    if (is && was && !*is) broken.push_back(name + ": converged before and does not now; no bound holds");
   }
-  if (bounds.empty()) return;
-  for (const std::string& name : lost_) broken_.push_back(name + ": is in the first alone; no bound holds");
-  for (const auto& [name, was] : a.converged)
-    for (const auto& [other, is] : b.converged)
-      if (name == other && was && !is)
-        broken_.push_back(name + ": converged before and does not now; no bound holds");
-}
 
-std::string Comparison::text() const {
-  std::map<std::string, int> counts;
-  std::vector<std::vector<std::string>> rows = {
-      {"where", "quantity", "before", "after", "change", "verdict"}};
-  for (const Change& c : changes_) {
-    ++counts[c.verdict];
-    if (!c.verdict.empty() || c.broken)
-      rows.push_back({c.where, c.key, number_text(c.before), number_text(c.after), change_of(c),
-                      c.verdict + (c.broken ? " (bound broken)" : "")});
-  }
   std::string text = rows.size() > 1 ? text_table(rows) + "\n" : "";
+  Names sums;
   for (const char* word : {"faster", "slower", "less work", "more work", "better", "worse", "other", ""})
-    if (counts.count(word))
-      text += (text.empty() || text.back() == '\n' ? "" : ", ") + std::to_string(counts[word]) + " " +
-              (*word ? word : "the same");
+    if (counts.contains(word))
+      sums.push_back(std::to_string(counts[word]) + " " + (*word ? word : "the same"));
   text +=
+      joined(sums) +
       ". Times within 10 % or 0.05 s of each other, and other quantities within 1 %, count as the same.\n";
-  const auto list = [&](const char* where, const std::vector<std::string>& names) {
-    constexpr std::size_t most_listed = 40;
-    for (std::size_t k = 0; k < std::min(names.size(), most_listed); ++k)
-      text += std::string("only in the ") + where + ": " + names[k] + "\n";
-    if (names.size() > most_listed)
-      text += std::string("only in the ") + where + ": and " + std::to_string(names.size() - most_listed) +
-              " more\n";
-  };
-  if (!differing_.empty()) {
-    constexpr std::size_t most_named = 12;
-    std::vector<std::string> keys = differing_;
-    if (keys.size() > most_named) {
-      keys.resize(most_named);
-      keys.push_back("…");
-    }
-    text += "Energies have no verdict, as their models differ: in " + joined(keys) + ".\n";
-  }
-  list("first", lost_);
-  list("second", gained_);
-  for (const std::string& line : broken_) text += "broken: " + line + "\n";
-  if (bounds_ > 0 && broken_.empty()) text += bounds_ == 1 ? "The bound holds.\n" : "All bounds hold.\n";
-  return text;
+  if (!differing.empty())
+    text += "Energies have no verdict, as their models differ: in " + joined(first_of(differing, 12)) + ".\n";
+  text += lists;
+  for (const std::string& line : broken) text += "broken: " + line + "\n";
+  if (!ratios.empty() && broken.empty())
+    text += ratios.size() == 1 ? "The bound holds.\n" : "All bounds hold.\n";
+  return {text, !broken.empty()};
 }
 
 }  // namespace drape

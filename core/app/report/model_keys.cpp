@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/app/files/yaml_file.h"
-
 namespace drape {
 
 namespace {
@@ -39,22 +37,18 @@ void add_differences(const ConfigNode& a, const ConfigNode& b, const std::string
 
 }  // namespace
 
-std::string model_of(const std::string& configuration) {
-  ConfigErrors errors;
-  const ConfigNode config = parse_yaml(configuration, "config.yaml", errors);
+std::string model_of(const ConfigNode& config) {
   std::string text;
   for (const char* key : model_keys)
     if (const ConfigNode* node = config.find(key)) text += std::string(key) + ": " + node->one_line() + "\n";
   return text;
 }
 
-std::vector<std::string> differing_model_keys(const std::string& a, const std::string& b) {
-  ConfigErrors errors;
-  const ConfigNode one = parse_yaml(a, "config.yaml", errors), other = parse_yaml(b, "config.yaml", errors);
+std::vector<std::string> differing_model_keys(const ConfigNode& a, const ConfigNode& b) {
   std::vector<std::string> differing;
   for (const char* key : model_keys)
-    if (const ConfigNode* of_one = one.find(key), *of_other = other.find(key); of_one && of_other)
-      add_differences(*of_one, *of_other, key, differing);
+    if (const ConfigNode* of_a = a.find(key), *of_b = b.find(key); of_a && of_b)
+      add_differences(*of_a, *of_b, key, differing);
   return differing;
 }
 

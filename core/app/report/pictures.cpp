@@ -1,17 +1,60 @@
 #include "core/app/report/pictures.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
-#include "core/app/report/picture_canvas.h"
+#include "core/app/picture/outline.h"
+#include "core/app/picture/surface.h"
 #include "core/kernel/files/file.h"
+#include "core/kernel/files/message_text.h"
 
 namespace drape {
 
 namespace {
 
+constexpr int most_vertices_with_edges = 4000;  // more lines would merge
+/// sRGB: `--accent` of viewer/page.css.
+const Eigen::Vector3f outline_colour = Eigen::Vector3f(0x0b, 0x62, 0xa8) / 255;
+
+int height_of(int width) { return static_cast<int>(std::lround(width * 7.0 / 9)); }
+
+Eigen::AlignedBox3d box_of(const std::vector<const Positions*>& states) {
+  Eigen::AlignedBox3d box;
+  for (const Positions* x : states)
+    for (Eigen::Index i = 0; i < x->rows(); ++i)
+      if (x->row(i).allFinite()) box.extend(x->row(i).transpose());
+  return box;
+}
+
+/// The points of an obstacle that a picture of the cloth includes: not the far ends of a floor.
+Positions near_cloth(const Positions& obstacle, const Eigen::AlignedBox3d& cloth) {
+  const double margin = cloth.isEmpty() ? 0 : cloth.diagonal().norm() / 4;
+  const Eigen::AlignedBox3d near(cloth.min().array() - margin, cloth.max().array() + margin);
+  Positions chosen(obstacle.rows(), 3);
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < obstacle.rows(); ++i)
+    if (near.contains(obstacle.row(i).transpose())) chosen.row(count++) = obstacle.row(i);
+  chosen.conservativeResize(count, 3);
+  return chosen;
+}
+
+/// A mesh of the run's folder; none, with a note, if it cannot be read.
+std::optional<TriangleMesh> mesh_or_note(const RunData& run, const std::string& name,
+                                         std::vector<std::string>& notes) {
+  if (name.empty()) return {};
+  try {
+    return run.mesh(name);
+  } catch (const std::exception& error) {
+    const std::string note = reason_of(error);
+    if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+    return {};
+  }
+}
+
 /// Keeps a method's name as it is: a run accepts only names of files, and distinct methods need distinct
-/// pictures. Only an edited results.json or a metric's declaration can have anything else.
+/// pictures. Only an edited results.json can have anything else.
 std::string file_part(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -20,44 +63,46 @@ std::string file_part(std::string name) {
   return name;
 }
 
-void draw_states(const RunData& run, PictureCanvas& canvas) {
-  for (const MethodRecord& method : run.methods)
-    for (const LevelRecord& level : method.levels)
-      if (const TriangleMesh* state = canvas.scene().state(method.name, level.level))
-        canvas.draw(state_picture(method, level.level), plain_cloth(*state));
-}
-
-/// Each method's finest state with the outline of its coarsest, over the pictures of the states.
-void draw_outlines(const RunData& run, PictureCanvas& canvas, const PictureSet& set) {
-  for (const MethodRecord& method : run.methods) {
-    const std::optional<LevelPair> levels = widest_levels(method);
-    if (!levels) continue;
-    const TriangleMesh* coarse = canvas.scene().state(method.name, levels->coarse);
-    const Picture* fine = set.find(state_picture(method, levels->fine));
-    if (coarse && fine) canvas.draw_outlined(outline_picture(method, *levels), fine->image, *coarse);
-  }
-}
-
-/// Removes what an earlier report drew and this one did not, as of a state whose mesh is gone.
-void remove_stale(const RunData& run, const PictureSet& set) {
-  const auto is_of = [](const std::string& name, const MethodRecord& method) {
-    const std::string begin = file_part(method.name) + "_l";
-    return name.starts_with(begin) && name.ends_with(".png") &&
-           std::isdigit(static_cast<unsigned char>(name[begin.size()]));
-  };
-  std::vector<std::filesystem::path> stale;
-  for (const auto& entry : std::filesystem::directory_iterator(run.folder / "pictures")) {
-    const std::string name = entry.path().filename().string();
-    const bool own = std::any_of(run.methods.begin(), run.methods.end(),
-                                 [&](const MethodRecord& method) { return is_of(name, method); });
-    if (own && !set.pictures.contains(name)) stale.push_back(entry.path());
-  }
-  for (const std::filesystem::path& picture : stale) std::filesystem::remove(picture);
-}
-
 }  // namespace
 
-const Picture* PictureSet::find(const std::string& name) const {
+PictureScene::PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame,
+                           std::function<bool()> cancelled)
+    : cancelled_(std::move(cancelled)), renderer_(frame.width, height_of(frame.width), cancelled_) {
+  std::vector<const Positions*> all = frame.further;
+  for (const MethodRecord& method : run.methods)
+    for (const LevelRecord& level : method.levels)
+      if (auto mesh = mesh_or_note(run, level.mesh, notes))
+        all.push_back(&states_.insert_or_assign({method.name, level.level}, *mesh).first->second.vertices);
+  std::vector<TriangleMesh> obstacles;
+  for (const std::string& name : run.obstacles)
+    if (auto mesh = mesh_or_note(run, name, notes)) obstacles.push_back(std::move(*mesh));
+  obstacle_ = merged(obstacles);
+  const Positions near = near_cloth(obstacle_.vertices, box_of(all));
+  if (near.rows() > 0) all.push_back(&near);
+  if (const Eigen::AlignedBox3d box = box_of(all); !box.isEmpty()) floor_ = box.min()[2];
+  camera_ = Camera::around(all, frame.direction, double(frame.width) / height_of(frame.width));
+}
+
+const TriangleMesh* PictureScene::state(const std::string& method, int level) const {
+  const auto found = states_.find({method, level});
+  return found == states_.end() ? nullptr : &found->second;
+}
+
+Image PictureScene::draw(const TriangleMesh& cloth, bool xray) const {
+  return renderer_.draw({.mesh = cloth,
+                         .edges = cloth.vertices.rows() <= most_vertices_with_edges,
+                         .xray = xray,
+                         .obstacle = obstacle_.triangles.rows() > 0 ? &obstacle_ : nullptr,
+                         .floor = floor_},
+                        camera_);
+}
+
+void PictureScene::draw_outline(Image& picture, const TriangleMesh& cloth) const {
+  if (cancelled_ && cancelled_()) throw RenderingCancelled();
+  drape::draw_outline(picture, cloth, camera_, outline_colour);
+}
+
+const Image* PictureSet::find(const std::string& name) const {
   const auto found = pictures.find(name);
   return found == pictures.end() ? nullptr : &found->second;
 }
@@ -85,11 +130,26 @@ PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancel
                          std::optional<int> width) {
   PictureSet set;
   make_folder(run.folder / "pictures");
-  PictureCanvas canvas(run, cancelled, width.value_or(default_picture_width), set);
+  const PictureScene scene(run, set.notes, {.width = width.value_or(default_picture_width)}, cancelled);
+  const auto keep = [&](const std::string& name, Image image) {
+    write_file(run.folder / "pictures" / name, encode_png(image));
+    set.pictures.insert_or_assign(name, std::move(image));
+  };
   try {
-    draw_states(run, canvas);
-    draw_outlines(run, canvas, set);
-    remove_stale(run, set);
+    for (const MethodRecord& method : run.methods)
+      for (const LevelRecord& level : method.levels)
+        if (const TriangleMesh* state = scene.state(method.name, level.level))
+          keep(state_picture(method, level.level), scene.draw(*state));
+    for (const MethodRecord& method : run.methods) {
+      const std::optional<LevelPair> levels = widest_levels(method);
+      if (!levels) continue;
+      const TriangleMesh* coarse = scene.state(method.name, levels->coarse);
+      const Image* fine = set.find(state_picture(method, levels->fine));
+      if (!coarse || !fine) continue;
+      Image outlined = *fine;
+      scene.draw_outline(outlined, *coarse);
+      keep(outline_picture(method, *levels), std::move(outlined));
+    }
   } catch (const RenderingCancelled&) {
     set.notes.push_back("The run was stopped before all pictures were drawn; drape report " +
                         run.folder.string() + " draws them.");

@@ -1,29 +1,62 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/app/picture/image.h"
+#include "core/app/picture/render.h"
 #include "core/app/report/run_data.h"
 
 namespace drape {
 
-/// One picture of the report, as a PNG file's bytes.
-struct Picture {
-  Image image;
-  std::string png;
+/// Width of a run's pictures [pixels]: a report's unless another is asked for, and what may be asked for.
+inline constexpr int default_picture_width = 900, least_picture_width = 16, greatest_picture_width = 8000;
+
+/// From where pictures of a run are taken.
+struct PictureFrame {
+  /// Towards the camera: three quarters from above. The top shows how the cloth lies, the side how it folds.
+  Eigen::Vector3d direction{0.55, -1.0, 0.68};
+  int width = default_picture_width;           ///< [pixels]
+  std::vector<const Positions*> further = {};  ///< in view, beside the run's final states
+};
+
+/// What a run's pictures have in common: its final states and obstacles, the floor, and one camera around
+/// them all.
+class PictureScene {
+ public:
+  /// Reads the states and obstacles; a mesh that cannot be read becomes a note. Once `cancelled`, which may
+  /// be empty, returns true, drawing throws RenderingCancelled.
+  PictureScene(const RunData& run, std::vector<std::string>& notes, const PictureFrame& frame = {},
+               std::function<bool()> cancelled = {});
+
+  /// The final state of a level; null without one.
+  const TriangleMesh* state(const std::string& method, int level) const;
+
+  /// Draws cloth among the obstacles, a coarse mesh with its edges.
+  Image draw(const TriangleMesh& cloth, bool xray = false) const;
+  /// Draws the outline of a cloth over a picture of this scene.
+  void draw_outline(Image& picture, const TriangleMesh& cloth) const;
+
+ private:
+  std::map<std::pair<std::string, int>, TriangleMesh> states_;  // by method and level
+  TriangleMesh obstacle_;
+  Camera camera_;
+  std::optional<double> floor_;  // height below everything
+  std::function<bool()> cancelled_;
+  Renderer renderer_;
 };
 
 /// All pictures of a run.
 struct PictureSet {
   /// By file name in DIR/pictures, as the *_picture functions below give it.
-  std::map<std::string, Picture> pictures;
+  std::map<std::string, Image> pictures;
   std::vector<std::string> notes;  ///< pictures that could not be drawn, one line each
 
-  const Picture* find(const std::string& name) const;
+  const Image* find(const std::string& name) const;
 };
 
 /// Two levels of a method.
@@ -37,9 +70,10 @@ std::string outline_picture(const MethodRecord& method, const LevelPair& levels)
 /// The coarsest and the finest level with a final state; none for fewer than two.
 std::optional<LevelPair> widest_levels(const MethodRecord& method);
 
-/// Draws all pictures of a run, `width` (default: 900) pixels wide, and writes them to DIR/pictures. A
-/// missing or unreadable mesh becomes a note. Once `cancelled` (may be empty) returns true, it skips the
-/// remaining pictures, with a note. Throws std::runtime_error if the folder is not writable.
+/// Draws all pictures of a run, `width` (default: 900) pixels wide, and writes them to DIR/pictures: each
+/// state, and each method's finest with the outline of its coarsest. A missing or unreadable mesh becomes a
+/// note. Once `cancelled` (may be empty) returns true, it skips the remaining pictures, with a note. Throws
+/// std::runtime_error if the folder is not writable.
 PictureSet draw_pictures(const RunData& run, const std::function<bool()>& cancelled = {},
                          std::optional<int> width = {});
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/app/files/snapshot_file.h"
@@ -9,19 +7,11 @@
 
 namespace drape {
 
-/// The snapshots of a level, as a run has recorded them; the last one is the level's final state.
-struct Snapshots {
-  SnapshotFile states;
-  nlohmann::ordered_json iterations, seconds;
-};
+/// The snapshots of a level of n vertices, in order; none if the run has recorded none. Throws
+/// std::runtime_error for a file that is missing or damaged.
+SnapshotFile recorded_snapshots(const RunData& run, const LevelRecord& level, Eigen::Index n);
 
-/// Reads the snapshots of a level of n vertices; `level` is its entry in results.json. None if the run has
-/// recorded none. Throws std::runtime_error for a file that is missing or damaged.
-Snapshots recorded_snapshots(const std::filesystem::path& folder, const nlohmann::ordered_json& level,
-                             Eigen::Index n);
-
-/// The positions of all snapshots of a level of n vertices, in order. Throws std::runtime_error, for the
-/// option --frames, if there are fewer than `least`, and for a file that is missing or damaged.
+/// Their positions. Throws std::runtime_error, for the option --frames, if there are fewer than `least`.
 std::vector<Positions> snapshot_positions(const RunData& run, const MethodRecord& method,
                                           const LevelRecord& level, Eigen::Index n, std::size_t least);
 

@@ -6,10 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/app/files/csv.h"
 #include "core/app/files/json_file.h"
 #include "core/app/report/model_keys.h"
-#include "core/app/report/picture_scene.h"
 #include "core/app/report/pictures.h"
 #include "core/app/report/report_view.h"
 #include "core/app/report/run_table.h"
@@ -27,11 +25,9 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t most_rows = 500;  // of one level of one method; more points are not visible
-constexpr int widest_picture = 900;     // of a page [pixels]
 
 /// A CSV file of a run, with the number of each row in its series; of a long series evenly chosen rows.
-Json csv_json(const fs::path& path) {
-  const Csv csv(path);
+Json csv_json(const Csv& csv) {
   const auto series = [&](std::size_t k) { return csv.text(k, "method") + "/" + csv.text(k, "level"); };
   std::map<std::string, std::size_t> counts, seen;
   for (std::size_t k = 0; k < csv.size(); ++k) ++counts[series(k)];
@@ -77,12 +73,11 @@ Json pictures_json(const RunData& run, const PictureSet& set) {
   for (const MethodRecord& method : run.methods) {
     const std::optional<LevelPair> levels = widest_levels(method);
     if (method.levels.empty()) continue;
-    const Picture* picture = set.find(levels ? outline_picture(method, *levels)
-                                             : state_picture(method, method.levels.back().level));
+    const Image* picture = set.find(levels ? outline_picture(method, *levels)
+                                           : state_picture(method, method.levels.back().level));
     if (!picture) continue;
-    const int shrink_by = (picture->image.width + widest_picture - 1) / widest_picture;
-    const std::string png = shrink_by > 1 ? encode_png(shrink(picture->image, shrink_by)) : picture->png;
-    Json entry = {{"method", method.name}, {"png", base64(png)}, {"alt", method.name + ": the cloth"}};
+    Json entry = {
+        {"method", method.name}, {"png", base64(encode_png(*picture))}, {"alt", method.name + ": the cloth"}};
     if (levels) {
       entry["coarse"] = levels->coarse, entry["fine"] = levels->fine;
       entry["alt"] = method.name + ": the end, with the outline of the preview";
@@ -94,15 +89,13 @@ Json pictures_json(const RunData& run, const PictureSet& set) {
 
 /// Small pictures of the ends of a run's methods.
 Json thumbnails(const RunData& run) {
-  constexpr int width = 240;
   std::vector<std::string> notes;
-  const PictureScene scene(run, notes, {.width = width});
-  const Renderer renderer(width, picture_height(width));
+  const PictureScene scene(run, notes, {.width = 240});
   Json all = Json::array();
   for (const MethodRecord& method : run.methods)
     if (const TriangleMesh* end =
             method.levels.empty() ? nullptr : scene.state(method.name, method.levels.back().level))
-      all.push_back({{"method", method.name}, {"png", base64(encode_png(scene.draw(renderer, {*end})))}});
+      all.push_back({{"method", method.name}, {"png", base64(encode_png(scene.draw(*end)))}});
   return all;
 }
 
@@ -117,11 +110,11 @@ Json run_json(const RunRecord& run, std::size_t rows, std::map<std::string, int>
       {"count", rows},
       {"report", fs::is_regular_file(report) ? Json(url_path(report.lexically_relative(from))) : Json()},
       {"pictures", Json::array()},
-      {"errors", csv_json(run.data ? run.folder / "errors.csv" : fs::path())},
+      {"errors", csv_json(run.data ? run.data->errors : Csv())},
       {"first_levels", Json::object()}};
   if (!run.data) return entry;
   entry["physics"] =
-      physics.emplace(model_of(run.data->configuration), static_cast<int>(physics.size())).first->second;
+      physics.emplace(model_of(run.data->config), static_cast<int>(physics.size())).first->second;
   entry["pictures"] = thumbnails(*run.data);
   entry["reference"] = run.data->reference_is_file ? "" : run.data->reference;
   for (const MethodRecord& method : run.data->methods)
@@ -159,8 +152,8 @@ std::vector<std::string> write_report(const fs::path& folder, const std::functio
                      {"measures", measures_json(run.error_measures)},
                      {"styles", styles_json(collection)},
                      {"step_sizes", step_sizes},
-                     {"errors", csv_json(folder / "errors.csv")},
-                     {"iterations", csv_json(folder / "iterations.csv")},
+                     {"errors", csv_json(run.errors)},
+                     {"iterations", csv_json(run.iterations)},
                      {"config", run.configuration},
                      {"pictures", pictures_json(run, set)},
                      {"notes", set.notes},

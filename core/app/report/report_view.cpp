@@ -1,14 +1,11 @@
 #include "core/app/report/report_view.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
+#include <map>
 #include <stdexcept>
 
-#include "core/app/files/json_file.h"
 #include "core/app/report/recorded_snapshots.h"
 #include "core/app/view/view_document.h"
-#include "core/kernel/files/file.h"
 #include "core/kernel/files/message_text.h"
 #include "core/numerics/mesh_files/io.h"
 
@@ -20,160 +17,131 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t most_snapshot_bytes = 4'000'000;  // of the whole page, uncompressed
 
-/// Evenly chosen indices, at most `most`, beginning with the first. The last snapshot is the level's final
-/// state, which is always shown.
-std::vector<std::size_t> chosen_snapshots(std::size_t count, std::size_t most) {
-  std::vector<std::size_t> chosen;
-  if (count < 2) return chosen;
-  const std::size_t shown = std::min(count - 1, most);
-  for (std::size_t k = 0; k < shown; ++k) chosen.push_back(k * (count - 1) / shown);
-  return chosen;
-}
+struct State {
+  Positions x;
+  SurfaceFields fields;
+};
+using States = std::map<const LevelRecord*, State>;  // the final state of each level that can be shown
 
-/// The fields that metrics of pairs declare pictures of.
+/// The fields that metrics of pairs declare colours of.
 std::vector<FieldKind> declared_fields(const RunData& run) {
   std::vector<FieldKind> kinds;
   for (const DeclaredMetric& metric : run.metrics)
-    for (const MetricPicture& picture : metric.declaration.pictures) {
-      const std::string label =
-          picture.label + (picture.kind == PictureKind::difference ? " from the finest level" : "");
-      kinds.push_back({picture.field, label, picture.unit, "diverging",
+    for (const MetricColours& colours : metric.declaration.colours) {
+      const std::string label = colours.label + (colours.other_field.empty() ? " from the finest level" : "");
+      kinds.push_back({colours.field, label, colours.unit, "diverging",
                        label + ", at the vertices that the finest level shares; known for last states only"});
     }
   return kinds;
 }
 
-class ReportViewMaker {
- public:
-  explicit ReportViewMaker(const RunData& run)
-      : run_(run),
-        results_(parse_json(read_file(run.folder / "results.json"))),
-        declared_(declared_fields(run)) {}
-
-  ReportView make() {
-    for (int l = 0; l <= run_.finest_level(); ++l)
-      levels_.push_back(Level::of(l, read_mesh(run_.folder / "rest" / ("l" + std::to_string(l) + ".ply"))));
-    for (const std::string& name : run_.obstacles) obstacles_.push_back(read_mesh(run_.folder / name));
-    document_.emplace(
-        levels_, obstacles_, run_.has_contact(),
-        [this](const std::string& name, const std::string& bytes) { blocks_ += block_element(name, bytes); },
-        declared_);
-    read_states();
-    if (states_.empty()) return {};
-    Json methods = Json::array();
-    for (std::size_t m = 0; m < run_.methods.size(); ++m) methods.push_back(method_entry(m));
-    return {document_->document(run_.experiment, methods), blocks_, notes_};
-  }
-
- private:
-  struct State {
-    Positions x;
-    SurfaceFields fields;
-  };
-
-  void read_states() {
-    std::vector<const SurfaceFields*> shown;
-    for (std::size_t m = 0; m < run_.methods.size(); ++m)
-      for (const LevelRecord& level : run_.methods[m].levels) {
-        if (level.mesh.empty() || !std::filesystem::is_regular_file(run_.folder / level.mesh)) continue;
-        State state;
-        try {
-          state.x = read_mesh(run_.folder / level.mesh).vertices;
-          if (state.x.rows() != levels_[level.level].vertex_count()) continue;
-          state.fields = document_->fields(level.level, state.x);
-          add_declared(run_.methods[m], level.level, state);
-        } catch (const std::exception&) {
-          continue;  // the pictures name it
-        }
-        shown.push_back(&states_.insert_or_assign({m, level.level}, std::move(state)).first->second.fields);
-      }
-    document_->set_ranges(shown);
-  }
-
-  /// As they were recorded on the finest mesh, at the vertices that it shares with the coarse level: those
-  /// come first. The finest level does not differ from itself.
-  void add_declared(const MethodRecord& method, int level, State& state) const {
-    const int finest = run_.finest_level();
-    const bool is_finest = level == finest;
-    const ConsistencyRecord* pair = nullptr;
-    for (const ConsistencyRecord& each : method.consistency)
-      if (each.fine == finest && (is_finest || each.coarse == level)) pair = &each;
-    if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run_.folder / pair->fields))
-      return;
-    const std::vector<VertexField> fields = read_ply_fields(run_.folder / pair->fields);
-    for (const DeclaredMetric& metric : run_.metrics)
-      for (const MetricPicture& picture : metric.declaration.pictures) {
-        const bool difference = picture.kind == PictureKind::difference;
-        if (difference && is_finest) {
-          state.fields.emplace_back(picture.field, Eigen::VectorXd::Zero(state.x.rows()));
-          continue;
-        }
-        const std::string& name = difference || is_finest ? picture.field : picture.other_field;
+/// As they were recorded on the finest mesh, at the vertices that it shares with the coarse level: those
+/// come first. The finest level does not differ from itself.
+void add_declared(const RunData& run, const MethodRecord& method, int level, State& state) {
+  const int finest = run.finest_level();
+  const bool is_finest = level == finest;
+  const ConsistencyRecord* pair = nullptr;
+  for (const ConsistencyRecord& each : method.consistency)
+    if (each.fine == finest && (is_finest || each.coarse == level)) pair = &each;
+  if (!pair || pair->fields.empty() || !std::filesystem::is_regular_file(run.folder / pair->fields)) return;
+  const std::vector<VertexField> fields = read_ply_fields(run.folder / pair->fields);
+  for (const DeclaredMetric& metric : run.metrics)
+    for (const MetricColours& colours : metric.declaration.colours) {
+      const bool difference = colours.other_field.empty();
+      const std::string& name = difference || is_finest ? colours.field : colours.other_field;
+      if (difference && is_finest)
+        state.fields.emplace_back(colours.field, Eigen::VectorXd::Zero(state.x.rows()));
+      else
         for (const VertexField& field : fields)
           if (field.name == name && field.values.size() >= state.x.rows())
-            state.fields.emplace_back(picture.field, field.values.head(state.x.rows()));
-      }
-  }
-
-  /// The recorded snapshots; empty, with a note, if they cannot be read.
-  Snapshots snapshots_of(const Json& level, Eigen::Index n) {
-    try {
-      return recorded_snapshots(run_.folder, level, n);
-    } catch (const std::exception& error) {
-      notes_.push_back("3D viewer: " + reason_of(error));
-      return {};
+            state.fields.emplace_back(colours.field, field.values.head(state.x.rows()));
     }
-  }
+}
 
-  Json method_entry(std::size_t m) {
-    const MethodRecord& method = run_.methods[m];
-    Json levels = Json::array();
-    // Finer levels may use the rest of a coarse level's share.
-    std::size_t left = most_snapshot_bytes / run_.methods.size();
-    for (std::size_t k = 0; k < method.levels.size(); ++k) {
-      const LevelRecord& level = method.levels[k];
-      const auto state = states_.find({m, level.level});
-      if (state == states_.end()) continue;
+States read_states(const RunData& run, const std::vector<Level>& levels, const ViewDocument& document) {
+  States states;
+  for (const MethodRecord& method : run.methods)
+    for (const LevelRecord& level : method.levels) {
+      if (level.mesh.empty() || !std::filesystem::is_regular_file(run.folder / level.mesh)) continue;
+      try {
+        State state{run.mesh(level.mesh).vertices, {}};
+        if (state.x.rows() != levels[level.level].vertex_count()) continue;
+        state.fields = document.fields(level.level, state.x);
+        add_declared(run, method, level.level, state);
+        states.emplace(&level, std::move(state));
+      } catch (const std::exception&) {
+        continue;  // the pictures name it
+      }
+    }
+  return states;
+}
+
+/// A level's evenly chosen snapshots, at most `bytes` of them, and its final state.
+Json states_json(const RunData& run, const LevelRecord& level, const State& last, const std::string& name,
+                 std::size_t bytes, ViewDocument& document, std::vector<std::string>& notes) {
+  Json states = Json::array();
+  SnapshotFile snapshots;
+  try {
+    snapshots = recorded_snapshots(run, level, last.x.rows());
+  } catch (const std::exception& error) {
+    notes.push_back("3D viewer: " + reason_of(error));
+  }
+  const auto number = [](const OptionalNumber& value) { return value ? Json(*value) : Json(); };
+  const std::size_t count = snapshots.count() > 0 ? snapshots.count() - 1 : 0,
+                    shown = std::min(count, bytes / document.state_bytes(level.level));
+  for (std::size_t k = 0; k < shown; ++k) {
+    const std::size_t f = k * count / shown;
+    const Positions x = snapshots.positions(f);
+    Json state = document.state(name + "f" + std::to_string(f), x, document.fields(level.level, x));
+    state["iteration"] = number(level.snapshots.iterations[f]);
+    state["seconds"] = number(level.snapshots.seconds[f]);
+    states.push_back(std::move(state));
+  }
+  Json state = document.state(name, last.x, last.fields);
+  state["iteration"] = number(level.iterations);
+  states.push_back(std::move(state));
+  return states;
+}
+
+ReportView view_of(const RunData& run) {
+  ReportView view;
+  std::vector<Level> levels;
+  for (int l = 0; l <= run.finest_level(); ++l) levels.push_back(Level::of(l, run.mesh(rest_file(l))));
+  std::vector<TriangleMesh> obstacles;
+  for (const std::string& name : run.obstacles) obstacles.push_back(run.mesh(name));
+  ViewDocument document(
+      levels, obstacles, run.has_contact(),
+      [&](const std::string& name, const std::string& bytes) { view.blocks += block_element(name, bytes); },
+      declared_fields(run));
+  const States states = read_states(run, levels, document);
+  if (states.empty()) return {};
+  std::vector<const SurfaceFields*> fields;
+  for (const auto& [level, state] : states) fields.push_back(&state.fields);
+  document.set_ranges(fields);
+  Json methods = Json::array();
+  for (std::size_t m = 0; m < run.methods.size(); ++m) {
+    Json entries = Json::array();
+    for (const LevelRecord& level : run.methods[m].levels) {
+      const auto state = states.find(&level);
+      if (state == states.end()) continue;
       const std::string name = "m" + std::to_string(m) + "l" + std::to_string(level.level);
-      Json states = Json::array();
-      const Eigen::Index n = state->second.x.rows();
-      const Snapshots snapshots = snapshots_of(results_.at("methods").at(method.name).at("levels").at(k), n);
-      const std::size_t bytes = document_->state_bytes(level.level),
-                        share = left / (method.levels.size() - k);
-      for (const std::size_t f : chosen_snapshots(snapshots.states.count(), share / bytes)) {
-        const Positions x = snapshots.states.positions(f);
-        Json snapshot =
-            document_->state(name + "f" + std::to_string(f), x, document_->fields(level.level, x));
-        snapshot["iteration"] = snapshots.iterations[f];
-        snapshot["seconds"] = snapshots.seconds[f];
-        states.push_back(snapshot);
-        left -= bytes;
-      }
-      Json last = document_->state(name, state->second.x, state->second.fields);
-      last["iteration"] = level.iterations ? Json(*level.iterations) : Json();
-      states.push_back(last);
-      levels.push_back({{"level", level.level}, {"status", level.status}, {"states", states}});
+      entries.push_back({{"level", level.level},
+                         {"status", level.status},
+                         {"states", states_json(run, level, state->second, name,
+                                                most_snapshot_bytes / states.size(), document, view.notes)}});
     }
-    return {{"name", method.name}, {"levels", levels}};
+    methods.push_back({{"name", run.methods[m].name}, {"levels", entries}});
   }
-
-  const RunData& run_;
-  const Json results_;
-  const std::vector<FieldKind> declared_;
-  std::vector<Level> levels_;
-  std::vector<TriangleMesh> obstacles_;
-  std::optional<ViewDocument> document_;
-  std::map<std::pair<std::size_t, int>, State> states_;  // by number of the method, and level
-  std::string blocks_;
-  std::vector<std::string> notes_;
-};
+  view.document = document.document(run.experiment, methods);
+  return view;
+}
 
 }  // namespace
 
 ReportView report_view(const RunData& run) {
   if (run.finest_level() < 0) return {};
   try {
-    return ReportViewMaker(run).make();
+    return view_of(run);
   } catch (const std::exception& error) {
     return {nullptr, "", {"3D viewer: " + reason_of(error)}};
   }

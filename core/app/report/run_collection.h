@@ -14,7 +14,7 @@ namespace drape {
 struct RunRecord {
   std::string sweep;                ///< its name; empty for a run by itself
   std::string name;                 ///< of its variation
-  std::string variation;            ///< the same, preceded by the sweep where sweeps share the name
+  std::string variation;            ///< the same, preceded by the sweep where there are several
   nlohmann::ordered_json settings;  ///< the values of a sweep's varied keys, by path
   OptionalNumber seed;
   std::string status;  ///< as sweep.json has it: "converged", "not_converged", "failed", …
@@ -33,12 +33,9 @@ struct RunCollection {
   bool complete = true;
   std::vector<RunRecord> runs;
 
-  std::vector<std::string> variations() const;  ///< in order of appearance
-  std::vector<std::string> methods() const;     ///< likewise
-  std::vector<const RunRecord*> of(const std::string& variation) const;
   /// What the metrics of all runs declare, in order of appearance.
   std::vector<DeclaredMetric> metrics() const;
-  /// The measures of errors of all runs, likewise; without any results, the energy gap.
+  /// The measures of errors of all runs; without any results, the energy gap.
   std::vector<ErrorMeasure> error_measures() const;
 };
 
@@ -49,8 +46,8 @@ bool is_sweep(const std::filesystem::path& folder);
 void require_run_or_sweep(const std::filesystem::path& folder);
 
 /// Reads runs and sweeps. Runs whose configs differ only by the seed form a variation, which is named after
-/// the experiment or, if that is ambiguous, after the folder. Throws std::runtime_error with one line for a
-/// folder that is neither a run nor a sweep.
+/// the experiment or, where variations share that, after its first folder. Throws std::runtime_error with one
+/// line for a folder that is neither a run nor a sweep.
 RunCollection read_runs(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace drape

@@ -1,12 +1,135 @@
 #include "core/app/report/run_data.h"
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "core/app/files/json_file.h"
+#include "core/app/files/yaml_file.h"
+#include "core/kernel/files/file.h"
+#include "core/numerics/mesh_files/io.h"
 
 namespace drape {
 
-const LevelQuantity& level_quantity(std::string_view name) {
-  return *std::find_if(std::begin(level_quantities), std::end(level_quantities),
-                       [&](const LevelQuantity& quantity) { return quantity.name == name; });
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers that results.json has of every level, under the name that they have everywhere.
+constexpr std::pair<std::string_view, OptionalNumber LevelRecord::*> level_quantities[] = {
+    {"vertices", &LevelRecord::vertices},
+    {"steps", &LevelRecord::steps},
+    {"iterations", &LevelRecord::iterations},
+    {"seconds", &LevelRecord::seconds},
+    {"flops", &LevelRecord::flops},
+    {"energy", &LevelRecord::energy},
+    {"energy_on_finest", &LevelRecord::energy_on_finest},
+    {"energy_released", &LevelRecord::energy_released},
+    {"force_residual", &LevelRecord::force_residual},
+    {"intersections", &LevelRecord::intersections},
+    {"smallest_gap", &LevelRecord::smallest_gap}};
+
+OptionalNumber number(const Json& json) {
+  return json.is_number() ? finite(json.get<double>()) : std::nullopt;
+}
+bool is_true(const Json& json) { return json.is_boolean() && json.get<bool>(); }
+
+/// The members of a list; none where it has something else.
+const Json& list(const Json& json) {
+  static const Json none = Json::array();
+  return json.is_array() ? json : none;
+}
+
+std::vector<std::string> texts(const Json& json) {
+  std::vector<std::string> all;
+  for (const Json& text : list(json))
+    all.push_back(text.is_string() ? text.get<std::string>() : std::string());
+  return all;
+}
+
+std::vector<OptionalNumber> numbers(const Json& json) {
+  std::vector<OptionalNumber> all;
+  for (const Json& value : list(json)) all.push_back(number(value));
+  return all;
+}
+
+NamedNumbers named_numbers(const Json& json) {
+  NamedNumbers numbers;
+  if (!json.is_object()) return numbers;
+  for (const auto& [name, value] : json.items()) numbers.emplace_back(name, number(value));
+  return numbers;
+}
+
+/// results.json, and what its metrics declare.
+struct Results {
+  JsonFile file;
+  std::vector<DeclaredMetric> metrics;
+
+  Values values(const Json& json, MetricScope scope) const {
+    Values values;
+    for (const MetricColumn& column : columns_of(metrics, scope, Shown::stored))
+      values.set(column.name, number(member_of(json, column.name)));
+    return values;
+  }
+
+  LevelRecord level(const Json& json, std::size_t position) const {
+    LevelRecord r;
+    r.level = file.find<int>(json, "level").value_or(static_cast<int>(position));
+    r.status = text_member(json, "status");
+    r.message = text_member(json, "message");
+    for (const auto& [name, member] : level_quantities)
+      r.*member = number(member_of(json, std::string(name)));
+    r.from_initial_state = is_true(member_of(json, "from_initial_state"));
+    r.seconds_by_phase = named_numbers(member_of(json, "seconds_by_phase"));
+    r.energy_parts = named_numbers(member_of(json, "energy_parts"));
+    r.metrics = values(json, MetricScope::state);
+    r.mesh = text_member(json, "mesh");
+    const Json& snapshots = member_of(json, "snapshots");
+    r.snapshots = {text_member(snapshots, "file"),
+                   numbers(member_of(snapshots, "iterations")),
+                   numbers(member_of(snapshots, "seconds")),
+                   {}};
+    if (const Json& checksum = member_of(snapshots, "checksum"); checksum.is_number_unsigned())
+      r.snapshots.checksum = checksum.get<std::uint32_t>();
+    return r;
+  }
+
+  MethodRecord method(const std::string& name, const Json& json) const {
+    MethodRecord method;
+    method.name = name;
+    method.status = text_member(json, "status");
+    method.solver = text_member(json, "solver");
+    method.seconds = number(member_of(json, "seconds"));
+    method.peak_memory_bytes = number(member_of(json, "peak_memory_bytes"));
+    for (const Json& entry : list(member_of(json, "levels")))
+      if (entry.is_object()) method.levels.push_back(level(entry, method.levels.size()));
+    for (const Json& pair : list(member_of(json, "consistency"))) {
+      const int coarse = file.find<int>(pair, "coarse").value_or(-1),
+                fine = file.find<int>(pair, "fine").value_or(-1);
+      if (coarse >= 0 && fine > coarse)
+        method.consistency.push_back(
+            {coarse, fine, values(pair, MetricScope::pair), text_member(pair, "fields")});
+    }
+    std::stable_sort(method.levels.begin(), method.levels.end(),
+                     [](const LevelRecord& a, const LevelRecord& b) { return a.level < b.level; });
+    return method;
+  }
+};
+
+OptionalNumber step_size(const ConfigNode& config, const std::string& method) {
+  const ConfigNode* node = config.find("methods");
+  for (const char* key : {method.c_str(), "newton", "step_size"}) node = node ? node->find(key) : node;
+  return node ? number_of(node->scalar) : std::nullopt;
+}
+
+}  // namespace
+
+OptionalNumber LevelRecord::of(const std::string& name) const {
+  for (const auto& [known, member] : level_quantities)
+    if (known == name) return this->*member;
+  return metrics.of(name);
 }
 
 int MethodRecord::first_level() const {
@@ -14,20 +137,6 @@ int MethodRecord::first_level() const {
   for (const LevelRecord& level : levels)
     if (level.from_initial_state) first = level.level;
   return first;
-}
-
-const LevelRecord* MethodRecord::level(int index) const {
-  for (const LevelRecord& r : levels) {
-    if (r.level == index) return &r;
-  }
-  return nullptr;
-}
-
-const ConsistencyRecord* MethodRecord::pair(int coarse, int fine) const {
-  for (const ConsistencyRecord& r : consistency) {
-    if (r.coarse == coarse && r.fine == fine) return &r;
-  }
-  return nullptr;
 }
 
 OptionalNumber MethodRecord::cost(OptionalNumber LevelRecord::*member) const {
@@ -40,11 +149,9 @@ OptionalNumber MethodRecord::cost(OptionalNumber LevelRecord::*member) const {
 }
 
 bool RunData::has_contact() const {
-  for (const MethodRecord& m : methods) {
-    for (const LevelRecord& r : m.levels) {
+  for (const MethodRecord& m : methods)
+    for (const LevelRecord& r : m.levels)
       if (r.intersections || r.smallest_gap) return true;
-    }
-  }
   return false;
 }
 
@@ -53,6 +160,58 @@ int RunData::finest_level() const {
   for (const MethodRecord& m : methods)
     for (const LevelRecord& r : m.levels) finest = std::max(finest, r.level);
   return finest;
+}
+
+TriangleMesh RunData::mesh(const std::string& name) const {
+  TriangleMesh mesh = read_mesh(folder / name);
+  const bool inside = mesh.triangles.size() == 0 ||
+                      (mesh.triangles.minCoeff() >= 0 && mesh.triangles.maxCoeff() < mesh.vertices.rows());
+  if (!inside)
+    throw std::runtime_error((folder / name).string() + ": a triangle names a vertex that is not there");
+  return mesh;
+}
+
+std::string rest_file(int level) { return "rest/l" + std::to_string(level) + ".ply"; }
+
+RunData read_run(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "results.json";
+  if (!std::filesystem::is_regular_file(path))
+    throw std::runtime_error(folder.string() + ": no results.json here; give the folder of a run");
+  const Json json = parse_json(read_file(path));
+  if (!json.is_object()) throw std::runtime_error(path.string() + ": not a JSON object; is it cut short?");
+
+  RunData run;
+  run.folder = folder;
+  run.experiment = text_member(json, "experiment");
+  run.version = text_member(json, "version");
+  run.complete = is_true(member_of(json, "complete"));
+  run.obstacles = texts(member_of(json, "obstacles"));
+  run.obstacle_names = texts(member_of(json, "obstacle_names"));
+  run.obstacle_names.resize(run.obstacles.size());
+  run.cpu = text_member(member_of(json, "machine"), "cpu");
+  run.threads = number(member_of(member_of(json, "machine"), "threads"));
+  const Json& reference = member_of(json, "reference");
+  run.reference_is_file = !text_member(reference, "file").empty();
+  run.reference = text_member(reference, run.reference_is_file ? "file" : "method");
+  run.metrics = declared_metrics(member_of(json, "metrics"));
+  run.error_measures = error_measures(run.metrics);
+  if (const std::filesystem::path config = folder / "config.yaml"; std::filesystem::is_regular_file(config)) {
+    run.configuration = read_file(config);
+    ConfigErrors unread;
+    run.config = parse_yaml(run.configuration, "config.yaml", unread);
+  }
+  const Results results{{path, "run the experiment again"}, run.metrics};
+  if (const Json& methods = member_of(json, "methods"); methods.is_object())
+    for (const auto& [name, value] : methods.items()) {
+      run.methods.push_back(results.method(name, value));
+      run.methods.back().step_size = step_size(run.config, name);
+    }
+  // The progressive method comes first; the others stay in file order.
+  std::stable_partition(run.methods.begin(), run.methods.end(),
+                        [](const MethodRecord& m) { return m.name == "pcs"; });
+  run.iterations = Csv(folder / "iterations.csv");
+  run.errors = Csv(folder / "errors.csv");
+  return run;
 }
 
 }  // namespace drape

@@ -1,25 +1,24 @@
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/app/experiment/error_measures.h"
-#include "core/app/files/iterations_file.h"
+#include "core/app/files/csv.h"
 #include "core/app/files/optional_number.h"
-#include "core/kernel/interfaces/solver.h"
+#include "core/kernel/interfaces/triangle_mesh.h"
 
 namespace drape {
 
 /// Numbers by name, in file order.
 using NamedNumbers = std::vector<std::pair<std::string, OptionalNumber>>;
 
-/// The known values of metrics or errors, by name.
+/// The known values of metrics, by name.
 struct Values : std::map<std::string, double> {
   OptionalNumber of(const std::string& name) const {
     const auto found = find(name);
@@ -30,50 +29,35 @@ struct Values : std::map<std::string, double> {
   }
 };
 
+/// States of a level on the way; the last one is its final state.
+struct SnapshotRecord {
+  std::string file;  ///< relative to the run's folder; empty without any
+  std::vector<OptionalNumber> iterations, seconds;
+  std::optional<std::uint32_t> checksum;
+};
+
 /// One level of one method, as results.json has it (SI units).
 struct LevelRecord {
   int level = 0;
   std::string status, message;
-  OptionalNumber vertices, triangles, steps, iterations, seconds, flops;
+  OptionalNumber vertices, steps, iterations, seconds, flops;
   bool from_initial_state = false;          ///< earlier levels do not contribute
   OptionalNumber energy, energy_on_finest;  ///< from the potentials' origin [J]
   OptionalNumber energy_released;           ///< of the finest level, since the scene's start [J]
-  OptionalNumber decrement, force_residual, intersections, smallest_gap;
+  OptionalNumber force_residual, intersections, smallest_gap;
   NamedNumbers seconds_by_phase, energy_parts;
   Values metrics;    ///< of state metrics, by column
   std::string mesh;  ///< relative to the run's folder; may be empty
-};
+  SnapshotRecord snapshots;
 
-/// A number that results.json has of every level, under the name that it has there, in tables, in comparisons
-/// and in Python.
-struct LevelQuantity {
-  const char* name;
-  OptionalNumber LevelRecord::*member;
-  const char* title;   ///< for the head of a table, with the unit
-  bool count = false;  ///< shown as a whole number
+  /// The quantity or state metric of that name in results.json.
+  OptionalNumber of(const std::string& name) const;
 };
-inline constexpr LevelQuantity level_quantities[] = {
-    {"vertices", &LevelRecord::vertices, "vertices", true},
-    {"triangles", &LevelRecord::triangles, "triangles", true},
-    {"steps", &LevelRecord::steps, "steps", true},
-    {"iterations", &LevelRecord::iterations, "Newton iterations", true},
-    {"seconds", &LevelRecord::seconds, "time [s]"},
-    {"flops", &LevelRecord::flops, "flops"},
-    {"energy", &LevelRecord::energy, "energy [J]"},
-    {"energy_on_finest", &LevelRecord::energy_on_finest, "energy on finest [J]"},
-    {"energy_released", &LevelRecord::energy_released, "energy released [J]"},
-    {"force_residual", &LevelRecord::force_residual, "force residual"},
-    {"decrement", &LevelRecord::decrement, "decrement [m/s]"},
-    {"intersections", &LevelRecord::intersections, "intersections", true},
-    {"smallest_gap", &LevelRecord::smallest_gap, "smallest gap [m]"}};
-/// The quantity of that name, which must be one of them.
-const LevelQuantity& level_quantity(std::string_view name);
 
 /// Pair metrics of a coarse state, prolonged, against a finer one.
 struct ConsistencyRecord {
   int coarse = 0, fine = 0;
   Values metrics;      ///< by column
-  Values of_start;     ///< the same for the scene's initial state in place of the coarse one
   std::string fields;  ///< relative to the run's folder; may be empty
 };
 
@@ -89,33 +73,14 @@ struct MethodRecord {
   OptionalNumber cost(OptionalNumber LevelRecord::*member) const;
   /// The coarsest level that the last state builds on.
   int first_level() const;
-  const LevelRecord* level(int index) const;
-  const ConsistencyRecord* pair(int coarse, int fine) const;
-};
-
-/// All rows of one level of one method, in order.
-struct IterationSeries {
-  std::string method;
-  int level = 0;
-  std::vector<RecordedIteration> rows;
-};
-
-/// One row of errors.csv: a state's cost, and its error against each target in each measure.
-struct ErrorRow {
-  std::array<OptionalNumber, error_costs.size()> cost;
-  std::array<Values, error_targets.size()> error;  ///< by measure
-};
-
-struct ErrorSeries {
-  std::string method;
-  int level = 0;
-  std::vector<ErrorRow> rows;
 };
 
 /// Everything a finished or interrupted run has written, except meshes.
 struct RunData {
   std::filesystem::path folder;
-  std::string experiment, version, cpu, configuration;
+  std::string experiment, version, cpu;
+  std::string configuration;  ///< config.yaml, also parsed; empty without one
+  ConfigNode config;
   bool complete = false;
   OptionalNumber threads;
   std::vector<std::string> obstacles;       ///< meshes, relative to the folder
@@ -123,9 +88,8 @@ struct RunData {
   std::vector<DeclaredMetric> metrics;
   std::vector<ErrorMeasure> error_measures;
   std::vector<MethodRecord> methods;
-  std::vector<IterationSeries> iterations;  ///< in the order of methods, coarse to fine
-  std::vector<ErrorSeries> errors;          ///< likewise
-  std::string reference;                    ///< method or file of the state that errors are measured against
+  Csv iterations, errors;  ///< iterations.csv and errors.csv; empty without them
+  std::string reference;   ///< method or file of the state that errors are measured against
   bool reference_is_file = false;
 
   /// Whether the run had contact: otherwise it has no gaps and intersections.
@@ -135,7 +99,14 @@ struct RunData {
     return columns_of(metrics, scope, least);
   }
   int finest_level() const;  ///< over all methods; -1 without levels
+
+  /// A mesh of the run's folder. Throws std::runtime_error if it cannot be read, or if a triangle names a
+  /// vertex that is not there.
+  TriangleMesh mesh(const std::string& name) const;
 };
+
+/// A level's rest shape, relative to a run's folder.
+std::string rest_file(int level);
 
 /// Reads results.json (required), iterations.csv, errors.csv and config.yaml (optional). Null values are
 /// absent. Throws std::runtime_error with one line if results.json is missing or is not JSON.

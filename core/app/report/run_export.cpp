@@ -8,8 +8,8 @@
 #include "core/app/files/file_name.h"
 #include "core/app/files/gltf.h"
 #include "core/app/picture/surface.h"
+#include "core/app/report/pictures.h"
 #include "core/app/report/recorded_snapshots.h"
-#include "core/app/report/run_data.h"
 #include "core/kernel/files/file.h"
 #include "core/kernel/files/string_utils.h"
 #include "core/numerics/mesh/texture_coordinates.h"
@@ -49,7 +49,7 @@ std::vector<const LevelRecord*> recorded_levels(const MethodRecord& method, std:
 
 /// The rest shape of a level. Throws std::runtime_error unless it has so many triangles.
 TriangleMesh rest_of(const RunData& run, int level, Eigen::Index triangles) {
-  TriangleMesh rest = read_mesh(run.folder / "rest" / ("l" + std::to_string(level) + ".ply"));
+  TriangleMesh rest = run.mesh(rest_file(level));
   if (rest.triangles.rows() != triangles)
     throw std::runtime_error((run.folder / "rest").string() + ": level " + std::to_string(level) +
                              " has other triangles than its state; run the experiment again");
@@ -59,12 +59,11 @@ TriangleMesh rest_of(const RunData& run, int level, Eigen::Index triangles) {
 /// The cloth at the end of a level, with texture coordinates: those of the cloth's file, or, for a flat rest
 /// shape, its own plane's, which are the same on every level.
 TriangleMesh cloth_mesh(const RunData& run, const LevelRecord& level) {
-  TriangleMesh mesh = read_mesh(run.folder / level.mesh);
+  TriangleMesh mesh = run.mesh(level.mesh);
   TriangleMesh rest = rest_of(run, level.level, mesh.triangles.rows());
   mesh.uv = std::move(rest.uv);
   if (mesh.uv.rows() > 0) return mesh;
-  const std::optional<PlanarUv> planar =
-      PlanarUv::of(level.level == 0 ? rest : read_mesh(run.folder / "rest/l0.ply"));
+  const std::optional<PlanarUv> planar = PlanarUv::of(level.level == 0 ? rest : run.mesh(rest_file(0)));
   if (planar) mesh.uv = planar->at(rest);
   return mesh;
 }
@@ -109,7 +108,7 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
   std::vector<GltfSurface> surfaces;
   std::vector<int> obstacles;
   for (std::size_t k = 0; k < run.obstacles.size(); ++k) {
-    const TriangleMesh mesh = read_mesh(run.folder / run.obstacles[k]);
+    const TriangleMesh mesh = run.mesh(run.obstacles[k]);
     if (mesh.triangles.rows() == 0) continue;
     const std::string& name = run.obstacle_names[k];
     GltfSurface surface =
@@ -126,6 +125,53 @@ std::string gltf_of(const RunData& run, const MethodRecord& method,
     scenes.push_back(std::move(scene));
   }
   return glb_bytes(surfaces, scenes);
+}
+
+/// FILE_0000.png, FILE_0001.png, …
+fs::path numbered(const fs::path& file, std::size_t k) {
+  std::string number = std::to_string(k);
+  if (number.size() < 4) number.insert(0, 4 - number.size(), '0');
+  return file.parent_path() / (file.stem().string() + "_" + number + file.extension().string());
+}
+
+/// Draws the final states of these levels, or all their snapshots, the last of which is that state.
+std::vector<fs::path> export_pictures(const RunData& run, const MethodRecord& method,
+                                      const std::vector<const LevelRecord*>& levels, const fs::path& file,
+                                      const ExportOptions& options) {
+  std::vector<TriangleMesh> states;
+  for (const LevelRecord* level : levels) {
+    TriangleMesh last = run.mesh(level->mesh);
+    if (options.frames) {
+      // A level that its first state solved has one snapshot.
+      std::vector<Positions> earlier = snapshot_positions(run, method, *level, last.vertices.rows(), 1);
+      earlier.pop_back();
+      for (Positions& x : earlier) states.push_back({std::move(x), last.triangles});
+    }
+    states.push_back(std::move(last));
+  }
+  std::vector<fs::path> files;
+  for (std::size_t k = 0; k < states.size(); ++k) files.push_back(options.frames ? numbered(file, k) : file);
+  for (const fs::path& each : files) refuse_target(each, options.overwrite);
+  if (options.frames) refuse_target(numbered(file, files.size()), options.overwrite);
+
+  PictureFrame frame;
+  frame.width = options.picture.width.value_or(2 * default_picture_width);
+  if (options.picture.direction) frame.direction = *options.picture.direction;
+  for (const TriangleMesh& state : states) frame.further.push_back(&state.vertices);
+  std::vector<std::string> notes;  // of states that are not drawn here; the report has them
+  const PictureScene scene(run, notes, frame);
+  std::optional<TriangleMesh> coarsest;
+  for (const LevelRecord& level : method.levels)
+    if (options.picture.outline && !coarsest && !level.mesh.empty()) coarsest = run.mesh(level.mesh);
+  for (std::size_t k = 0; k < states.size(); ++k) {
+    Image image = scene.draw(states[k], options.picture.xray);
+    if (coarsest) scene.draw_outline(image, *coarsest);
+    write_file(files[k], encode_png(image));
+  }
+  // Pictures of an earlier, longer series would be read as this one's.
+  for (std::size_t k = files.size(); options.frames && fs::is_regular_file(numbered(file, k)); ++k)
+    fs::remove(numbered(file, k));
+  return files;
 }
 
 /// Throws std::runtime_error for a file of an unknown format, and for options that its format does not have.
@@ -153,13 +199,12 @@ std::vector<fs::path> export_run(const fs::path& folder, const fs::path& file, c
   std::vector<const LevelRecord*> levels = recorded_levels(method, options.level);
   const bool all_levels = extension == ".glb" ? !options.frames : extension == ".png" && options.frames;
   if (!all_levels) levels = {levels.back()};
-  if (extension == ".png")
-    return export_pictures(run, method, levels, options.frames, options.picture, file, options.overwrite);
+  if (extension == ".png") return export_pictures(run, method, levels, file, options);
   refuse_target(file, options.overwrite);
   if (extension == ".glb")
     write_file(file, gltf_of(run, method, levels, options.frames));
   else if (extension == ".vtp")
-    write_vtp(file, read_mesh(run.folder / levels[0]->mesh));
+    write_vtp(file, run.mesh(levels[0]->mesh));
   else
     write_mesh(file, cloth_mesh(run, *levels[0]));
   return {file};

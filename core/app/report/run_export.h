@@ -1,15 +1,22 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/app/report/picture_export.h"
-
 namespace drape {
 
-/// What `export_run` writes.
+/// How exported pictures look; the defaults are a report's, at twice the size.
+struct PictureOptions {
+  std::optional<int> width;                  ///< [pixels]
+  std::optional<Eigen::Vector3d> direction;  ///< towards the camera; of any length but 0
+  bool outline = false;                      ///< draw the outline of the method's coarsest state
+  bool xray = false;                         ///< let obstacles show faintly through the cloth
+};
+
+/// Options of `export_run`.
 struct ExportOptions {
   std::string method;        ///< empty: see default_method
   std::optional<int> level;  ///< empty: every level of a .glb and of numbered pictures, or the finest
@@ -20,9 +27,11 @@ struct ExportOptions {
 
 /// Writes states of a method from a run's folder, by the file's extension, and returns the files. A .glb has
 /// each level as a scene, the obstacles included, and opens on the finest. A .obj, .ply or .vtp has the cloth
-/// of one level; for a .png see export_pictures. All but .vtp have texture coordinates: those of the cloth's
-/// file, or PlanarUv of a flat rest shape. Throws std::runtime_error with one line for a folder without
-/// results, for a state that was not recorded, for options that do not fit, and for a file that exists.
+/// of one level, all but .vtp with texture coordinates: those of the cloth's file, or PlanarUv of a flat rest
+/// shape. A .png has a report's camera, which moves back where a snapshot would leave the picture; of several
+/// pictures the files are numbered, FILE_0000.png. Throws std::runtime_error with one line for a folder
+/// without results, for a state that was not recorded, for options that do not fit, and for a file that
+/// exists.
 std::vector<std::filesystem::path> export_run(const std::filesystem::path& folder,
                                               const std::filesystem::path& file,
                                               const ExportOptions& options);

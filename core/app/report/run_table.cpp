@@ -5,7 +5,6 @@
 
 #include "core/app/experiment/exit_codes.h"
 #include "core/app/files/json_file.h"
-#include "core/app/report/run_rows.h"
 #include "core/kernel/files/string_utils.h"
 
 namespace drape {
@@ -25,21 +24,38 @@ struct IterationSummary {
   OptionalNumber smallest_gap, intersections;
 
   IterationSummary(const RunData& run, const MethodRecord& method) {
+    const Csv& csv = run.iterations;
     double rows = 0;
-    for (const IterationSeries& series : run.iterations) {
-      if (series.method != method.name) continue;
-      const bool counts = series.level >= method.first_level();
-      for (const RecordedIteration& row : series.rows) {
-        rows += counts;
-        *shortened_steps += counts && row.step_length < 1;
-        if (row.smallest_gap)
-          smallest_gap = std::min(smallest_gap.value_or(*row.smallest_gap), *row.smallest_gap);
-        if (row.intersections) intersections = intersections.value_or(0) + *row.intersections;
-      }
+    for (std::size_t k = 0; k < csv.size(); ++k) {
+      if (csv.text(k, "method") != method.name) continue;
+      const bool counts = csv.number(k, "level").value_or(0) >= method.first_level();
+      rows += counts;
+      *shortened_steps += counts && csv.number(k, "step_length").value_or(1) < 1;
+      note(csv.number(k, "smallest_gap"), csv.number(k, "intersections"));
     }
     if (rows < method.cost(&LevelRecord::iterations).value_or(0)) shortened_steps.reset();
+    for (const LevelRecord& level : method.levels) note(level.smallest_gap, level.intersections);
+  }
+
+  void note(const OptionalNumber& gap, const OptionalNumber& crossing) {
+    if (gap) smallest_gap = std::min(smallest_gap.value_or(*gap), *gap);
+    if (crossing) intersections = intersections.value_or(0) + *crossing;
   }
 };
+
+/// The error of a method's final state, or of its preview, the last state of its coarsest level.
+OptionalNumber last_error(const RunData& run, const MethodRecord& method, bool preview,
+                          const std::string& column) {
+  if (method.levels.empty() || (preview && method.levels.size() < 2)) return {};
+  const int level = (preview ? method.levels.front() : method.levels.back()).level;
+  OptionalNumber last;
+  for (std::size_t k = 0; k < run.errors.size(); ++k)
+    if (run.errors.text(k, "method") == method.name && run.errors.number(k, "level") == level)
+      last = run.errors.number(k, column);
+  return last;
+}
+
+std::string error_name(const ErrorMeasure& m) { return m.name == energy_gap ? m.name : "error_" + m.name; }
 
 /// The statuses of the levels, or the one that all have.
 std::string statuses(const MethodRecord& method) {
@@ -56,40 +72,11 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 /// coarsest level against the finest.
 OptionalNumber metric_value(const MetricColumn& column, MetricScope scope, const MethodRecord& method) {
   if (scope == MetricScope::state) return worst_over_levels(column, method);
-  if (method.levels.size() < 2) return {};
-  const ConsistencyRecord* pair = method.pair(method.levels.front().level, method.levels.back().level);
-  return pair ? pair->metrics.of(column.name) : OptionalNumber();
-}
-
-Json row_of(const RunData& run, const MethodRecord& method) {
-  IterationSummary iterations(run, method);
-  std::string fault, remark;
-  for (const LevelRecord& level : method.levels) {
-    if (level.smallest_gap)
-      iterations.smallest_gap =
-          std::min(iterations.smallest_gap.value_or(*level.smallest_gap), *level.smallest_gap);
-    if (level.intersections)
-      iterations.intersections = iterations.intersections.value_or(0) + *level.intersections;
-    if (level.message.empty()) continue;
-    (has_converged(level.status) ? remark : fault) +=
-        (method.levels.size() > 1 ? "level " + std::to_string(level.level) + ": " : "") + level.message +
-        "\n";
-  }
-  Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
-  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().vertices);
-  row["steps"] = count_of(method.cost(&LevelRecord::steps));
-  row["shortened_steps"] = count_of(iterations.shortened_steps);
-  row["smallest_gap"] = json_of(iterations.smallest_gap);
-  row["intersections"] = count_of(iterations.intersections);
-  for (const RowQuantity& quantity : row_quantities(run.error_measures)) {
-    const OptionalNumber value = quantity.of(run, method);
-    row[quantity.name] = quantity.name == "iterations" ? count_of(value) : json_of(value);
-  }
-  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
-    for (const MetricColumn& column : run.columns(scope, Shown::summary))
-      row[column.name] = json_of(metric_value(column, scope, method));
-  row["message"] = first_line(fault + remark);
-  return row;
+  if (method.levels.empty()) return {};
+  for (const ConsistencyRecord& pair : method.consistency)
+    if (pair.coarse == method.levels.front().level && pair.fine == method.levels.back().level)
+      return pair.metrics.of(column.name);
+  return {};
 }
 
 std::string status_without_results(const RunRecord& run) {
@@ -120,6 +107,52 @@ std::vector<std::string> varied_keys(const RunCollection& collection) {
 
 }  // namespace
 
+std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& measures) {
+  std::vector<std::string> names = {"seconds", "iterations", "flops", "energy_released"}, previews;
+  for (const ErrorMeasure& m : measures) {
+    if (m.use < ErrorUse::summary) continue;
+    names.push_back(error_name(m));
+    previews.push_back("preview_" + m.name);
+  }
+  names.emplace_back("preview_seconds");
+  names.insert(names.end(), previews.begin(), previews.end());
+  return names;
+}
+
+TableRow row_of(const RunData& run, const MethodRecord& method) {
+  const IterationSummary iterations(run, method);
+  const bool several = method.levels.size() > 1;
+  std::string fault, remark;
+  for (const LevelRecord& level : method.levels)
+    if (!level.message.empty())
+      (has_converged(level.status) ? remark : fault) +=
+          (several ? "level " + std::to_string(level.level) + ": " : "") + level.message + "\n";
+  Json row = {{"method", method.name}, {"pass", false}, {"status", statuses(method)}};
+  row["vertices"] = method.levels.empty() ? Json() : count_of(method.levels.back().vertices);
+  row["steps"] = count_of(method.cost(&LevelRecord::steps));
+  row["iterations"] = count_of(method.cost(&LevelRecord::iterations));
+  row["shortened_steps"] = count_of(iterations.shortened_steps);
+  row["seconds"] = json_of(method.cost(&LevelRecord::seconds));
+  row["flops"] = json_of(method.cost(&LevelRecord::flops));
+  row["energy_released"] = method.levels.empty() ? Json() : json_of(method.levels.back().energy_released);
+  row["smallest_gap"] = json_of(iterations.smallest_gap);
+  row["intersections"] = count_of(iterations.intersections);
+  row["preview_seconds"] = several ? json_of(method.levels.front().seconds) : Json();
+  // The error of the reference against itself says nothing.
+  const bool is_reference = !run.reference_is_file && run.reference == method.name;
+  for (const ErrorMeasure& m : run.error_measures) {
+    if (m.use < ErrorUse::summary) continue;
+    row[error_name(m)] =
+        is_reference ? Json() : json_of(last_error(run, method, false, "reference_" + m.name));
+    row["preview_" + m.name] = json_of(last_error(run, method, true, "own_" + m.name));
+  }
+  for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
+    for (const MetricColumn& column : run.columns(scope, Shown::summary))
+      row[column.name] = json_of(metric_value(column, scope, method));
+  row["message"] = first_line(fault + remark);
+  return row;
+}
+
 OptionalNumber worst_over_levels(const MetricColumn& column, const MethodRecord& method) {
   OptionalNumber worst;
   for (const LevelRecord& level : method.levels) {
@@ -145,10 +178,10 @@ RunTable table_of(const RunCollection& collection) {
   for (const MetricScope scope : {MetricScope::state, MetricScope::pair})
     for (const MetricColumn& column : columns_of(metrics, scope, Shown::summary))
       table.columns.push_back(column.name);
-  for (const RowQuantity& quantity : row_quantities(collection.error_measures()))
-    if (std::find(table.columns.begin(), table.columns.end(), quantity.name) == table.columns.end()) {
-      table.columns.push_back(quantity.name);
-      table.in_files.push_back(quantity.name);
+  for (const std::string& name : summary_quantities(collection.error_measures()))
+    if (std::find(table.columns.begin(), table.columns.end(), name) == table.columns.end()) {
+      table.columns.push_back(name);
+      table.in_files.push_back(name);
     }
   table.columns.push_back("message");
   for (const RunRecord& run : collection.runs) {

@@ -10,6 +10,13 @@ namespace drape {
 /// known. A run without results is one row.
 using TableRow = nlohmann::ordered_json;
 
+/// A method's row, without what tells the runs apart.
+TableRow row_of(const RunData& run, const MethodRecord& method);
+
+/// Columns of cost and quality of a method's final state and of its preview, the last state of its coarsest
+/// level: those that every run has, then the errors that are measured.
+std::vector<std::string> summary_quantities(const std::vector<ErrorMeasure>& measures);
+
 /// Rows and all their columns, in order: what tells the runs apart, the keys that a sweep varies and the seed
 /// among it; what every run has; the summary columns of the runs' metrics, errors and previews; the message.
 struct RunTable {

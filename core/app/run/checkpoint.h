@@ -27,8 +27,8 @@ struct Checkpoint {
   int method = 0;                      ///< index of the current method
   bool all_converged = true;           ///< all methods before it
   MethodState state;
-  int first_level = 0;             ///< first level of every method
-  std::optional<Positions> start;  ///< of a warm start, on that level
+  int first_level = 0;  ///< first level of every method
+  Positions start;      ///< of a warm start, on that level; empty without one
   Recorder::State recorder;
 };
 

@@ -29,7 +29,7 @@ class Check {
   void all() const {
     methods();
     levels();
-    if (c_.start) positions(*c_.start, c_.first_level, "where the methods begin");
+    if (c_.start.rows() > 0) positions(c_.start, c_.first_level, "where the methods begin");
     if (c_.state.under_way) under_way(*c_.state.under_way);
     recorder(c_.recorder);
   }

@@ -15,6 +15,8 @@ namespace {
 
 /// Intervals between updates of the line: a terminal follows the run, a log stays short [s].
 constexpr double terminal_interval = 0.1, log_interval = 10;
+/// No estimate of the time to go before this fraction; share of an iteration in the estimate.
+constexpr double least_done = 0.05, smoothing = 0.1;
 
 /// "gravity.acceleration", "pins.0.translate, contact.dhat", "pins.0.translate and 3 more".
 std::string first_two(const std::vector<std::string>& names) {
@@ -40,13 +42,13 @@ void Progress::level_started(int) {
   last_draw_ = 0;
   first_residual_ = 0;
   done_ = 0;
-  to_go_ = TimeToGo();
+  to_go_ = 0;
 }
 
 void Progress::iteration(const IterationRow& row, const Positions&) {
   take_note(row);
   const double now = level_clock_.seconds();
-  to_go_.note(now, done_);
+  if (done_ > least_done) to_go_ += (now * (1 - done_) / done_ - to_go_) * (to_go_ > 0 ? smoothing : 1);
   if (verbosity_ == Verbosity::iterations) std::fprintf(stderr, "%s\n", details(row).c_str());
   if (verbosity_ != Verbosity::progress || now - last_draw_ < (terminal_ ? terminal_interval : log_interval))
     return;
@@ -78,8 +80,8 @@ std::string Progress::line(const IterationRow& row) const {
     std::snprintf(text, sizeof text, "increment %d/%d of ", increment_, load_stepping_->increment_count());
     increment = text + changing_ + " ";
   }
-  if (const std::optional<double> seconds = to_go_.seconds()) {
-    std::snprintf(text, sizeof text, "  about %.0f s to go", *seconds);
+  if (to_go_ >= 0.5) {
+    std::snprintf(text, sizeof text, "  about %.0f s to go", to_go_);
     to_go = text;
   }
   std::snprintf(text, sizeof text, "step %-4d residual %.2e  energy %.6g J", row.step, row.force_residual,

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "core/app/run/time_to_go.h"
 #include "core/kernel/interfaces/solver.h"
 #include "core/kernel/threads/stopwatch.h"
 
@@ -50,7 +49,7 @@ class Progress : public Observer {
   int increment_ = 0;                              // of the residuals
   double first_residual_ = 0, best_residual_ = 0;  // of the current increment; 0 before the first
   double done_ = 0;                                // fraction of the level, in [0, 1]
-  TimeToGo to_go_;
+  double to_go_ = 0;                               // by the rate so far, smoothed [s]; 0 if not known
 };
 
 }  // namespace drape

@@ -107,8 +107,8 @@ class Recorder : public Observer {
   MetricResult measure(const std::string& name, const Metric& metric, const MetricInput& input, Json& entry);
   /// What the metrics of pairs tell of x and another state of the level; `fields` takes their fields.
   Json compare(int level, const Positions& x, const Positions& other, VertexFields* fields = nullptr);
-  /// A state with the fields of metrics, as a PLY file.
-  std::string fields_bytes(int level, const Positions& x, const VertexFields& fields) const;
+  /// A coarse state, prolonged, against a finer one of its method; writes the fields on the finest level.
+  Json pair_entry(const RecordedState& coarse, const RecordedState& fine);
   /// All states on the finest level.
   std::vector<const RecordedState*> finest_states() const;
   /// The finest state that the experiment chooses as reference; null without one.

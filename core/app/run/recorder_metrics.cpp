@@ -25,10 +25,6 @@ std::string fields_file(const std::string& method, int coarse, int fine) {
 
 }  // namespace
 
-std::string Recorder::fields_bytes(int level, const Positions& x, const VertexFields& fields) const {
-  return ply_bytes({x, scene_.hierarchy.levels[level].rest.triangles}, fields);
-}
-
 MetricResult Recorder::measure(const std::string& name, const Metric& metric, const MetricInput& input,
                                Json& entry) {
   std::string cause;
@@ -59,13 +55,27 @@ Recorder::Json Recorder::compare(int level, const Positions& x, const Positions&
   return row;
 }
 
+Recorder::Json Recorder::pair_entry(const RecordedState& coarse, const RecordedState& fine) {
+  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(fine.method).interpolation());
+  const Positions prolonged = scene_.hierarchy.prolong(coarse.x, coarse.level, fine.level, weights);
+  Json row = {{"coarse", coarse.level}, {"fine", fine.level}};
+  VertexFields fields;
+  row.update(compare(fine.level, fine.x, prolonged, &fields));
+  if (fine.level != scene_.finest() || fields.empty()) return row;
+  const std::string file = fields_file(fine.method, coarse.level, fine.level),
+                    bytes = ply_bytes({fine.x, scene_.hierarchy.levels[fine.level].rest.triangles}, fields);
+  write_file(folder_.file(file), bytes);
+  row["fields"] = file;
+  row["fields_checksum"] = checksum_of(bytes);
+  return row;
+}
+
 void Recorder::method_finished(const std::vector<LevelResult>& results,
                                const std::optional<MethodFailure>& failure) {
   Json& entry = method_entry();
   // A level that failed during recording may have left an entry.
   while (entry["levels"].size() > results.size()) entry["levels"].erase(entry["levels"].size() - 1);
   Outcome worst = Outcome::converged;
-  const int finest = scene_.finest();
   for (std::size_t i = 0; i < results.size(); ++i) {
     const LevelResult& r = results[i];
     worst = worse_of(worst, r.outcome);
@@ -78,26 +88,14 @@ void Recorder::method_finished(const std::vector<LevelResult>& results,
           at_dotted(state, v.name) = finite_or_null(v.value);
   }
   write_collection(s_.method);
-  const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
   std::vector<Json> of_start;  // the start compared with each level's state
   for (const LevelResult& r : results)
     of_start.push_back(&r == &results.front() ? Json() : compare(r.level, r.x, scene_.starts[r.level]));
   for (std::size_t c = 0; c < results.size(); ++c)
-    for (std::size_t f = c + 1; f < results.size(); ++f) {
-      const int coarse = results[c].level, fine = results[f].level;  // a method may skip levels
-      const Positions prolonged = scene_.hierarchy.prolong(results[c].x, coarse, fine, weights);
-      Json row = {{"coarse", coarse}, {"fine", fine}};
-      VertexFields fields;
-      row.update(compare(fine, results[f].x, prolonged, &fields));
-      if (fine == finest && !fields.empty()) {
-        const std::string file = fields_file(s_.method, coarse, fine),
-                          bytes = fields_bytes(fine, results[f].x, fields);
-        write_file(folder_.file(file), bytes);
-        row["fields"] = file;
-        row["fields_checksum"] = checksum_of(bytes);
-      }
-      row["of_start"] = of_start[f];
-      entry["consistency"].push_back(row);
+    for (std::size_t f = c + 1; f < results.size(); ++f) {  // a method may skip levels
+      entry["consistency"].push_back(pair_entry({s_.method, results[c].level, results[c].x},
+                                                {s_.method, results[f].level, results[f].x}));
+      entry["consistency"].back()["of_start"] = of_start[f];
     }
   if (!s_.method_intersection_free) worst = Outcome::infeasible;
   entry["status"] = failure ? failed : to_string(worst);
@@ -124,19 +122,16 @@ Recorder::Names Recorder::restore_fields() {
     for (const RecordedState& coarse : s_.states) {
       if (coarse.method != fine->method || coarse.level >= fine->level) continue;
       const std::string name = fields_file(fine->method, coarse.level, fine->level);
-      const Json& rows = results_["methods"][fine->method]["consistency"];
-      const auto row = std::find_if(rows.begin(), rows.end(),
-                                    [&](const Json& r) { return r.value("fields", "") == name; });
       const std::filesystem::path file = folder_.file(name);
-      if (row == rows.end() || (std::filesystem::is_regular_file(file) &&
-                                checksum_of(read_file(file)) == row->value("fields_checksum", 0u)))
-        continue;
-      s_.method = fine->method;  // whose metrics these are
-      const auto& weights = scene_.hierarchy.weights(experiment_.solver_of(s_.method).interpolation());
-      VertexFields fields;
-      compare(fine->level, fine->x, scene_.hierarchy.prolong(coarse.x, coarse.level, fine->level, weights),
-              &fields);
-      if (write_where_other(file, fields_bytes(fine->level, fine->x, fields))) written.push_back(name);
+      for (const Json& row : results_["methods"][fine->method]["consistency"]) {
+        if (row.value("fields", "") != name ||
+            (std::filesystem::is_regular_file(file) &&
+             checksum_of(read_file(file)) == row.value("fields_checksum", 0u)))
+          continue;
+        s_.method = fine->method;  // whose metrics these are
+        pair_entry(coarse, *fine);
+        written.push_back(name);
+      }
     }
   s_.method = current;
   return written;

@@ -11,7 +11,6 @@
 
 #include "core/app/files/json_file.h"
 #include "core/kernel/files/file.h"
-#include "core/kernel/interfaces/metric_declaration.h"
 
 namespace drape {
 
@@ -34,7 +33,7 @@ constexpr std::pair<const char*, const char*> own_folders[] = {
 constexpr const char* unfinished = ".part";  // ends the name of a file that is being written
 constexpr const char* lock_name = "checkpoint/lock";
 /// Longest ending of a method's file names, which begin with the method's name: a picture's.
-constexpr std::size_t longest_ending = std::string_view("_l10_l11_.png.part").size() + longest_picture_name;
+constexpr std::size_t longest_ending = std::string_view("_l10_on_l11.png.part").size();
 
 /// Whether results.json is a run's, and not of another program.
 bool has_results_of_a_run(const RunFolder& folder) {
@@ -82,41 +81,28 @@ fs::path left_there(const RunFolder& folder) {
   return {};
 }
 
-/// What is no file of a run's cannot be removed, and would stop the run at its first write there.
-void refuse_other_kinds(const RunFolder& folder) {
-  const auto refuse = [](const fs::path& path) {
-    throw std::runtime_error(path.string() +
-                             ": is not what a run has by this name; move it, or name another results folder "
-                             "with --out");
+/// What is there may only be replaced if it has a run's kinds and can be removed, and if the new run does not
+/// read it.
+void refuse_what_must_stay(const RunFolder& folder, const std::vector<fs::path>& inputs) {
+  const auto refuse = [](const fs::path& path, const std::string& why, const std::string& remedy) {
+    throw std::runtime_error(path.string() + ": " + why + "; " + remedy +
+                             ", or name another results folder with --out");
   };
+  const std::string no_kind = "is not what a run has by this name";
   for (const char* own : own_files)
-    if (fs::is_directory(folder.file(own))) refuse(folder.file(own));
-  for (const auto& [own, pattern] : own_folders)
-    if (const fs::path path = folder.file(own); fs::exists(path) && !fs::is_directory(path)) refuse(path);
-}
-
-/// Removing a file takes the right to write to its folder.
-void refuse_read_only_folders(const RunFolder& folder) {
-  for (const auto& [own, pattern] : own_folders)
-    if (const fs::path path = folder.file(own); fs::exists(path) && access(path.c_str(), W_OK | X_OK) != 0)
-      throw std::runtime_error(path.string() +
-                               ": cannot be written to; make it writable, or name another results folder "
-                               "with --out");
-}
-
-/// Files that the new run reads may not be among those of the earlier run that it replaces.
-void refuse_inputs(const RunFolder& folder, const std::vector<fs::path>& inputs) {
-  const std::vector<fs::path> own = files_of_run(folder);
-  for (const fs::path& input : inputs) {
-    if (input.is_relative()) continue;  // a copy that the new run makes
-    for (const fs::path& file : own) {
-      std::error_code error;
-      if (!fs::equivalent(input, file, error)) continue;
-      throw std::runtime_error(input.string() +
-                               ": is read by this experiment, and --overwrite would remove it; copy it, or "
-                               "name another results folder with --out");
-    }
+    if (fs::is_directory(folder.file(own))) refuse(folder.file(own), no_kind, "move it");
+  for (const auto& [own, pattern] : own_folders) {
+    const fs::path path = folder.file(own);
+    if (fs::exists(path) && !fs::is_directory(path)) refuse(path, no_kind, "move it");
+    if (fs::exists(path) && access(path.c_str(), W_OK | X_OK) != 0)  // which removing a file takes
+      refuse(path, "cannot be written to", "make it writable");
   }
+  for (const fs::path& file : files_of_run(folder))
+    for (const fs::path& input : inputs) {
+      std::error_code error;
+      if (input.is_absolute() && fs::equivalent(input, file, error))  // else a copy that the new run makes
+        refuse(input, "is read by this experiment, and --overwrite would remove it", "copy it");
+    }
 }
 
 /// Files may be replaced only if they are a run's and `overwrite` is set.
@@ -135,9 +121,7 @@ void refuse_what_is_there(const RunFolder& folder, bool overwrite, const std::ve
     throw std::runtime_error(folder.path().string() +
                              ": holds the results of another run; name another folder with --out, or "
                              "replace them with --overwrite");
-  refuse_other_kinds(folder);
-  refuse_read_only_folders(folder);
-  refuse_inputs(folder, inputs);
+  refuse_what_must_stay(folder, inputs);
 }
 
 /// The missing folders of the path, innermost first.

@@ -21,32 +21,21 @@ namespace drape {
 
 namespace {
 
-/// Passes everything on to the recorder, the checkpoints, the progress bar and the live view.
+/// Passes everything on to the recorder, the checkpoints, the progress bar and other observers.
 class RunObserver : public Observer {
  public:
   RunObserver(Recorder& recorder, CheckpointManager& checkpoints, Progress& progress,
               const RunOptions& options)
-      : recorder_(recorder),
-        checkpoints_(checkpoints),
-        progress_(progress),
-        view_(options.view),
-        further_(options.observer),
-        stop_(options.stop) {}
+      : recorder_(recorder), checkpoints_(checkpoints), stop_(options.stop), viewers_{&progress} {
+    for (Observer* viewer : {static_cast<Observer*>(options.view), options.observer})
+      if (viewer) viewers_.push_back(viewer);
+  }
 
-  void method_started(const std::string& name, bool resumable, const MethodState& state) {
+  /// The state is that of an interrupted method, or the first.
+  void method_started(bool resumable, const MethodState& state) {
     resumable_ = resumable;
     level_ = state.level;
     finished_ = state.finished;
-    progress_.method_started(name);
-    if (view_) view_->method_started(name);
-  }
-  /// Shows the results that the method had when the run was interrupted.
-  void catch_up(const MethodState& state) {
-    for (const LevelResult& result : state.finished)
-      if (view_) view_->level_started(result.level), view_->level_finished(result);
-    if (!state.under_way) return;
-    progress_.level_started(state.level);
-    if (view_) view_->level_started(state.level);
   }
   /// Finished levels of the current method.
   const std::vector<LevelResult>& finished() const { return finished_; }
@@ -55,49 +44,54 @@ class RunObserver : public Observer {
   void level_started(int level) override {
     level_ = level;
     recorder_.level_started(level);
-    progress_.level_started(level);
-    if (view_) view_->level_started(level);
-    if (further_) further_->level_started(level);
+    for (Observer* viewer : viewers_) viewer->level_started(level);
   }
   void iteration(const IterationRow& row, const Positions& x) override {
     recorder_.iteration(row, x);
-    progress_.iteration(row, x);
-    if (view_) view_->iteration(row, x);
-    if (further_) further_->iteration(row, x);
+    for (Observer* viewer : viewers_) viewer->iteration(row, x);
   }
   void increment_finished(const IncrementRow& row, const Positions& x) override {
     recorder_.increment_finished(row, x);
-    if (further_) further_->increment_finished(row, x);
+    for (Observer* viewer : viewers_) viewer->increment_finished(row, x);
   }
   void level_finished(const LevelResult& result) override {
     recorder_.level_finished(result);
     finished_.push_back(result);
     if (resumable_) checkpoints_.level_finished(result);
-    progress_.level_finished(result);
-    if (view_) view_->level_finished(result);
-    if (further_) further_->level_finished(result);
+    for (Observer* viewer : viewers_) viewer->level_finished(result);
   }
   bool checkpoint_due() override { return resumable_ && checkpoints_.due(stop_requested()); }
   void checkpoint(const NewtonState& state) override { checkpoints_.save(state); }
   bool stop_requested() override {
-    return (stop_ && stop_()) || (view_ && view_->stop_requested()) ||
-           (further_ && further_->stop_requested());
+    return (stop_ && stop_()) || any([](Observer& viewer) { return viewer.stop_requested(); });
   }
   bool refine_requested() override {
-    return (view_ && view_->refine_requested()) || (further_ && further_->refine_requested());
+    return any([](Observer& viewer) { return viewer.refine_requested(); });
   }
 
  private:
+  template <class Asked>
+  bool any(const Asked& asked) const {
+    return std::any_of(viewers_.begin(), viewers_.end(), [&](Observer* viewer) { return asked(*viewer); });
+  }
+
   Recorder& recorder_;
   CheckpointManager& checkpoints_;
-  Progress& progress_;
-  LiveView* view_;
-  Observer* further_;
+  const std::function<bool()>& stop_;
+  std::vector<Observer*> viewers_;
   bool resumable_ = false;
   int level_ = 0;
   std::vector<LevelResult> finished_;
-  const std::function<bool()>& stop_;
 };
+
+/// Shows the results that a method had when the run was interrupted.
+void catch_up(const MethodState& state, Progress& progress, LiveView* view) {
+  for (const LevelResult& result : state.finished)
+    if (view) view->level_started(result.level), view->level_finished(result);
+  if (!state.under_way) return;
+  progress.level_started(state.level);
+  if (view) view->level_started(state.level);
+}
 
 /// Observes a solve that belongs to no method: it is not recorded, and stops when the run is to stop.
 class UnrecordedObserver : public Observer {
@@ -196,9 +190,11 @@ bool run(const Experiment& experiment, const Scene& scene, const RunOptions& opt
     state.level = begun.first_level;
     const bool under_way = resumed && m == begun.method;
     if (under_way) state = begun.state;
-    observer.method_started(name, solver.can_resume(), state);
+    observer.method_started(solver.can_resume(), state);
+    progress.method_started(name);
+    if (options.view) options.view->method_started(name);
     if (under_way) {
-      observer.catch_up(state);
+      catch_up(state, progress, options.view);
     } else {
       recorder.method_started(name);
       checkpoints.method_started(m);

@@ -1,19 +1,19 @@
 #include "core/app/view/live_server.h"
 
+#include <arpa/inet.h>
 #include <httplib.h>
 #include <sys/random.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <thread>
-
-#include "core/app/view/connections.h"
 
 namespace drape {
 
@@ -50,76 +50,47 @@ void refuse(Response& response, int status, const std::string& why) {
 }
 
 constexpr std::size_t largest_body = 1024;  // [bytes]; no request of the page has one
+constexpr int threads = 16;                 // concurrent connections
 
-/// The library's server with our own connections: its limits apply to a single read, and a peer that sends a
-/// byte now and then would block a thread and the shutdown for ever.
-class BoundedServer final : public httplib::Server {
- public:
-  explicit BoundedServer(double patience)
-      : connections_({.reading = patience, .writing = patience}, [this](httplib::Stream& stream) {
-          bool closed = false;
-          process_request(stream, true, closed, nullptr);
-        }) {
-    // The listening thread only passes connections on.
-    struct AtOnce final : httplib::TaskQueue {
-      void enqueue(std::function<void()> task) override { task(); }
-      void shutdown() override {}
-    };
-    new_task_queue = [] { return new AtOnce; };
+/// Disconnects everyone from a port of this process: the library ends its connections only between reads, so
+/// that a peer which sends a byte now and then would delay the end for ever.
+void disconnect_all(int port) {
+  for (int socket = 3; socket < 1024; ++socket) {
+    sockaddr_in own{};
+    socklen_t size = sizeof own;
+    if (getsockname(socket, reinterpret_cast<sockaddr*>(&own), &size) == 0 && own.sin_family == AF_INET &&
+        ntohs(own.sin_port) == port)
+      ::shutdown(socket, SHUT_RDWR);
   }
-
-  /// The library's backlog is five connections: of a burst, the others would retry after a second.
-  void lengthen_queue() { ::listen(svr_sock_, SOMAXCONN); }
-  void end_connections() { connections_.end(); }
-
- private:
-  bool process_and_close_socket(socket_t socket) override {
-    connections_.take(socket);
-    return true;
-  }
-
-  Connections connections_;
-};
-
-/// Why the request's body is refused; empty if it is not. The library accepts "-1" as a length.
-std::string fault_of_body(const Request& request) {
-  if (request.has_header("Transfer-Encoding")) return "the live view takes no body in parts";
-  // For these the library would wait for a body until the connection closes.
-  if (request.method != "GET" && request.method != "HEAD" && !request.has_header("Content-Length"))
-    return "Content-Length is missing";
-  for (std::size_t k = 0; k < request.get_header_value_count("Content-Length"); ++k) {
-    const std::string length = request.get_header_value("Content-Length", k);
-    std::size_t bytes = 0;
-    const char* end = length.data() + length.size();
-    const auto [rest, error] = std::from_chars(length.data(), end, bytes);
-    if (error != std::errc() || rest != end || bytes > largest_body)
-      return "Content-Length must be 0 to " + std::to_string(largest_body);
-  }
-  return "";
 }
 
 }  // namespace
 
 struct LiveServer::Impl {
-  explicit Impl(double patience) : server(patience) {}
-
-  BoundedServer server;
+  httplib::Server server;
   std::thread thread;
   std::atomic<bool> ended = false;
-  std::string origin, same_origin;  // http://127.0.0.1:port, and by name
+  int port = 0;
+  const std::string base = "/" + random_token() + "/";
 
   /// Whether the request is for the printed address. This stops DNS rebinding and cross-site requests.
   bool is_ours(const Request& request) const {
     const std::string host = "http://" + request.get_header_value("Host");
-    if (host != origin && host != same_origin) return false;
+    if (host != "http://127.0.0.1:" + std::to_string(port) &&
+        host != "http://localhost:" + std::to_string(port))
+      return false;
     return request.method == "GET" || !request.has_header("Origin") ||
            request.get_header_value("Origin") == host;
   }
 };
 
 LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
-    : impl_(std::make_unique<Impl>(patience)) {
+    : impl_(std::make_unique<Impl>()) {
   httplib::Server& server = impl_->server;
+  server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+  server.set_keep_alive_max_count(1);
+  server.set_read_timeout(std::chrono::duration<double>(patience));
+  server.set_write_timeout(std::chrono::duration<double>(patience));
   // The library's default would let two programs listen on one port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
@@ -134,16 +105,16 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
         "default-src 'none'; img-src data:; connect-src 'self'; frame-ancestors 'none'; "
         "style-src 'unsafe-inline'; script-src 'unsafe-inline'"}});
   server.set_pre_routing_handler([this](const Request& request, Response& response) {
-    if (const std::string fault = fault_of_body(request); !fault.empty()) {
-      refuse(response, 400, "Refused: " + fault + ".");
-      return httplib::Server::HandlerResponse::Handled;
-    }
-    if (impl_->is_ours(request)) return httplib::Server::HandlerResponse::Unhandled;
-    refuse(response, 403, "Refused: the request comes from elsewhere than the live view's own page.");
+    // Before the body is read: only the page may send one.
+    const bool ours = impl_->is_ours(request);
+    if (ours && request.path.starts_with(impl_->base)) return httplib::Server::HandlerResponse::Unhandled;
+    refuse(response, ours ? 404 : 403,
+           ours ? "There is nothing here."
+                : "Refused: the request comes from elsewhere than the live view's own page.");
     return httplib::Server::HandlerResponse::Handled;
   });
 
-  const std::string base = "/" + random_token() + "/";
+  const std::string& base = impl_->base;
   server.Get(base, [answers](const Request&, Response& response) {
     send(response, answers.page(), "text/html; charset=utf-8");
   });
@@ -182,10 +153,8 @@ LiveServer::LiveServer(int port, const LiveAnswers& answers, double patience)
     throw std::runtime_error(
         "--port " + std::to_string(port) + ": cannot listen on 127.0.0.1:" + std::to_string(port) + " (" +
         std::strerror(errno) + "); name another port, or leave --port out for one that is free");
-  impl_->server.lengthen_queue();
-  impl_->origin = "http://127.0.0.1:" + std::to_string(bound);
-  impl_->same_origin = "http://localhost:" + std::to_string(bound);
-  url_ = impl_->origin + base;
+  impl_->port = bound;
+  url_ = "http://127.0.0.1:" + std::to_string(bound) + base;
   impl_->thread = std::thread([this] {
     impl_->server.listen_after_bind();
     impl_->ended = true;
@@ -196,8 +165,11 @@ LiveServer::~LiveServer() {
   // A server that does not listen yet would miss the stop.
   while (!impl_->server.is_running() && !impl_->ended) std::this_thread::yield();
   impl_->server.stop();
+  while (!impl_->ended) {
+    disconnect_all(impl_->port);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   impl_->thread.join();
-  impl_->server.end_connections();
 }
 
 }  // namespace drape

@@ -17,12 +17,12 @@ struct LiveAnswers {
 };
 
 /// Serves the live view on 127.0.0.1 only, under an unguessable path. Refuses requests for another host name
-/// and actions from other sites' pages. Peers can neither block the page nor the shutdown (see
-/// ConnectionLimits).
+/// and actions from other sites' pages. No peer delays the end.
 class LiveServer {
  public:
-  /// Starts to listen; port 0 takes any free one. A peer has `patience` seconds for its request, and as many
-  /// to take any part of the answer. Throws std::runtime_error if the port is not available.
+  /// Starts to listen; port 0 takes any free one. A peer has `patience` seconds for each part of its
+  /// request, and as many to take a part of the answer. Throws std::runtime_error if the port is not
+  /// available.
   LiveServer(int port, const LiveAnswers& answers, double patience = 5);
   ~LiveServer();
 

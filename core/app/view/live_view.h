@@ -12,9 +12,8 @@
 
 namespace drape {
 
-/// Shows a run in a browser while it proceeds, and forwards the page's "stop" and "refine now". The run only
-/// copies a state now and then while a page is open; the server's threads do the rest. Results do not depend
-/// on it.
+/// Shows a run in a browser while it proceeds, and forwards the page's "stop" and "refine now". While a page
+/// is open, up to 5 % of the run's time go to the states that it shows. Results do not depend on it.
 class LiveView : public Observer {
  public:
   /// Starts to serve (see LiveServer) the chosen methods of the experiment, all if none is named. `scene`
@@ -36,24 +35,20 @@ class LiveView : public Observer {
 
  private:
   using Json = ViewDocument::Json;
-  using Obstacles = std::vector<TriangleMesh>;
-  struct Shown {
-    Positions x;
-    std::shared_ptr<const Obstacles> obstacles;  // under the load of x
+  /// What the page has of a method and level.
+  struct LevelView {
     std::string status = "running";
     int iteration = 0;
     double seconds = 0;
-    bool fresh = false;        // not encoded yet
-    Json entry;                // of the state, once encoded
-    std::string name, before;  // of its blocks and the replaced ones, which a page may still request
+    Json state;                     // as ViewDocument makes it; null at first
+    std::string name;               // of its blocks
+    std::string sent, sent_before;  // of those that pages know, and may still request
   };
 
-  void copy_state(Shown& shown, const Positions& x);
+  void show(LevelView& view, int level, const Positions& x);
   std::string page() const;
   std::string news(long version, std::size_t rows);
   std::string refine();
-  void encode_fresh();
-  void keep(const std::string& name, std::string bytes);
   std::shared_ptr<const std::string> block(const std::string& name);
   void forget_blocks(const std::string& state);
 
@@ -66,26 +61,21 @@ class LiveView : public Observer {
 
   std::atomic<bool> stop_ = false, refine_ = false;
 
-  std::mutex mutex_;  // of everything down to here; held for moments only
+  std::mutex mutex_;  // of everything down to the server
   std::condition_variable heard_;
-  long version_ = 1, heard_version_ = 0;
+  long version_ = 1, heard_version_ = 0, encoded_ = 0;
   std::string outcome_;  // once the run is over
   int method_ = -1, level_ = 0;
-  std::map<std::pair<int, int>, Shown> states_;  // by number of the method, and level
-  Json rows_ = Json::array();                    // [method, level, seconds, residual]
-  double last_heard_ = -1e9, last_copy_ = -1e9, seconds_to_encode_ = 0;
+  std::map<std::pair<int, int>, LevelView> levels_;  // by number of the method, and level
+  Json rows_ = Json::array();                        // [method, level, seconds, residual]
+  double last_heard_ = -1e9, last_shown_ = -1e9, seconds_to_show_ = 0;
   std::map<std::string, std::shared_ptr<const std::string>> blocks_;
   Stopwatch clock_;
-
-  const std::shared_ptr<const Obstacles> first_obstacles_;
-  // Of the solver's thread alone: where the obstacles are, and the values of the schedule's keys there.
-  std::shared_ptr<const Obstacles> obstacles_ = first_obstacles_;
-  std::vector<double> load_;
-  double seconds_to_copy_ = 0;
-
-  std::mutex encoding_;  // of what only the server's threads use; taken before mutex_
-  long encoded_ = 0;
+  const std::vector<TriangleMesh> first_obstacles_;
+  std::vector<TriangleMesh> obstacles_ = first_obstacles_;  // under the values of the schedule's keys
+  std::vector<double> load_;                                // these values
   ViewDocument document_;
+
   std::unique_ptr<LiveServer> server_;  // last: its threads use the rest
 };
 

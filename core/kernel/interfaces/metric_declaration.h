@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -29,39 +28,23 @@ struct MetricColumn {
   std::string unit = {};   ///< "1" if dimensionless
   Better better = Better::lower;
   Shown shown = Shown::tables;
-  int decimals = -1;       ///< shown after the point; -1 for three significant digits
-  std::string best = {};   ///< what the best method does: "changes its curvature least"; may be empty
   std::string error = {};  ///< name of the value as an error, in errors.csv; empty if it is none
   ErrorUse error_use = ErrorUse::plots;  ///< where higher is better the error is 1 − value
 };
 
-/// What the 3D view of a page shows of a field.
-enum class PictureKind {
-  difference,  ///< of each level from the finest
-  threshold    ///< of the state of every level
-};
-
-/// Longest name of a picture [bytes]: the paths of its files are checked before a run.
-inline constexpr std::size_t longest_picture_name = 24;
-
 /// Declares colours of the 3D view for a field of a pair metric.
-struct MetricPicture {
-  PictureKind kind = PictureKind::difference;
-  std::string name = {};         ///< ends the names of its files; at most longest_picture_name
-  std::string field = {};        ///< of the difference, or of the fine state
-  std::string other_field = {};  ///< of the coarse state; `threshold` only
+struct MetricColours {
+  std::string field = {};  ///< of the fine state; without `other_field`, of its difference from the coarse
+  std::string other_field = {};  ///< the same of the coarse state
   std::string unit = {};
-  std::string label = {};   ///< "difference in mean curvature"
-  std::string title = {};   ///< of its section in a report
-  std::string text = {};    ///< what it shows, in a few sentences
-  std::string column = {};  ///< value in its caption; may be empty
+  std::string label = {};  ///< "difference in mean curvature"
 };
 
 /// How reports show the values and fields of a metric.
 struct MetricDeclaration {
-  std::vector<MetricColumn> columns = {};    ///< all values, in the order of tables
-  std::vector<MetricPicture> pictures = {};  ///< of pair metrics
-  std::string text = {};                     ///< what the columns mean, in a few sentences
+  std::vector<MetricColumn> columns = {};   ///< all values, in the order of tables
+  std::vector<MetricColours> colours = {};  ///< of pair metrics
+  std::string text = {};                    ///< what the columns mean, in a few sentences
 };
 
 }  // namespace drape

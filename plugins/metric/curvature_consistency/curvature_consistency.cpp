@@ -48,33 +48,16 @@ MetricDeclaration CurvatureConsistency::declaration() const {
                 .label = "d_H^fit",
                 .unit = "1",
                 .shown = Shown::summary,
-                .best = "changes its mean curvature least",
                 .error = "d_H_fit",
                 .error_use = ErrorUse::summary},
                {.name = "d_H_ddg", .label = "d_H^ddg", .unit = "1"},
                {.name = "d_K_fit", .label = "d_K^fit", .unit = "1/m²"},
                {.name = "d_K_ddg", .label = "d_K^ddg", .unit = "1/m²"}};
-  d.pictures = {
-      {.kind = PictureKind::difference,
-       .name = "H_difference",
-       .field = "H_difference",
-       .unit = "1/m",
-       .label = "difference in mean curvature",
-       .title = "Where the curvature changes",
-       .text = "Difference in mean curvature between the coarsest level, prolonged, and the finest. "
-               "White means that the coarse level predicted the curvature; deep blue and red mean "
-               "folds that moved, vanished or appeared.",
-       .column = "d_H_fit"},
-      {.kind = PictureKind::threshold,
-       .name = "folds",
-       .field = "principal_curvature",
-       .other_field = "principal_curvature_other",
-       .unit = "1/m",
-       .label = "folds",
-       .title = "Folds across levels",
-       .text = "The principal curvature of larger magnitude, coloured by its sign above a "
-               "threshold. Compare down a column: every level should have the same folds, only "
-               "sharper."}};
+  d.colours = {{.field = "H_difference", .unit = "1/m", .label = "difference in mean curvature"},
+               {.field = "principal_curvature",
+                .other_field = "principal_curvature_other",
+                .unit = "1/m",
+                .label = "folds"}};
   d.text =
       "The squared difference of curvatures is integrated over the rest shape: d_H of mean curvature H "
       "[1/m], dimensionless; d_K of Gaussian curvature K [1/m²], in 1/m². “fit” takes curvatures from "

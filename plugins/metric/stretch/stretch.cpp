@@ -14,20 +14,17 @@ MetricDeclaration Stretch::declaration() const {
                        .label = "largest stretch",
                        .unit = "1",
                        .better = Better::neither,
-                       .shown = Shown::summary,
-                       .decimals = 4},
+                       .shown = Shown::summary},
                       {.name = "smallest_stretch",
                        .label = "smallest stretch",
                        .unit = "1",
                        .better = Better::neither,
-                       .shown = Shown::stored,
-                       .decimals = 4},
+                       .shown = Shown::stored},
                       {.name = "mean_stretch",
                        .label = "mean stretch",
                        .unit = "1",
                        .better = Better::neither,
-                       .shown = Shown::stored,
-                       .decimals = 4}},
+                       .shown = Shown::stored}},
           .text = "Stretch is the largest principal stretch (1 is unstretched)."};
 }
 

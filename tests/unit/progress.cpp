@@ -1,51 +1,9 @@
-#include "core/app/run/time_to_go.h"
-
-#include <catch2/catch.hpp>
-#include <cmath>
-#include <limits>
-
 #include "core/app/run/progress.h"
 
+#include <catch2/catch.hpp>
+#include <limits>
+
 using namespace drape;
-
-TEST_CASE("The time to go is right for a steady rate, and unknown at first") {
-  TimeToGo to_go;
-  CHECK(!to_go.seconds());
-  for (int k = 0; k <= 90; ++k) {
-    to_go.note(k, 0.01 * k);
-    if (k < 7) CHECK(!to_go.seconds());
-  }
-  REQUIRE(to_go.seconds());
-  CHECK(*to_go.seconds() == Approx(10).epsilon(0.1));
-}
-
-TEST_CASE("The time to go does not jump, whatever the rate does") {
-  // Nothing for long, then much at once, and slower and slower.
-  TimeToGo to_go;
-  double seconds = 0, done = 0, last = 0;
-  int shown = 0;
-  for (int k = 0; k < 2000; ++k) {
-    seconds += k % 100 == 0 ? 3 : 0.05;
-    if (k % 40 < 10) done += (1 - done) * (k % 400 == 0 ? 0.2 : 0.002);
-    to_go.note(seconds, done);
-    if (!to_go.seconds()) continue;
-    ++shown;
-    if (last > 0) {
-      CHECK(*to_go.seconds() <= 2 * last);
-      CHECK(*to_go.seconds() >= 0.5 * last);
-    }
-    last = *to_go.seconds();
-  }
-  CHECK(shown > 1000);
-}
-
-TEST_CASE("The time to go is unknown after a long time without progress") {
-  TimeToGo to_go;
-  for (int k = 0; k <= 20; ++k) to_go.note(k, 0.01 * k);
-  CHECK(to_go.seconds());
-  for (int k = 21; k <= 60; ++k) to_go.note(k, 0.1);  // less than before
-  CHECK(!to_go.seconds());
-}
 
 namespace {
 
